@@ -6,7 +6,12 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.errors import extras_named
-from facegear.gear_body.compliance import mean_compliance, modal_compliance, over_orders
+from facegear.gear_body.compliance import (
+    mean_compliance,
+    modal_compliance,
+    over_orders,
+    slope_compliance,
+)
 from facegear.gear_body.elements import Elements
 from facegear.gear_body.matrices import body_matrices
 from facegear.gear_body.mesh import BodyMesh, body_mesh
@@ -38,6 +43,8 @@ class SolvedBody:
         Modes of the orders 0, 1, 2, ...
     compliances : (orders, 3, 3)
         Of the means <W>, <V> and <W / r> below the teeth, from order 0 up to the last that a load needs.
+    slopes : (orders, 1, 4)
+        <W>, <V>, <W / r> and slope dW/dr by a unit moment on that slope, 1/N and rad/(N m).
     changes
         Of every order the relative change (m,) of its frequencies from a coarser mesh.
     """
@@ -47,11 +54,16 @@ class SolvedBody:
     elements: Elements
     orders: tuple[OrderModes, ...]
     compliances: Array
+    slopes: Array
     changes: tuple[Array, ...]
 
     def static(self, patch: Patch) -> Array:
         """H_n (orders, 2, 2) with the hub held, m/N."""
         return np.stack([patch.compliance(order, below) for order, below in enumerate(self.compliances)])
+
+    def leaning(self, patch: Patch) -> Array:
+        """W_p, V_p (1/N) and slope (rad/(N m)) by a unit moment on the slope, hub held, (orders, 3)."""
+        return np.stack([patch.leaning(order, below[0]) for order, below in enumerate(self.slopes)])
 
     def modal(self, patch: Patch) -> Array:
         """The part of `static` that the modes hold, (orders, 2, 2), m/N."""
@@ -76,7 +88,7 @@ def _solved(section: Section, max_frequency: float, last_order: int, last_static
     mesh = body_mesh(section)
     body = body_matrices(section, mesh)
     modes: list[OrderModes] = []
-    compliances = {}
+    compliances, slopes = {}, {}
     for order in sorted({*range(last_order + 1), *sampled_orders(last_static)}):
         solve = held_solver(body, order)
         if order <= last_order:
@@ -84,12 +96,14 @@ def _solved(section: Section, max_frequency: float, last_order: int, last_static
             modes.append(order_modes(body, order, max_frequency, solve, expected))
         if order <= last_static:
             compliances[order] = mean_compliance(body, order, solve)
+            slopes[order] = slope_compliance(body, order, solve)
     return SolvedBody(
         section=section,
         mesh=mesh,
         elements=body.elements,
         orders=tuple(modes),
         compliances=over_orders(tuple(compliances), np.stack(list(compliances.values())), last_static),
+        slopes=over_orders(tuple(slopes), np.stack(list(slopes.values())), last_static),
         changes=_changes(section, modes),
     )
 

@@ -17,18 +17,25 @@ def mean_compliance(body: BodyMatrices, order: int, solve: Solve) -> Array:
     return np.asarray(means @ solve(means.T))
 
 
+def slope_compliance(body: BodyMatrices, order: int, solve: Solve) -> Array:
+    """<W>, <V>, <W / r> and the slope dW/dr by a unit moment on that slope, (1, 4), hub held."""
+    slope = body.slope_on_teeth
+    moved = solve(slope)
+    return np.array([[*(mean @ moved for mean in body.on_teeth), slope @ moved]])
+
+
 def modal_compliance(modes: OrderModes) -> Array:
     """The part (3, 3) of `mean_compliance` that modes hold."""
     return np.asarray((modes.teeth / (2.0 * np.pi * modes.frequencies) ** 2) @ modes.teeth.T)
 
 
 def over_orders(computed: Sequence[int], values: Array, last: int) -> Array:
-    """Compliances (orders, 3, 3) of all orders from 0 to `last` from those (n, 3, 3) computed of some.
+    """Compliances (orders, i, j) of all orders from 0 to `last` from those (n, i, j) computed of some.
 
     They change smoothly with the order beyond the first few: cubic splines of n times the compliance.
     """
     orders = np.array(computed)
-    result = np.empty((last + 1, 3, 3))
+    result = np.empty((last + 1, *values.shape[1:]))
     wanted = np.arange(last + 1)
     scale = np.maximum(orders, 1)[:, None, None]
     smooth = CubicSpline(orders[1:], (scale * values)[1:])

@@ -6,6 +6,7 @@ with W the body's speed: g = int 2 rho U V from the Coriolis force, P = int rho 
 centrifugal force, and S the work of the centrifugal stress on the second-order strains.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -77,6 +78,17 @@ class BodyMatrices:
     def on_teeth(self) -> tuple[Array, Array, Array]:
         """Means <W>, <V> and <W / r> (dofs,) along the teeth on height 0, uniform in r."""
         return teeth_means(self.section, self.elements)
+
+    @cached_property
+    def slope_on_teeth(self) -> Array:
+        """Slope dW/dr (dofs,) of the straight line that fits W best along the teeth on height 0, 1/m."""
+        inner, outer = self.section.teeth
+        middle, width = 0.5 * (inner + outer), outer - inner
+        slope = np.zeros(self.elements.size)
+        slope[W::3] = along_teeth(
+            self.section, self.elements, lambda parts, r: parts * 12.0 * (r - middle) / width**2
+        )
+        return slope
 
 
 def around(order: int) -> float:
@@ -197,8 +209,18 @@ def rigid_motions(elements: Elements, order: int) -> Array:
 
 
 def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Array]:
-    """Means <W>, <V> and <W / r> (dofs,) of the shapes along height 0 between the radii of the teeth.
+    """Means <W>, <V> and <W / r> (dofs,) of the shapes along height 0 between the radii of the teeth."""
+    plain = along_teeth(section, elements, lambda parts, r: parts)
+    means = np.zeros((3, elements.size))
+    means[0, W::3], means[1, V::3] = plain, plain
+    means[2, W::3] = along_teeth(section, elements, np.divide)
+    return means[0], means[1], means[2]
 
+
+def along_teeth(section: Section, elements: Elements, weigh: Callable[[Array, Array], Array]) -> Array:
+    """Mean (shapes,) of each shape times a function of r along height 0 between the radii of the teeth.
+
+    weigh: what makes of the parts that points have in a plain mean, and of their r, those in this one.
     Along a straight edge of an element the shapes are the quadratic ones of its two ends and its middle.
     """
     mesh, dofs, (inner, outer) = elements.basis.mesh, elements.basis.dofs, section.teeth
@@ -211,9 +233,6 @@ def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Arr
     shapes = np.stack([0.5 * at * (at - 1.0), 0.5 * at * (at + 1.0), 1.0 - at**2])
     weights = 0.5 * GAUSS[1][:, None] * np.abs(last - first) / (outer - inner)
     r = 0.5 * (first + last) + 0.5 * at * (last - first)
-    plain, over_r = np.zeros((2, elements.places.shape[1]))
-    np.add.at(plain, numbers, (shapes * weights).sum(axis=1))
-    np.add.at(over_r, numbers, (shapes * (weights / r)).sum(axis=1))
-    means = np.zeros((3, elements.size))
-    means[0, W::3], means[1, V::3], means[2, W::3] = plain, plain, over_r
-    return means[0], means[1], means[2]
+    mean = np.zeros(elements.places.shape[1])
+    np.add.at(mean, numbers, (shapes * weigh(weights, r)).sum(axis=1))
+    return mean

@@ -34,6 +34,10 @@ class ReducedBody:
         Of every mode, in the steel.
     pitch_height : ()
         Of the pitch plane over height 0, m.
+    slope : (m,)
+        Slope dW/dr of the rim below the teeth, 1/m; of a body without this none.
+    leaning : (orders, 3)
+        W_p, V_p (1/N) and slope (rad/(N m)) by a unit moment on the slope, with all modes there are.
     mass, moment : ()
         Of the section, kg, and that times the height of its centre, kg m.
     """
@@ -49,6 +53,8 @@ class ReducedBody:
     static: Array
     damping_ratio: Array
     pitch_height: Array = field(default_factory=lambda: np.zeros(()))
+    slope: Array = field(default_factory=lambda: np.zeros(()))
+    leaning: Array = field(default_factory=lambda: np.zeros(()))
     mass: Array = field(default_factory=lambda: np.zeros(()))
     moment: Array = field(default_factory=lambda: np.zeros(()))
 
@@ -56,6 +62,19 @@ class ReducedBody:
     def damping(self) -> Array:
         """Damping of every mode for unit modal mass, (m,), 1/s."""
         return np.asarray(4.0 * np.pi * self.damping_ratio * self.frequency)
+
+    @property
+    def slopes(self) -> Array:
+        """`slope` of every mode, (m,), 1/m."""
+        return np.broadcast_to(self.slope, self.order.shape)
+
+    def joined(self, length: float) -> Array:
+        """Static compliance of W_p, V_p and `length` (m) times the slope, (orders, 3, 3), m/N."""
+        whole = np.zeros((len(self.static), 3, 3))
+        whole[:, :2, :2] = self.static
+        leaning = np.broadcast_to(self.leaning, (len(self.static), 3)) * np.array([1.0, 1.0, length])
+        whole[:, 2], whole[:, :2, 2] = length * leaning, length * leaning[:, :2]
+        return whole
 
     @property
     def modal(self) -> Array:

@@ -28,6 +28,8 @@ def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> Reduce
         static=body.static(patch),
         damping_ratio=np.array(damping_ratio),
         pitch_height=np.array(patch.height),
+        slope=np.concatenate([patch.factor(modes.order) * modes.slope for modes in orders]),
+        leaning=body.leaning(patch),
         mass=np.array(mass),
         moment=np.array(moment),
     )

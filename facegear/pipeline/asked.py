@@ -24,6 +24,9 @@ LOADING = (
 )
 """Keys of section contact that say how the bodies are loaded, and nothing of how they give way."""
 
+TILTS = ("tilt", "hub_tilt", "body")
+"""Keys of a gear whose teeth lean."""
+
 
 def always(case: Case) -> bool:
     """Always."""
@@ -79,10 +82,10 @@ def posed_rating(case: Case) -> bool:
 
 
 def tilting(case: Case) -> bool:
-    """Whether a body of the machine may tilt, so that the error of the shaft angle changes."""
+    """Whether a body of the machine may tilt or bend, so that the error of the shaft angle changes."""
     section: Any = case.values["transmission"]
     gears = [section["face_gear"], *section["single_gears"].values()]
-    return bool(section["shafts"]) or any(gear.get("tilt") or gear.get("hub_tilt") for gear in gears)
+    return bool(section["shafts"]) or any(gear.get(key) for gear in gears for key in TILTS)
 
 
 def modes_from_contact(case: Case) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.poses.mesh_poses import pose_rows
+from facegear.poses.mesh_poses import leaning_rows, pose_rows
 from facegear.transmission.layout import TILT_LETTERS, Layout
 from facegear.transmission.linear_model import LinearModel
 
@@ -22,18 +22,24 @@ class ForceDirections:
         Where the middle of the pinion's face is on its axis, m.
     slopes : (2 meshes, parts)
         By the parts of a pose, drive flanks first; m/m and m/rad.
+    lever
+        Of the ideal contact by an error of the shaft angle, m/rad: rows of a model have it of bodies that
+        tilt, but not of rims that bend.
     """
 
     layout: Layout
     mean_radius: float
     slopes: Array
+    lever: float = 0.0
 
     def __call__(self, lumped: LinearModel) -> LinearModel:
         """The model with these directions."""
-        return replace(lumped, rows=lumped.rows + self.beyond(lumped))
+        leaning = self.lever * leaning_rows(lumped, self.layout)
+        added = self.beyond(lumped) + np.concatenate([leaning, leaning])
+        return replace(lumped, rows=lumped.rows + added)
 
     def beyond(self, model: LinearModel) -> Array:
-        """What the directions add to the rows of a model, (2 meshes, n).
+        """What the directions add to the rows of the ideal contact, (2 meshes, n).
 
         A mesh turns no pinion about a diameter: the middle of its face takes the force.
         """

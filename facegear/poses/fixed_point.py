@@ -90,6 +90,7 @@ def operating_pose(
     InvalidInput for a pose outside the surface, NotConverged.
     """
     own = machine.imperfections.stiffness
+    machine = prepared(machine, surface)
     posed, forces = machine, mean_equilibrium(static(machine))
     change = np.inf
     for step in range(1, STEPS + 1):
@@ -105,6 +106,14 @@ def operating_pose(
     raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", tried)
 
 
+def prepared(machine: Machine, surface: PoseSurface) -> Machine:
+    """The machine with the directions of the ideal contact, at rest with the slopes of rims that bend."""
+    if machine.directions is not None or machine.bodies is None:
+        return machine
+    none = np.zeros((2 * len(machine.layout.meshes), len(PARTS)))
+    return replace(machine, directions=ForceDirections(machine.layout, surface.pair.mean_radius, none))
+
+
 def posed_machine(machine: Machine, surface: PoseSurface) -> Machine:
     """The machine with the poses that its own mean torques make. Raises what `operating_pose` raises."""
     return operating_pose(machine, surface).machine
@@ -117,7 +126,11 @@ def pose_at(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """The machine with the poses of an equilibrium, one step of `operating_pose`."""
+    """The machine with the poses of an equilibrium, one step of `operating_pose`.
+
+    at_rest: of a `prepared` machine.
+    """
+    machine = prepared(machine, surface)
     layout, names = machine.layout, machine.layout.mesh_names
     meshes = len(names)
     forces = carried(at_rest.forces[0])
@@ -140,7 +153,8 @@ def pose_at(
     slopes = _slopes(surface, reactions, meshes)
     if ideal:
         slopes, closing = np.zeros_like(slopes), np.zeros_like(closing)
-    directions = ForceDirections(layout, surface.pair.mean_radius, slopes)
+    lever = 0.0 if ideal else float(_ideal_slopes(surface.pair)[2])
+    directions = ForceDirections(layout, surface.pair.mean_radius, slopes, lever)
     beyond = directions.beyond(linear) @ moved
     return OperatingPose(
         machine=replace(_with(machine, factor, closing - beyond), directions=directions),

@@ -53,7 +53,9 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
     """Derivatives of PARTS by the coordinates, (4, meshes, n).
 
     Tilts of a pinion count where the model has coordinates `tilt_x`, `tilt_y` of it, in the machine's frame
-    at the pinion. Coordinates of gears that bend lift the teeth: a shift along the axis, no tilt.
+    at the pinion. Coordinates of gears that bend lift the teeth, a shift along the axis, and lean them with
+    the rim below the mesh: by its slope along the radius about the tangent, by that round the axis about the
+    line through the pitch point that is parallel to the pinion's axis, which is an offset as well.
     """
     offset, shift, angle, outward = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
     numbered = {label: number for number, label in enumerate(linear.labels)}
@@ -78,7 +80,19 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
             offset[mesh, tilts] = -side * height * away
             outward[mesh, tilts] = height * tangent
     _bending(linear, layout, shift)
+    angle += leaning_rows(linear, layout)
+    if linear.slopes is not None:
+        sides = np.array([[layout.gears[g].sign] for _, g in layout.meshes])
+        pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
+        offset += sides * pitch_radius / mean_radius * linear.slopes[1]
     return rows
+
+
+def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
+    """Part of the error of the shaft angle that the slopes of rims that bend make, (meshes, n)."""
+    if linear.slopes is None:
+        return np.zeros((len(layout.meshes), linear.size))
+    return -linear.slopes[0]
 
 
 def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:

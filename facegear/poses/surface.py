@@ -35,7 +35,7 @@ PATHS, TORQUES, DEEPEST = 7, 5, 20.0
 INSIDE, BEYOND = 0.32, 0.12
 """Parts of the face by which nodes begin within the path at rest and go on beyond the outer end."""
 LEANING = float(np.radians(0.05))
-"""Error of the shaft angle (rad) to either side that the nodes cover where bodies tilt."""
+"""Error of the shaft angle (rad) to either side that the nodes cover where bodies tilt or bend."""
 
 SURFACE_ARRAYS = {
     "pair": (None,),

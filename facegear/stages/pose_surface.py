@@ -31,8 +31,8 @@ def pose_surface(
 ) -> Outcome:
     """`surface` (arrays), `nodes` and `errors` (tables).
 
-    torque_n_m: at which the machine takes its mesh stiffness; tilting: whether its bodies tilt. Raises
-    NotConverged naming position and torque, FacegearError where teeth interfere.
+    torque_n_m: at which the machine takes its mesh stiffness; tilting: whether its bodies tilt or bend.
+    Raises NotConverged naming position and torque, FacegearError where teeth interfere.
     """
     teeth, plan = pair(tooth_pair), contact_plan(contact)
     design, flanks = teeth.design, (from_arrays(pinion), from_arrays(face_gear))

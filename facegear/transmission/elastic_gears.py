@@ -47,6 +47,8 @@ class Coordinates:
         Velocity terms on the hub's coordinates by theirs; those on theirs are the negative.
     rows : (2 meshes of the gear, k)
         Derivative of the deflections of its flanks, drive flanks first.
+    slopes : (2, meshes of the gear, k)
+        Of the rim below each, as `LinearModel.slopes`.
     lengths : (k,)
         Motion of the pitch point by a unit of each, m.
     """
@@ -60,6 +62,7 @@ class Coordinates:
     centrifugal: Array
     gyroscopic_hub: Array
     rows: Array
+    slopes: Array
     lengths: Array
 
 
@@ -87,6 +90,7 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
         centrifugal=same * slowed[np.ix_(mode, mode)],
         gyroscopic_hub=_hub_coriolis(body, mode, cosine, sign),
         rows=flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
+        slopes=rim_slopes(order, part, axial, body.slopes[mode], body.round[mode], angles),
         lengths=np.maximum(np.hypot(axial, around), 1e-9 * np.hypot(axial, around).max(initial=1.0)),
     )
 
@@ -152,12 +156,27 @@ def flank_rows(
     """
     phase = order * angles[:, None]
     cos, sin = np.cos(phase), np.sin(phase)
-    up = axial * np.where(part == 0, cos, sin)
     along = around * np.where(part == 0, sin, -cos)
     along = np.where((order == 0), around * turning, along)
-    up = np.where((order == 0), axial * (1.0 - turning), up)
+    up = lifts(order, part, axial, turning, angles)
     separating, tangential = np.sin(pressure_angle) * up, sign * np.cos(pressure_angle) * along
     return np.concatenate([separating - tangential, separating + tangential])
+
+
+def lifts(order: Integers, part: Integers, axial: Array, turning: Array, angles: Array) -> Array:
+    """Heights at the angles (n,) by coordinates whose waves have the amplitudes `axial`, (n, k)."""
+    phase = order * angles[:, None]
+    up = axial * np.where(part == 0, np.cos(phase), np.sin(phase))
+    return np.where(order == 0, axial * (1.0 - turning), up)
+
+
+def rim_slopes(
+    order: Integers, part: Integers, axial: Array, radial: Array, turning: Array, angles: Array
+) -> Array:
+    """Slopes (2, n, k) along the radius and round the axis by waves of heights and radial slopes."""
+    phase = order * angles[:, None]
+    around = order * axial * np.where(part == 0, -np.sin(phase), np.cos(phase))
+    return np.stack([lifts(order, part, radial, turning, angles), around])
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,9 +215,9 @@ class ElasticGears:
         lumped = model.mass_damping * mass + model.bearing_damping * stiffness
         lumped[:old, :old] = model.mass_damping * rigid
         dampers = bordered(model.dampers, np.diag(added.damping)) - lumped
-        meshes = np.array([g == gear for _, g in layout.meshes] * 2)
+        meshes = np.array([g == gear for _, g in layout.meshes])
         rows = np.zeros((len(model.rows), new))
-        rows[meshes] = added.rows
+        rows[np.tile(meshes, 2)] = added.rows
         none = Spin(*(np.zeros((old, old)) for _ in range(3)))
         before = none if model.spin is None else model.spin
         turning = before.gyroscopic + speed * moments
@@ -214,6 +233,7 @@ class ElasticGears:
             forces=np.append(model.forces, np.zeros(new)),
             lengths=np.append(model.lengths, added.lengths),
             dampers=dampers,
+            slopes=model.with_slopes(meshes, added.slopes),
             spin=Spin(
                 gyroscopic,
                 bordered(before.circulatory, speed * added.circulatory),

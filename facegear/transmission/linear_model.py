@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from facegear.arrays import AnyArray, Array, Integers
+from facegear.arrays import AnyArray, Array, Integers, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +80,9 @@ class LinearModel:
         Bearings with clearance.
     spin
         What turning bodies add, None for nothing.
+    slopes : (2, meshes, n)
+        Of the height W of the rim below each mesh, towards the teeth, by the coordinates of gears that bend:
+        dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
     """
 
     labels: tuple[str, ...]
@@ -95,6 +98,7 @@ class LinearModel:
     dampers: Array
     rings: Rings
     spin: Spin | None = field(default=None)
+    slopes: Array | None = field(default=None)
 
     @property
     def size(self) -> int:
@@ -140,6 +144,14 @@ class LinearModel:
         """Rows (..., dof) over the coordinates of the layout as rows (..., n) over all."""
         added = self.size - rows.shape[-1]
         return np.concatenate([rows, np.zeros((*rows.shape[:-1], added))], axis=-1)
+
+    def with_slopes(self, meshes: Mask, added: Array) -> Array:
+        """`slopes` with columns (2, meshes of a gear, k) of more coordinates, of those meshes alone."""
+        slopes = np.zeros((2, meshes.size, self.size + added.shape[2]))
+        if self.slopes is not None:
+            slopes[:, :, : self.size] = self.slopes
+        slopes[:, meshes, self.size :] = added
+        return slopes
 
     def of_body(self, name: str) -> Integers:
         """Which coordinates belong to a body."""

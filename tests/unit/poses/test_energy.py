@@ -18,9 +18,10 @@ from facegear.geometry.conjugate_slopes import conjugate_slopes
 from facegear.geometry.design import AssemblyErrors
 from facegear.mesh_law.load_dependent import ForceTable
 from facegear.poses.energy import mesh_energy
-from facegear.poses.fixed_point import operating_pose, pose_at
+from facegear.poses.fixed_point import operating_pose, pose_at, prepared
 from facegear.poses.surface import STIFFNESS, Nodes, PoseSurface
 from facegear.poses.tables import scaled_load
+from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.machine import FlankTables
@@ -96,14 +97,45 @@ def tilting_machine(places, sides=(Side.LOWER, Side.UPPER)):
     return make_machine(replace(layout, gears=gears), torque=700.0, tail_share=0.0, error=0.0)
 
 
+def bending_machine(places=None, sides=(Side.LOWER, Side.UPPER)):
+    """Gears of one mode and the compliance of four orders, whose rims lean; the concentric machine."""
+    static_part, fall = np.array([[2e-9, 2e-10], [2e-10, 5e-10]]), 1.0 + np.arange(4.0)
+    body = ReducedBody(
+        order=np.array([2]),
+        frequency=np.array([2000.0]),
+        coriolis=np.zeros((1, 1)),
+        stiffening=np.zeros((1, 1)),
+        mesh=np.array([[0.3], [0.05]]),
+        hub=np.zeros((2, 1)),
+        hub_spin=np.zeros(1),
+        round=np.zeros(1),
+        static=static_part / fall[:, None, None],
+        damping_ratio=np.array(0.002),
+        slope=np.array([1.2]),
+        leaning=np.array([6e-9, 1e-9, 4e-8]) / fall[:, None],
+    )
+    if places is None:
+        return gear_bodies.gearbox(body)
+    layout = make_layout(places=places, sides=sides, gear_bearing=2e8, kinematics=GEOMETRIC)
+    machine = make_machine(layout, torque=700.0, tail_share=0.0, error=0.0)
+    return replace(machine, bodies=ElasticGears(layout, dict.fromkeys(range(len(sides)), body)))
+
+
+def model_of(machine, surface):
+    """All coordinates at rest, with all slopes of rims that bend."""
+    return static(prepared(machine, surface)).linear
+
+
 def generalized_forces(machine, surface, displacements):
     """Of drive flanks on all coordinates, with the force of the law where each stands; and their energy."""
-    meshes = len(machine.layout.meshes)
-    rows, logs, misses = machine.linear.rows[:meshes], [np.full(meshes, 9.0)], []
+    meshes, model = len(machine.layout.meshes), model_of(machine, surface)
+    logs, misses = [np.full(meshes, 9.0)], []
     for _ in range(20):
         forces = np.concatenate([np.exp(logs[-1]), np.zeros(meshes)])[None]
         at_rest = Equilibria(displacements[None], np.zeros((1, meshes)), forces, np.zeros(1))
         result = pose_at(machine, surface, at_rest)
+        directions = result.machine.directions
+        rows = replace(directions, slopes=np.zeros_like(directions.slopes))(model).rows[:meshes]
         pressed = rows @ displacements + result.closing[:meshes]
         misses.append(np.log(machine.stiffness.mean * result.factor * pressed) - logs[-1])
         if len(logs) == 1:
@@ -114,66 +146,55 @@ def generalized_forces(machine, surface, displacements):
             step = logs[-1] - logs[-2]
             rise = np.where(step == 0.0, -1.0, (misses[-1] - misses[-2]) / np.where(step == 0.0, 1.0, step))
             logs.append(logs[-1] - misses[-1] / np.minimum(rise, -0.1))
-    return forces[0, :meshes] @ result.machine.linear.rows[:meshes], float(result.stored.sum())
+    return forces[0, :meshes] @ static(result.machine).linear.rows[:meshes], float(result.stored.sum())
 
 
-def random_motion(machine, seed):
-    """Bodies moved by up to 80 um and gears rocked by 1e-4, meshes pressed in by 15 to 50 um."""
+def random_motion(machine, model, seed):
+    """Bodies moved by up to 80 um and gears rocked or bent by 1e-4, meshes pressed in by 15 to 50 um."""
     generator, layout = np.random.default_rng(seed), machine.layout
-    moved = np.where(machine.linear.lengths == 1.0, 8e-5, 0.0) * generator.uniform(-1.0, 1.0, layout.dof)
+    moved = np.where(model.lengths == 1.0, 8e-5, 0.0) * generator.uniform(-1.0, 1.0, model.size)
     for first in layout.first_tilts.values():
         moved[first : first + 2] = generator.uniform(-1e-4, 1e-4, 2)
+    moved[layout.dof :] = (
+        5e-5 / model.lengths[layout.dof :] * generator.uniform(-1.0, 1.0, model.size - layout.dof)
+    )
     meshes = len(layout.meshes)
-    missing = generator.uniform(15e-6, 50e-6, meshes) - machine.linear.rows[:meshes] @ moved
+    missing = generator.uniform(15e-6, 50e-6, meshes) - model.rows[:meshes] @ moved
     for mesh, (_, gear) in enumerate(layout.meshes):
         moved[4 * (len(layout.pinions) + gear) + 3] = -missing[mesh] / layout.gear_arm
     return moved
 
 
+@pytest.mark.parametrize("gears", [tilting_machine, bending_machine])
 @settings(max_examples=4, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from(Side))
-def test_forces_of_posed_meshes_have_an_energy_so_that_their_jacobian_is_symmetric(surface, seed, side):
+def test_forces_of_posed_meshes_have_an_energy_so_that_their_jacobian_is_symmetric(
+    surface, gears, seed, side
+):
     """u J v = v J u for any two motions, and the force is the energy's slope.
 
     To 1e-9, or to 1e-6 where differences reach over a node of the splines.
     """
-    machine = tilting_machine((("one", Role.INPUT, 11.0),), (side,))
-    at, generator = random_motion(machine, seed), np.random.default_rng(seed)
-    scale = 1.0 / machine.linear.lengths
+    machine = gears((("one", Role.INPUT, 11.0),), (side,))
+    model = model_of(machine, surface)
+    at, generator = random_motion(machine, model, seed), np.random.default_rng(seed)
+    scale = 1.0 / model.lengths
     first, second = (scale * generator.normal(size=at.size) for _ in range(2))
 
     def along(one, other):
         return sixth_order(lambda d: generalized_forces(machine, surface, at + d * one)[0] @ other, 5e-8)
 
     crossed = along(first, second), along(second, first)
-    size = 4e8 * np.abs(machine.linear.rows[:1] @ np.stack([first, second], axis=1)).max(axis=0).prod()
+    size = 4e8 * np.abs(model.rows[:1] @ np.stack([first, second], axis=1)).max(axis=0).prod()
     assert abs(crossed[0] - crossed[1]) < 1e-6 * size
     force = generalized_forces(machine, surface, at)[0] @ first
     energy = sixth_order(lambda d: generalized_forces(machine, surface, at + d * first)[1], 4e-7)
     assert energy == pytest.approx(force, rel=1e-7, abs=1e-3)
 
 
-def bending_machine():
-    """The concentric machine with gears of one mode and the compliance of four orders."""
-    static_part = np.array([[2e-9, 2e-10], [2e-10, 5e-10]])
-    body = ReducedBody(
-        order=np.array([2]),
-        frequency=np.array([2000.0]),
-        coriolis=np.zeros((1, 1)),
-        stiffening=np.zeros((1, 1)),
-        mesh=np.array([[0.3], [0.05]]),
-        hub=np.zeros((2, 1)),
-        hub_spin=np.zeros(1),
-        round=np.zeros(1),
-        static=static_part / (1.0 + np.arange(4.0))[:, None, None],
-        damping_ratio=np.array(0.002),
-    )
-    return gear_bodies.gearbox(body)
-
-
 def work_and_energy(machine, surface, first, last):
     """Work of the loads between two fractions of them, and what springs and meshes gain, J."""
-    linear = static(machine).linear
+    linear = model_of(machine, surface)
 
     def at(fraction):
         result = operating_pose(scaled_load(machine, fraction), surface)

@@ -65,6 +65,7 @@ def below(body: ReducedBody, max_frequency) -> ReducedBody:
         hub=body.hub[:, kept],
         hub_spin=body.hub_spin[kept],
         round=body.round[kept],
+        slope=body.slope[kept],
     )
 
 

@@ -46,7 +46,10 @@ def body() -> ReducedBody:
     """Thirty modes of one nodal diameter and a few of none, without damping."""
     orders = (order_modes(matrices(), 0, 6e3), order_modes(matrices(), 1, np.inf, expected=29))
     solved = SimpleNamespace(
-        orders=orders, section=gear_bodies.section(), static=lambda patch: np.zeros((2, 2, 2))
+        orders=orders,
+        section=gear_bodies.section(),
+        static=lambda patch: np.zeros((2, 2, 2)),
+        leaning=lambda patch: np.zeros((2, 3)),
     )
     return reduced_body(solved, PATCH, 0.0)
 
