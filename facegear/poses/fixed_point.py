@@ -12,14 +12,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array
 from facegear.errors import NotConverged
-from facegear.geometry.conjugate import ConjugateContact, PairNumbers, contact_at
-from facegear.geometry.conjugate_slopes import conjugate_slopes
-from facegear.geometry.design import AssemblyErrors
 from facegear.poses.directions import ForceDirections
-from facegear.poses.energy import MeshEnergy, linear_energy, mesh_energy
+from facegear.poses.energy import linear_energy, mesh_energy
 from facegear.poses.mesh_poses import PARTS, MeshPoses, mesh_poses
+from facegear.poses.posed_flanks import (
+    closing_beyond,
+    flank_reactions,
+    force_slopes,
+    ideal_slopes,
+    nominal_contact,
+    unloaded_contacts,
+)
 from facegear.poses.surface import STIFFNESS, PoseSurface
 from facegear.transmission.flanks import carried
 from facegear.transmission.linear_model import LinearModel
@@ -137,7 +142,7 @@ def pose_at(
     linear, moved = _whole(machine, at_rest)
     poses = _poses(machine, surface, linear, moved)
     carrying = np.arange(meshes) + meshes * (forces < 0.0)
-    contacts = _contacts(surface, poses, names)
+    contacts = unloaded_contacts(surface, poses, names)
     path = np.array([contacts[flank].y for flank in carrying])
     torque, angle = np.abs(forces) * layout.pinion_arm, poses.shaft_angle_error
     factor, energies = np.ones(meshes), []
@@ -148,12 +153,12 @@ def pose_at(
             factor[mesh] = _factor(machine, surface, mesh, at, bool(forces[mesh] < 0.0), load)
         own = mesh_energy(surface, *at) if load is None else linear_energy(surface, load, *at)
         energies.append(own.scaled(_scale(machine, surface, mesh)))
-    reactions = _reactions(surface, poses, contacts, energies, carrying)
-    closing = _closing(machine, surface, poses, contacts)
-    slopes = _slopes(surface, reactions, meshes)
+    reactions = flank_reactions(surface, poses, contacts, energies, carrying)
+    closing = closing_beyond(machine, surface, poses, contacts)
+    slopes = force_slopes(surface, reactions, meshes)
     if ideal:
         slopes, closing = np.zeros_like(slopes), np.zeros_like(closing)
-    lever = 0.0 if ideal else float(_ideal_slopes(surface.pair)[2])
+    lever = 0.0 if ideal else float(ideal_slopes(surface.pair)[2])
     directions = ForceDirections(layout, surface.pair.mean_radius, slopes, lever)
     beyond = directions.beyond(linear) @ moved
     return OperatingPose(
@@ -196,78 +201,6 @@ def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displace
     )
 
 
-def _contacts(surface: PoseSurface, poses: MeshPoses, names: tuple[str, ...]) -> list[ConjugateContact]:
-    """Unloaded contact of all drive flanks, then all back flanks."""
-    contacts = []
-    for back in (False, True):
-        for mesh, name in enumerate(names):
-            errors = poses.errors(mesh, back)
-            contact = contact_at(surface.pair, errors)
-            if contact is None:
-                where = f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.axial_shift:.4g} um"
-                raise NotConverged("operating pose", f"mesh {name}", f"no flanks face each other at {where}")
-            contacts.append(contact)
-    return contacts
-
-
-def _closing(
-    machine: Machine, surface: PoseSurface, poses: MeshPoses, contacts: list[ConjugateContact]
-) -> Array:
-    """Exact transmission error of every flank less what its deflection has of it, both from the nominal."""
-    pair, meshes = surface.pair, len(machine.layout.meshes)
-    closing = np.zeros(2 * meshes)
-    for flank, contact in enumerate(contacts):
-        mesh, back = flank % meshes, flank >= meshes
-        nominal = assembled(machine, surface, mesh, back)
-        at_rest = contact_at(pair, nominal)
-        if at_rest is None:
-            continue
-        first = _ideal_slopes(pair) @ (_three(poses.errors(mesh, back)) - _three(nominal))
-        closing[flank] = contact.transmission_error - at_rest.transmission_error - first
-    return closing
-
-
-def _three(errors: AssemblyErrors) -> Array:
-    return np.array([errors.offset, errors.axial_shift, errors.shaft_angle_error])
-
-
-def _ideal_slopes(pair: PairNumbers) -> Array:
-    """By offset, axial shift and error of the shaft angle: what deflections have of them, (3,)."""
-    cosine, sine = np.cos(pair.pressure_angle), np.sin(pair.pressure_angle)
-    return np.array([cosine, -sine, -sine * (pair.gear_base_radius / cosine - pair.mean_radius)])
-
-
-def _reactions(
-    surface: PoseSurface,
-    poses: MeshPoses,
-    contacts: list[ConjugateContact],
-    energies: list[MeshEnergy],
-    carrying: Integers,
-) -> Array:
-    """Derivatives of the energy of every flank by its errors over its force, (2 meshes, 3).
-
-    Of one that does not carry, the limit at no force: the normal of the unloaded contact.
-    """
-    meshes = len(energies)
-    reactions = np.zeros((2 * meshes, 3))
-    for flank, contact in enumerate(contacts):
-        energy = energies[flank % meshes]
-        slopes = conjugate_slopes(surface.pair, poses.errors(flank % meshes, flank >= meshes), contact)
-        reactions[flank] = slopes.transmission_error
-        if flank == carrying[flank % meshes] and energy.force > 0.0:
-            by_angle = np.array([0.0, 0.0, energy.by_angle])
-            reactions[flank] -= (energy.by_path * slopes.path + by_angle) / energy.force
-    return reactions
-
-
-def _slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
-    """As `ForceDirections` has them: a back flank meets an offset as the opposite one."""
-    slopes = np.zeros((2 * meshes, len(PARTS)))
-    slopes[:, :3] = reactions - _ideal_slopes(surface.pair)
-    slopes[meshes:, 0] *= -1.0
-    return slopes
-
-
 def _factor(
     machine: Machine,
     surface: PoseSurface,
@@ -301,25 +234,6 @@ def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
     """Stiffness of the machine's teeth over that of the surface."""
     own = float(machine.imperfections.stiffness[mesh])
     return own if machine.tables is not None else own * machine.stiffness.mean / surface.reference_stiffness
-
-
-def assembled(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> AssemblyErrors:
-    """What a flank meets of the pair's assembly without any motion."""
-    side = machine.layout.gears[machine.layout.meshes[mesh][1]].sign
-    nominal = surface.nominal
-    return replace(
-        nominal,
-        offset=(-side if back else side) * nominal.offset,
-        shaft_angle_error=side * nominal.shaft_angle_error,
-    )
-
-
-def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> tuple[float, float]:
-    """Unloaded path (m) and error of the shaft angle (rad) of a flank as assembled, without any motion."""
-    errors = assembled(machine, surface, mesh, back)
-    contact = contact_at(surface.pair, errors)
-    assert contact is not None
-    return contact.y, errors.shaft_angle_error
 
 
 def _with(machine: Machine, factor: Array, closing: Array) -> Machine:

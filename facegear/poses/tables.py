@@ -8,7 +8,8 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.errors import InvalidInput, NotConverged
-from facegear.poses.fixed_point import OperatingPose, nominal_contact, operating_pose
+from facegear.poses.fixed_point import OperatingPose, operating_pose
+from facegear.poses.posed_flanks import nominal_contact
 from facegear.poses.surface import QUANTITIES, RADIUS, STIFFNESS, PoseSurface
 from facegear.transmission.machine import Machine
 

@@ -18,8 +18,9 @@ from facegear.geometry.bodies import BODIES
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.flank_errors import FLANKS
 from facegear.poses.carrying import carrying_pairs
-from facegear.poses.fixed_point import OperatingPose, nominal_contact
+from facegear.poses.fixed_point import OperatingPose
 from facegear.poses.fixed_point import operating_pose as fixed_point
+from facegear.poses.posed_flanks import nominal_contact
 from facegear.poses.surface import PoseSurface
 from facegear.stages.outcome import Outcome
 from facegear.strength.flank_contacts import FlankContact, contacts_of, flank_contacts
