@@ -140,7 +140,9 @@ def _judge_column(
             verdict=np.where(same, Verdict.SAME, Verdict.LABEL),
         )
     error = table.error(column)
-    change = _relative_change(old, new, before.get(table.quantity))
+    zero = table.zero.get(column, 0.0)
+    before_zero, after_zero = (side.mask(side.abs() <= zero, 0.0) for side in (old, new))
+    change = _relative_change(before_zero, after_zero, before.get(table.quantity))
     irregular = _irregular(before, table) | _irregular(after, table)
     beyond = Verdict.NO_ERROR if error is None else Verdict.MOVED
     verdict = np.select(

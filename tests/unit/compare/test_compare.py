@@ -91,6 +91,15 @@ def test_numbers_of_an_irregular_motion_are_statistics_and_its_class_is_a_label(
     assert rows["class"] == Verdict.LABEL
 
 
+@pytest.mark.parametrize(("residual", "equal"), [(6e-13, True), (2e-12, False)])
+def test_a_residual_of_a_contact_moves_only_where_it_is_no_longer_solved(residual, equal, tmp_path):
+    for side, value in (("old", 1e-16), ("new", residual)):
+        (tmp_path / side / "contact").mkdir(parents=True)
+        row = f"950.0,0,{value}\n"
+        (tmp_path / side / "contact/ltca.csv").write_text(f"torque_n_m,position,kkt_residual\n{row}")
+    assert compare(tmp_path / "old", tmp_path / "new").equal is equal
+
+
 def test_rows_columns_and_tables_of_one_folder_only_are_named(nominal, tmp_path):
     shutil.copytree(nominal, tmp_path, dirs_exist_ok=True)
     (tmp_path / "stiffness/tvms.csv").unlink()
