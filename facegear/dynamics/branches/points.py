@@ -10,6 +10,7 @@ import numpy as np
 
 from facegear.arrays import Array, ComplexArray
 from facegear.dynamics.branches.period_map import Linear, PeriodMap
+from facegear.dynamics.multiplier_order import by_modulus
 from facegear.errors import NotConverged
 
 CHORD_STEPS = 10
@@ -73,7 +74,7 @@ class BranchPoint:
         values = np.linalg.eigvals(self.linear.matrix).astype(complex)
         near_one = np.argsort(np.abs(values - 1.0))
         values = np.delete(values, near_one[: self.linear.neutral.shape[1]])
-        return values[np.argsort(-np.abs(values), kind="stable")]
+        return values[by_modulus(values)]
 
     @cached_property
     def real(self) -> Array:
@@ -86,7 +87,7 @@ class BranchPoint:
         """Complex multipliers with positive imaginary part, largest modulus first."""
         values = self.multipliers
         values = values[values.imag > REAL_PAIR * (np.abs(values) > 0.5)]
-        return values[np.argsort(-np.abs(values), kind="stable")]
+        return values[by_modulus(values)]
 
     @cached_property
     def outside(self) -> tuple[int, int, int]:

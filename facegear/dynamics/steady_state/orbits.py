@@ -6,6 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array, ComplexArray, Mask
 from facegear.dynamics.integrator.integrator import Integrator, RunResult
+from facegear.dynamics.multiplier_order import by_modulus
 
 NEWTON_STEPS, MATRICES = 12, 3
 """Steps that Newton's method may take, and matrices for them: what needs more is nowhere near an orbit."""
@@ -189,7 +190,7 @@ def _linearised(integrator: Integrator, state: Array, period: int) -> tuple[RunR
     """The run from a state (2, n) over the period, and the map near it."""
     matrix, result = monodromy(integrator, state, period)
     multipliers, vectors = np.linalg.eig(matrix)
-    order = np.argsort(-np.abs(multipliers))
+    order = by_modulus(multipliers)
     return result, _Tangent(state, matrix, multipliers[order], vectors[:, order], result.divergence)
 
 
