@@ -211,12 +211,13 @@ def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
     """Forces and slopes (levels, p) of the cubics that come nearest to the contacts of each position.
 
     At the first level they are those of the cubic between the two lightest contacts, as the force below it
-    follows from them.
+    follows from them. Unknown slopes are counted in units of the mean slope of a cubic with unit force at its
+    end, so that all columns of the least squares are of one size.
     """
     count = levels.size
     fitted = np.empty((2 * count, contacts.deflections.shape[1]))
     given, sought = np.array([0, count]), np.delete(np.arange(2 * count), [0, count])
-    units = np.repeat([1.0, levels[-1] / count], count)
+    units = np.repeat([1.0, count / levels[-1]], count)
     for p, (reached, stiffness) in enumerate(zip(contacts.deflections.T, contacts.slopes.T, strict=True)):
         lightest = np.concatenate([contacts.forces[:2], stiffness[:2]])
         fitted[given, p] = np.concatenate(_cubics(reached[:2], levels[:1])) @ lightest

@@ -8,6 +8,8 @@ from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.mesh_law.load_dependent import load_dependent_law
 from facegear.stiffness.load_dependent import (
+    CROWDING,
+    PIECES,
     FlankContacts,
     fitted_tables,
     force_table,
@@ -109,6 +111,17 @@ def test_the_error_of_a_table_falls_with_the_number_of_its_cubics():
         for pieces in (1, 2, 4)
     ]
     assert errors[0] > 5.0 * errors[1] > 25.0 * errors[2]
+
+
+@pytest.mark.parametrize("crowding", CROWDING)
+@pytest.mark.parametrize("pieces", PIECES)
+def test_a_table_moves_by_no_more_than_rounding_where_its_contacts_do(pieces, crowding):
+    solved, draw = contacts().at(range(0, 13, 2)), np.random.default_rng(pieces)
+    off = 1.0 + 1e-14 * draw.standard_normal((2, *solved.slopes.shape))
+    moved = FlankContacts(solved.forces, off[0] * solved.deflections, off[1] * solved.slopes)
+    first, second = (force_table(each, pieces, crowding, 8) for each in (solved, moved))
+    for values, others in ((first.forces, second.forces), (first.slopes, second.slopes)):
+        np.testing.assert_allclose(others, values, rtol=0.0, atol=1e-11 * np.abs(values).max())
 
 
 def test_contacts_whose_force_falls_are_refused():
