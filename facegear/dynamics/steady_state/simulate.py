@@ -14,8 +14,6 @@ from facegear.dynamics.integrator.reduction import Reduced, reduce
 from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages, Moments
-from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing, wanders
-from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
 from facegear.dynamics.steady_state.mesh_samples import (
     by_mesh,
     each_deflection,
@@ -25,16 +23,10 @@ from facegear.dynamics.steady_state.mesh_samples import (
 )
 from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.second_look import disagreeing
-from facegear.dynamics.steady_state.settle import Settled, settle
-from facegear.dynamics.steady_state.statistics import drifts
-from facegear.dynamics.steady_state.window import Window, run_window
+from facegear.dynamics.steady_state.watching import Watched, not_settled, watch
 from facegear.errors import NotConverged
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.statics import static_equilibrium
-
-CLASSES = {Growth.GROWS: Motion.CHAOTIC, Growth.NEUTRAL: Motion.QUASI_PERIODIC}
-ESCAPING = 1e-3
-"""Growing disturbances of a motion that repeats as closely as this tell of its end, not of chaos."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,65 +189,17 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     prepare_for(system)
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
     state = integrator.by_phase(start)
-    seen = _watched(integrator, state, settings)
+    seen = watch(integrator, state, settings)
     other = disagreeing(integrator, state, settings, seen.settled, seen.motion)
     looks = None
     if other is not None:
         looks = (seen.settled.period, other.period)
-        seen = _not_settled(integrator, seen, other, settings)
+        seen = not_settled(integrator, seen, other, settings)
     return _response(system, integrator, seen, looks)
 
 
-@dataclass(frozen=True, eq=False)
-class _Seen:
-    """What watching a run has shown: where it settled, its class, and the stretch that it is measured on."""
-
-    settled: Settled
-    motion: Motion
-    exponent: Exponent | None
-    window: Window
-    periods_run: int
-
-
-def _watched(integrator: Integrator, state: Array, settings: Settings) -> _Seen:
-    """Watch a run from a state (2, n) by phase until its class is known or patience ends.
-
-    A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
-    measured on, which is also a second watch. Where the two do not agree it is watched for longer.
-    """
-    ends, periods_run = None, 0
-    for _ in range(settings.extensions + 1):
-        settled = settle(integrator, state, settings, ends)
-        periods_run += settled.periods_run
-        if settled.period:
-            window = run_window(integrator, settled.state, settled.period, settings.samples)
-            return _Seen(settled, Motion.PERIODIC, None, window, periods_run)
-        exponent = largest_exponent(integrator, settled.state, settings)
-        window = exponent.window
-        motion = _class(integrator, settled, exponent, window, settings)
-        periods_run += len(exponent.ends)
-        if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
-            break
-        state, ends = window.ends[-1], exponent.ends
-    return _Seen(settled, motion, exponent, window, periods_run)
-
-
-def _not_settled(integrator: Integrator, seen: _Seen, other: Settled, settings: Settings) -> _Seen:
-    """What is left where another start came to another motion: a stretch to be measured, that of the run
-    which did not close if one did not.
-    """
-    settled = other if seen.settled.period else seen.settled
-    periods_run = seen.periods_run + other.periods_run
-    if not seen.settled.period:
-        return replace(seen, motion=Motion.NOT_SETTLED, periods_run=periods_run)
-    exponent = largest_exponent(integrator, settled.state, settings)
-    periods_run += len(exponent.ends)
-    left = replace(settled, period=0, orbit=None)
-    return _Seen(left, Motion.NOT_SETTLED, exponent, exponent.window, periods_run)
-
-
 def _response(
-    system: System, integrator: Integrator, seen: _Seen, looks: tuple[int, int] | None
+    system: System, integrator: Integrator, seen: Watched, looks: tuple[int, int] | None
 ) -> SteadyState:
     settled, window, exponent = seen.settled, seen.window, seen.exponent
     each = each_deflection(system, window.samples, window.per_period)
@@ -280,24 +224,3 @@ def _response(
         looks=looks,
         state=integrator.by_time(window.ends[-1]),
     )
-
-
-def _class(
-    integrator: Integrator,
-    settled: Settled,
-    exponent: Exponent,
-    window: Window,
-    settings: Settings,
-) -> Motion:
-    """Class of a motion that was watched without closing, by its exponent and the window after it."""
-    motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
-    near = closing(integrator, window.ends, settings)
-    escaping = motion is Motion.CHAOTIC and min(settled.residual, near.residual) < ESCAPING
-    each = each_deflection(integrator.system, window.samples, window.per_period)
-    deflections = by_mesh(integrator.system, each)
-    by_period = deflections.reshape(window.periods, window.per_period, -1).std(axis=1)
-    converging = near.residual < SMALL and near.trend < FALLING
-    drifting = motion is Motion.QUASI_PERIODIC and wanders(integrator, window.ends, near.period)
-    if escaping or converging or drifting or drifts(window.averages, by_period):
-        return Motion.NOT_SETTLED
-    return motion
