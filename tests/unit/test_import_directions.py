@@ -1,11 +1,13 @@
 """The pipeline's packages import only what comes before them, and no workflow engine."""
 
 import ast
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.xdist_group("import_directions")  # a module is parsed once a process
 PACKAGE = Path(__file__).parents[2] / "facegear"
 FOUNDATION = {"arrays", "errors", "progress", "io", "machine_code"}
 MAY_IMPORT = {
@@ -63,17 +65,25 @@ TENANTS = ("paper", "validation")
 MODULES = sorted(PACKAGE.rglob("*.py"))
 
 
-def imported(module: Path, inside: bool = False) -> set[str]:
-    """Modules that a module imports, anywhere in its text; `inside`: and what it takes from them."""
-    names = set()
+@cache
+def parsed(module: Path) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
+    """Of a module's text: modules that it imports, what it takes from them, and its types NDArray[...]."""
+    modules, taken, types = set(), set(), set()
     for node in ast.walk(ast.parse(module.read_text())):
         if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
+            modules |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            names.add(node.module)
-            if inside:
-                names |= {f"{node.module}.{alias.name}" for alias in node.names}
-    return names
+            modules.add(node.module)
+            taken |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Subscript) and getattr(node.value, "id", "") == "NDArray":
+            types.add(ast.unparse(node))
+    return frozenset(modules), frozenset(taken), frozenset(types)
+
+
+def imported(module: Path, inside: bool = False) -> frozenset[str]:
+    """Modules that a module imports, anywhere in its text; `inside`: and what it takes from them."""
+    modules, taken, _ = parsed(module)
+    return modules | taken if inside else modules
 
 
 @pytest.mark.parametrize("package", sorted(MAY_IMPORT))
@@ -138,6 +148,4 @@ def test_matplotlib_is_only_known_to_the_plots():
 def test_array_types_have_their_names_from_one_module():
     named = {"np.float64", "np.int64", "np.bool_", "np.complex128", "Any"}
     for module in set(MODULES) - {PACKAGE / "arrays.py"}:
-        nodes = ast.walk(ast.parse(module.read_text()))
-        types = [ast.unparse(node) for node in nodes if isinstance(node, ast.Subscript)]
-        assert not {f"NDArray[{name}]" for name in named} & set(types), module
+        assert not {f"NDArray[{name}]" for name in named} & parsed(module)[2], module

@@ -5,11 +5,13 @@ import io
 import re
 import tokenize
 from collections.abc import Iterator
+from functools import cache
 from itertools import chain
 from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.xdist_group("vocabulary")  # a module is parsed once a process
 ROOT = Path(__file__).parents[2]
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
 AREAS = ("facegear", "paper", "validation", "workflow")
@@ -57,6 +59,11 @@ def defined_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
             yield node.lineno, node.asname
 
 
+@cache
+def names_in(path: Path) -> tuple[tuple[int, str], ...]:
+    return tuple(defined_names(ast.parse(path.read_text(encoding="utf-8"))))
+
+
 def refused(name: str) -> bool:
     return name not in ALLOWED and (name in WHOLE or not PARTS.isdisjoint(name.lower().split("_")))
 
@@ -74,7 +81,7 @@ def test_names_use_the_terms_of_the_glossary(area):
         f"{path.relative_to(ROOT)}:{line} {name}"
         for path in SOURCES
         if path.is_relative_to(ROOT / area)
-        for line, name in defined_names(ast.parse(path.read_text(encoding="utf-8")))
+        for line, name in names_in(path)
         if refused(name)
     ]
     assert not wrong, "\n".join(["names that docs/glossary.md refuses:", *wrong])
@@ -85,7 +92,7 @@ def test_names_of_tests_hold_no_word_that_text_refuses():
     wrong = [
         f"{path.relative_to(ROOT)}:{line} {name}"
         for path in TESTS
-        for line, name in defined_names(ast.parse(path.read_text(encoding="utf-8")))
+        for line, name in names_in(path)
         if not spoken.isdisjoint(name.lower().split("_"))
     ]
     assert spoken and not wrong, "\n".join(["names that docs/glossary.md refuses:", *wrong])
@@ -104,9 +111,7 @@ def test_text_uses_the_terms_of_the_glossary():
 
 
 def test_every_exception_is_needed():
-    names = {
-        name for path in SOURCES for _, name in defined_names(ast.parse(path.read_text(encoding="utf-8")))
-    }
+    names = {name for path in SOURCES for _, name in names_in(path)}
     assert names >= ALLOWED
     for name in ALLOWED:
         assert name in WHOLE or not PARTS.isdisjoint(name.lower().split("_"))
