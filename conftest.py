@@ -27,6 +27,7 @@ def pytest_configure(config):
         providers._get_local_constants = providers.Constants
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist looks for groups
 def pytest_collection_modifyitems(items):
     """Tests that share a fixture of their module go to one process, which makes it once."""
     for item in items:

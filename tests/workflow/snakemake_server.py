@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 
-from warm_jobs import import_all, serve_jobs
+from warm_jobs import import_all, leave_after, serve_jobs
 
 MODULES = ("snakemake.cli", "nbformat", "smart_open", "facegear.config.cases", "facegear.pipeline.needs")
 """What every start imports. The Snakefile of another checkout imports its own `facegear` instead."""
@@ -83,7 +83,7 @@ def main() -> None:
     sys.path[0] = os.getcwd()
     sys.argv = [str(Path(cli.__file__).with_name("__main__.py")), *arguments]
     sys.orig_argv = [python, "-m", "snakemake", *arguments]
-    cli.main()
+    leave_after(cli.main)
 
 
 if __name__ == "__main__" and os.fork() == 0:

@@ -19,6 +19,8 @@ from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.modes import held_solver, order_modes, resonant_speeds, wave_frequencies
 from facegear.gear_body.section import Layer, section_properties
 
+pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
+
 FREQUENCIES = [
     (897.21, 3037.02, 3374.22),
     (749.79, 3455.77, 4299.08),

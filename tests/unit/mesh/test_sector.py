@@ -22,7 +22,9 @@ def test_full_ring_closes_without_duplicate_nodes(tooth):
     ring = sector(tooth, tooth.teeth)
     assert ring.closed
     assert len(ring.nodes) == tooth.teeth * (len(tooth.nodes) - len(tooth.cut_left))
-    assert len(np.unique(np.round(ring.nodes / 1e-9), axis=0)) == len(ring.nodes)
+    places = np.round(ring.nodes / 1e-9)
+    in_order = places[np.lexsort(places.T)]
+    assert (in_order[1:] != in_order[:-1]).any(axis=1).all()
     assert len(np.unique(ring.hexes)) == len(ring.nodes)
     assert len(ring.faces("cut_left")) == 0
 

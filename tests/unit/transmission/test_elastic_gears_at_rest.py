@@ -21,6 +21,8 @@ from facegear.transmission.machine import FlankTables
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import mean_equilibrium
 
+pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
+
 
 @against(
     "other program",

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import gear_bodies
 import numpy as np
+import pytest
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
@@ -14,6 +15,7 @@ from facegear.transmission.teeth import GEOMETRIC
 from facegear.transmission.turning_modes import machine_at_speed, machine_at_speeds, turning_modes, wave_table
 from facegear.transmission.waves_over_speed import campbell_crossings, campbell_table
 
+pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 RPM = np.pi / 30
 
 
