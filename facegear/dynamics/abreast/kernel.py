@@ -1,0 +1,11 @@
+"""How the functions of this package are compiled: only when machines are asked for side by side."""
+
+from pathlib import Path
+
+from facegear.dynamics.integrator.kernel import SOURCES
+from facegear.machine_code.compiler import FAST, compiler, for_callers
+
+longest = compiler(
+    Path(__file__).parent, *SOURCES, announced="the integration of many machines once, some 10 s", **FAST
+)
+inlined = for_callers(**FAST)
