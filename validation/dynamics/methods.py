@@ -13,6 +13,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from facegear.arrays import Array
+from facegear.dynamics.abreast.many import run_many
+from facegear.dynamics.abreast.wide import WIDTH
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.orbits import monodromy
@@ -70,6 +72,17 @@ def prepare_ours(problem: Problem, tolerance: float) -> Solve:
 
     def run() -> Array:
         return integrator.run(start, problem.periods, samples=SAMPLES).samples
+
+    return run
+
+
+def beside_others(problem: Problem, tolerance: float) -> Solve:
+    """The first of as many trajectories as run side by side, which start as those of heyoka.py's batch."""
+    integrator, start = prepared(problem, tolerance)
+    starts = [start * (1.0 + heyoka_peer.APART * i) for i in range(WIDTH)]
+
+    def run() -> Array:
+        return run_many([integrator] * WIDTH, starts, problem.periods, samples=SAMPLES)[0].samples
 
     return run
 
@@ -185,7 +198,10 @@ def heyoka_tangents() -> Method:
 
 def all_methods() -> list[Method]:
     """Ours first. CVODE and heyoka.py are left out where they are not installed (no wheel for a platform)."""
-    methods = [Method("facegear", prepare_ours, TOLERANCES)]
+    methods = [
+        Method("facegear", prepare_ours, TOLERANCES),
+        Method(f"facegear, each of {WIDTH}", beside_others, TOLERANCES, WIDTH),
+    ]
     with contextlib.suppress(ImportError):
         methods += heyoka_methods()
     methods.append(Method("RK4 fixed", rk4, STEPS))

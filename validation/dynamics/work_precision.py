@@ -167,14 +167,20 @@ def seconds_at(table: pd.DataFrame, problem: str, method: str, error: float) -> 
 
 
 def gain(table: pd.DataFrame, problem: Problem, methods: Sequence[Method]) -> str:
-    """How much longer than the first method the next best takes, in words."""
-    own, rest = methods[0].name, [method.name for method in methods[1:]]
+    """How much longer than ours the next best method takes, single runs and runs side by side, in words."""
+    alone = [method.name for method in methods if method.together == 1]
+    beside = [method.name for method in methods if method.together > 1]
     if problem.compared is Compared.RMS:
         enough = cheapest_within_chance(table, problem.name).set_index("method")["seconds"]
-        ratio = enough.drop(own).min() / enough[own]
+        ratio = enough.reindex(alone[1:]).min() / enough[alone[0]]
         return f"{problem.name}: {ratio:.1f} times the next best where only chance is left of the error"
-    others = pd.Series({name: seconds_at(table, problem.name, name, 1e-6) for name in rest}, dtype=float)
+    compared = [_over_ours(table, problem.name, *names) for names in (alone, beside) if names]
+    return f"{problem.name}: {', side by side '.join(compared)}"
+
+
+def _over_ours(table: pd.DataFrame, problem: str, own: str, *rest: str) -> str:
+    others = pd.Series({name: seconds_at(table, problem, name, 1e-6) for name in rest}, dtype=float)
     if others.isna().all():
-        return f"{problem.name}: no other method"
-    ratio = others.min() / seconds_at(table, problem.name, own, 1e-6)
-    return f"{problem.name}: {ratio:.1f} times the next best at 1e-6 ({others.idxmin()})"
+        return "no other method"
+    ratio = others.min() / seconds_at(table, problem, own, 1e-6)
+    return f"{ratio:.1f} times the next best at 1e-6 ({others.idxmin()})"

@@ -23,20 +23,20 @@ def find_states(shape: Structure, lanes: Lanes) -> None:
     """Contact states from deflection and, on an edge, its direction of motion."""
     values, offsets = lanes.values, shape.offsets
     rest = multiply(splat(EDGE), load(values, offsets[SCALE]))
-    one, none, minus = splat(1.0), splat(0.0), splat(-1.0)
+    plus, none, minus = splat(1.0), splat(0.0), splat(-1.0)
     for m in range(shape.m):
         lower, upper = load(values, offsets[LOWER] + m), load(values, offsets[UPPER] + m)
         deflection, rate = load(lanes.deflection, m), load(lanes.deflection, shape.m + m)
         margin = multiply_add(splat(BRIEFEST), magnitude(rate), rest)
         over, under = subtract(deflection, upper), subtract(lower, deflection)
         off_upper, off_lower = subtract(magnitude(over), margin), subtract(magnitude(under), margin)
-        beyond = where_positive(over, one, where_positive(under, minus, none))
+        beyond = where_positive(over, plus, where_positive(under, minus, none))
         back = where_positive(subtract(none, rate), minus, none)
-        drive = where_positive(rate, one, none)
+        drive = where_positive(rate, plus, none)
         side = where_positive(off_upper, where_positive(off_lower, beyond, back), drive)
-        level = where_positive(off_upper, where_positive(off_lower, none, minus), one)
+        level = where_positive(off_upper, where_positive(off_lower, none, minus), plus)
         clearance = subtract(upper, lower)
-        side = where_positive(clearance, side, one)
+        side = where_positive(clearance, side, plus)
         store(lanes.level, m, where_positive(clearance, level, none))
         _take_side(shape, lanes, m, side)
 

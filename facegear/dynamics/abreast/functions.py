@@ -3,7 +3,6 @@
 import math
 from typing import Any
 
-
 from facegear.dynamics.abreast.wide import (
     add,
     divide,

@@ -11,14 +11,20 @@ from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
 from facegear.machine_code.fourier import fourier_scratch
 from facegear.machine_code.memory import aligned
 
+NONE = -1
+
 
 class Lanes(NamedTuple):
-    """The last dimension is the lane.
+    """The last dimension of all but the tables is the lane, and WIDTH long.
 
-    values (P, WIDTH): rows of the machines. y, deflection, load: Taylor coefficients as in the single
-    integrator's Work; law, error (rows, kinds, WIDTH) of the kinds. side, level, active, acting, edge: state
-    of each contact, as there. phase, length, reach (WIDTH,). number: machine in each lane, -1 for none;
-    period: those it has completed. powers, parts, angles: of Fourier series.
+    values (P,): the machines' rows. y, deflection, law, error, load (rows, coordinates, contacts or kinds):
+    Taylor coefficients. force, side, level, active, acting, edge (contacts,): as in the single integrator's
+    Work, with one piece of the law. scaled, bernstein (rows,), low, high: of one contact's deflection over
+    the step. first: fraction of the step up to a switch. phase in the period and length of the step, rad.
+    ahead: from the start of the step to a sample, sample (coordinates,). number of the machine in a lane or
+    NONE; period: periods it has run; taken, sampled: steps and samples of this one. parts, angles: of Fourier
+    series. powers, conversion, conversion_less: tables that are only read. polynomial, subdivision: of one
+    lane's zeros.
     """
 
     order: int
@@ -40,10 +46,13 @@ class Lanes(NamedTuple):
     high: Array
     phase: Array
     length: Array
+    ahead: Array
     first: Array
+    sample: Array
     number: Integers
     period: Integers
     taken: Integers
+    sampled: Integers
     powers: Array
     parts: Array
     angles: Array
@@ -57,8 +66,6 @@ def make_lanes(structure: Structure, order: int) -> Lanes:
     """Allocate scratch space."""
     n, m, rows = structure.n, structure.m, order + 1
     terms = max(structure.law_terms, structure.error_terms, structure.load_terms)
-    of_contacts = {name: aligned(m, WIDTH) for name in ("force", "side", "level", "active", "acting", "edge")}
-    whole = {name: np.zeros(WIDTH, dtype=np.int64) for name in ("number", "period", "taken")}
     return Lanes(
         order=order,
         values=aligned(int(structure.offsets[-1]), WIDTH),
@@ -72,7 +79,9 @@ def make_lanes(structure: Structure, order: int) -> Lanes:
         high=aligned(WIDTH),
         phase=aligned(WIDTH),
         length=aligned(WIDTH),
+        ahead=aligned(WIDTH),
         first=aligned(WIDTH),
+        sample=aligned(n, WIDTH),
         bernstein=aligned(rows, WIDTH),
         powers=fourier_scratch(terms, rows).powers,
         parts=aligned(2, terms, WIDTH),
@@ -81,6 +90,14 @@ def make_lanes(structure: Structure, order: int) -> Lanes:
         conversion=bernstein_matrix(order),
         conversion_less=bernstein_matrix(order - 1),
         subdivision=aligned(MAX_DEPTH + 2, rows),
-        **of_contacts,
-        **whole,
+        force=aligned(m, WIDTH),
+        side=aligned(m, WIDTH),
+        level=aligned(m, WIDTH),
+        active=aligned(m, WIDTH),
+        acting=aligned(m, WIDTH),
+        edge=aligned(m, WIDTH),
+        number=np.zeros(WIDTH, dtype=np.int64),
+        period=np.zeros(WIDTH, dtype=np.int64),
+        taken=np.zeros(WIDTH, dtype=np.int64),
+        sampled=np.zeros(WIDTH, dtype=np.int64),
     )

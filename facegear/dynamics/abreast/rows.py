@@ -13,11 +13,12 @@ from facegear.mesh_law.linear_terms import LinearTerms
 class Structure(NamedTuple):
     """What machines must share to run side by side.
 
-    n, m: coordinates and contacts. touched, touching: where the mesh Jacobian has entries, by contact and by
-    coordinate; entry: which of the former each of the latter is. law_kind, error_kind (m,): the series of
-    stiffness and of transmission error that a contact has. harmonics of the law, the error and the load, and
-    kinds of law and error. offsets: where each of FIELDS begins in a machine's row, and where the last ends.
-    damping_when_open: whether dampers act on open contacts. opens: whether a contact may open.
+    n, m: coordinates and contacts. starts, columns: where the mesh Jacobian has entries, contact by contact;
+    back_starts, back_rows: the same coordinate by coordinate, entry: which of the former each is. law_kind,
+    error_kind (m,): the series of stiffness and of transmission error that a contact has. law_terms,
+    error_terms, load_terms: harmonics with the mean; law_kinds, error_kinds: numbers of series.
+    damping_when_open: whether dampers act on open contacts. opens: whether a contact may open. offsets: where
+    each of FIELDS begins in a machine's row, and where the last ends.
     """
 
     n: int
@@ -51,32 +52,34 @@ FIELDS = (
     "error",
     "load",
     "scale",
+    "tolerance",
 )
-OMEGA, DAMPING, WEIGHTS, JACOBIAN, MESH_DAMPING, LOWER, UPPER, LAW, ERROR, LOAD, SCALE = range(len(FIELDS))
+"""Numbers of a machine: `Packed`'s, and the tolerance of its steps."""
+OMEGA, DAMPING, WEIGHTS, JACOBIAN, MESH_DAMPING, LOWER, UPPER, LAW, ERROR, LOAD, SCALE, TOLERANCE = range(12)
 
 
 def may_run_abreast(packed: Packed) -> bool:
-    """Whether the lanes have the physics of a machine: linear laws without breaks, all but rings and friction
-    of flanks, contacts that only push, coupling beside the meshes.
+    """Whether the lanes have the physics of a machine: linear laws without breaks in the phase, and neither
+    bearings with clearance, nor friction, nor contacts that only push, nor coordinates coupled beside the
+    meshes.
     """
-    others = (packed.rings, packed.rubbing, packed.coupled)
-    plain = isinstance(packed.law, LinearTerms) and not packed.breaks.size and not packed.push_only
-    return plain and others == (None, None, None)
+    others = packed.rings, packed.rubbing, packed.coupled
+    smooth = isinstance(packed.law, LinearTerms) and not packed.breaks.size and not len(packed.drift)
+    return smooth and not packed.push_only and all(other is None for other in others)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Row:
-    """The numbers (P,) of a machine, their structure, and a key that is the same for the same structure."""
+    """The numbers (P,) of a machine and their structure; the key is the same for the same structure."""
 
     values: Array
     structure: Structure
     key: tuple[object, ...]
 
 
-def row_of(packed: Packed) -> Row:
-    """The row of a machine that may run abreast."""
+def row_of(packed: Packed, tolerance: float) -> Row:
+    """The row of a machine that may run abreast, with the tolerance of its steps."""
     n, m = packed.n, packed.m
-    law, error = packed.law.fourier, packed.error
     law_kinds, error_kinds = int(packed.law.kind.max()) + 1, int(packed.error_kind.max()) + 1
     parts = (
         packed.omega_squared[:n],
@@ -86,39 +89,39 @@ def row_of(packed: Packed) -> Row:
         packed.mesh_damping[:m],
         packed.lower[:m],
         packed.upper[:m],
-        law[:, :, :law_kinds].ravel(),
-        error[:, :, :error_kinds].ravel(),
+        packed.law.fourier[:, :, :law_kinds].ravel(),
+        packed.error[:, :, :error_kinds].ravel(),
         packed.load[:, :, :n].ravel(),
-        np.array([packed.scale]),
+        [packed.scale],
+        [tolerance],
     )
-    back, entry = _by_coordinate(packed.touched, n)
-    opens = bool((packed.lower[:m] < packed.upper[:m]).any())
+    back_starts, back_rows, entry = _by_coordinate(packed.touched, n)
     structure = Structure(
         n=n,
         m=m,
         starts=packed.touched.starts,
         columns=packed.touched.columns,
-        back_starts=back.starts,
-        back_rows=back.columns,
+        back_starts=back_starts,
+        back_rows=back_rows,
         entry=entry,
         law_kind=packed.law.kind,
         error_kind=packed.error_kind,
-        law_terms=len(law),
-        error_terms=len(error),
+        law_terms=len(packed.law.fourier),
+        error_terms=len(packed.error),
         load_terms=len(packed.load),
         law_kinds=law_kinds,
         error_kinds=error_kinds,
         damping_when_open=packed.damping_when_open,
-        opens=opens,
-        offsets=np.append(0, np.cumsum([part.size for part in parts])),
+        opens=bool((packed.lower[:m] < packed.upper[:m]).any()),
+        offsets=np.append(0, np.cumsum([len(part) for part in parts])),
     )
     key = tuple(part.tobytes() if isinstance(part, np.ndarray) else part for part in structure)
     return Row(np.concatenate(parts), structure, key)
 
 
-def _by_coordinate(touched: Sparse, n: int) -> tuple[Sparse, Integers]:
-    """The rows of each coordinate, and the numbers of their entries among those by row."""
+def _by_coordinate(touched: Sparse, n: int) -> tuple[Integers, Integers, Integers]:
+    """Where the entries of each coordinate begin, their rows, and their numbers among those by row."""
     rows = np.repeat(np.arange(touched.starts.size - 1), np.diff(touched.starts))
     entry = np.argsort(touched.columns, kind="stable")
     starts = np.append(0, np.cumsum(np.bincount(touched.columns, minlength=n)))
-    return Sparse(starts, rows[entry], touched.values[entry]), entry
+    return starts, rows[entry], entry

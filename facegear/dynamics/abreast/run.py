@@ -1,4 +1,8 @@
-"""Run whole mesh periods of many machines, as many at a time as there are lanes."""
+"""Run whole mesh periods of many machines, as many at a time as there are lanes.
+
+Each lane has its own phase and step, so that it switches contacts where its own machine does; the next
+machine enters as soon as one is done.
+"""
 
 from typing import NamedTuple
 
@@ -8,10 +12,10 @@ from facegear.arrays import Array, Integers
 from facegear.dynamics.abreast.contact_states import correct_states, find_states
 from facegear.dynamics.abreast.functions import SMALLEST, exponential, logarithm
 from facegear.dynamics.abreast.kernel import inlined, longest
-from facegear.dynamics.abreast.lanes import Lanes
-from facegear.dynamics.abreast.rows import SCALE, WEIGHTS, Structure
+from facegear.dynamics.abreast.lanes import NONE, Lanes
+from facegear.dynamics.abreast.rows import SCALE, TOLERANCE, WEIGHTS, Structure
 from facegear.dynamics.abreast.switches import until_switch
-from facegear.dynamics.abreast.taylor import deflect, excitation, move, recurrence
+from facegear.dynamics.abreast.taylor import deflect, excitation, move, recurrence, values
 from facegear.dynamics.abreast.wide import (
     WIDTH,
     divide,
@@ -30,37 +34,35 @@ from facegear.dynamics.integrator.advance import MAX_GUESSES, ROUNDING
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.periods import DONE, MAX_STEPS, NOT_FINITE, TOO_MANY_STEPS
 
-NONE = -1
-
 
 class Queue(NamedTuple):
     """Machines that wait for a lane, and what they leave.
 
-    rows (machines, P), starts (machines, 2, n) by phase; ends (machines, periods, 2, n), steps (machines,)
-    and status (machines,) are written.
+    rows (machines, P), starts (machines, 2, n) by phase. periods: of each. Written are the states at the ends
+    of the last of them, ends (machines, kept, 2, n), coordinates at evenly spaced phases from the start of
+    each period, samples (machines, periods * per_period, n), steps (machines,) and status (machines,).
     """
 
     rows: Array
     starts: Array
+    periods: int
+    per_period: int
     ends: Array
+    samples: Array
     steps: Integers
     status: Integers
 
 
 @longest
-def run_abreast(shape: Structure, lanes: Lanes, queue: Queue, tolerance: float) -> None:
+def run_abreast(shape: Structure, lanes: Lanes, queue: Queue) -> None:
     """Run every machine of a queue over its periods."""
-    waiting = 0
-    running = 0
+    waiting, running = 0, 0
     for lane in range(WIDTH):
         waiting, running = _refill(shape, lanes, queue, lane, waiting, running)
-    if running == 0:
-        return
-    for lane in range(WIDTH):
-        if lanes.number[lane] == NONE:
-            _idle(shape, lanes, queue, lane)
     while running > 0:
-        _advance(shape, lanes, tolerance)
+        _advance(shape, lanes)
+        if queue.per_period > 0:
+            _sample(shape, lanes, queue)
         move(shape, lanes)
         for lane in range(WIDTH):
             if _at_end(shape, lanes, queue, lane):
@@ -71,9 +73,10 @@ def run_abreast(shape: Structure, lanes: Lanes, queue: Queue, tolerance: float) 
 def _refill(
     shape: Structure, lanes: Lanes, queue: Queue, lane: int, waiting: int, running: int
 ) -> tuple[int, int]:
-    """Give a lane the next machine; without any it goes on with what it has, and nothing is kept of it."""
+    """Give a lane the next machine. Without any it starts again with the first, and nothing is kept of it."""
     lanes.number[lane] = NONE
     if waiting == queue.rows.shape[0]:
+        _enter(shape, lanes, queue, lane, 0)
         return waiting, running
     _enter(shape, lanes, queue, lane, waiting)
     lanes.number[lane] = waiting
@@ -91,16 +94,11 @@ def _enter(shape: Structure, lanes: Lanes, queue: Queue, lane: int, number: int)
     lanes.phase[lane] = 0.0
     lanes.period[lane] = 0
     lanes.taken[lane] = 0
+    lanes.sampled[lane] = 0
 
 
 @inlined
-def _idle(shape: Structure, lanes: Lanes, queue: Queue, lane: int) -> None:
-    """A lane that never had a machine repeats the first one."""
-    _enter(shape, lanes, queue, lane, 0)
-
-
-@inlined
-def _advance(shape: Structure, lanes: Lanes, tolerance: float) -> None:
+def _advance(shape: Structure, lanes: Lanes) -> None:
     """Expand the motions and write the step of each lane into `length`."""
     excitation(shape, lanes, lanes.order + 1)
     deflect(shape, lanes, 0)
@@ -110,16 +108,17 @@ def _advance(shape: Structure, lanes: Lanes, tolerance: float) -> None:
         recurrence(shape, lanes)
         if not (shape.opens and correct_states(shape, lanes)):
             break
-    _step_lengths(shape, lanes, tolerance)
+    _step_lengths(shape, lanes)
     until_switch(shape, lanes)
 
 
 @inlined
-def _step_lengths(shape: Structure, lanes: Lanes, tolerance: float) -> None:
+def _step_lengths(shape: Structure, lanes: Lanes) -> None:
     """Steps at which each of the last two terms is below the tolerance (Jorba and Zou 2005), none of them
     past the end of the period.
     """
-    target = multiply(splat(tolerance), load(lanes.values, shape.offsets[SCALE]))
+    tolerance = load(lanes.values, shape.offsets[TOLERANCE])
+    target = multiply(tolerance, load(lanes.values, shape.offsets[SCALE]))
     smallest = splat(1e300)
     for i in range(lanes.order - 1, lanes.order + 1):
         size = splat(SMALLEST)
@@ -136,8 +135,31 @@ def _step_lengths(shape: Structure, lanes: Lanes, tolerance: float) -> None:
 
 
 @inlined
+def _sample(shape: Structure, lanes: Lanes, queue: Queue) -> None:
+    """Write the coordinates at all samples that lie within the steps, one of each lane at a time."""
+    while True:
+        pending = 0
+        for lane in range(WIDTH):
+            ahead = TAU * lanes.sampled[lane] / queue.per_period - lanes.phase[lane]
+            inside = lanes.sampled[lane] < queue.per_period and ahead < lanes.length[lane]
+            due = inside and lanes.number[lane] != NONE
+            lanes.ahead[lane] = ahead if due else -1.0
+            pending += due
+        if pending == 0:
+            return
+        values(shape, lanes)
+        for lane in range(WIDTH):
+            if lanes.ahead[lane] == -1.0:
+                continue
+            row = lanes.period[lane] * queue.per_period + lanes.sampled[lane]
+            for k in range(shape.n):
+                queue.samples[lanes.number[lane], row, k] = lanes.sample[k, lane]
+            lanes.sampled[lane] += 1
+
+
+@inlined
 def _at_end(shape: Structure, lanes: Lanes, queue: Queue, lane: int) -> bool:
-    """Move the phase of a lane, write the state at the end of a period; True if its machine is done."""
+    """Move the phase of a lane; at the end of a period write its state. True if its machine is done."""
     phase = lanes.phase[lane] + lanes.length[lane]
     lanes.taken[lane] += 1
     number = lanes.number[lane]
@@ -148,14 +170,24 @@ def _at_end(shape: Structure, lanes: Lanes, queue: Queue, lane: int) -> bool:
     lanes.phase[lane] = 0.0
     if number == NONE:
         return False
-    period, total = lanes.period[lane], 0.0
-    for k in range(shape.n):
-        queue.ends[number, period, 0, k] = lanes.y[0, k, lane]
-        queue.ends[number, period, 1, k] = lanes.y[1, k, lane]
-        total += lanes.y[0, k, lane] + lanes.y[1, k, lane]
+    finite = _keep_end(shape, lanes, queue, lane)
     queue.steps[number] += lanes.taken[lane]
-    lanes.taken[lane] = 0
-    lanes.period[lane] = period + 1
-    status = TOO_MANY_STEPS if stuck else DONE if np.isfinite(total) else NOT_FINITE
+    lanes.period[lane] += 1
+    lanes.taken[lane], lanes.sampled[lane] = 0, 0
+    status = TOO_MANY_STEPS if stuck else DONE if finite else NOT_FINITE
     queue.status[number] = status
-    return status != DONE or period + 1 == queue.ends.shape[1]
+    return status != DONE or lanes.period[lane] == queue.periods
+
+
+@inlined
+def _keep_end(shape: Structure, lanes: Lanes, queue: Queue, lane: int) -> bool:
+    """Write the state at the end of a period if it is one of the last; False if it is not finite."""
+    row = lanes.period[lane] - (queue.periods - queue.ends.shape[1])
+    total = 0.0
+    for k in range(shape.n):
+        displacement, velocity = lanes.y[0, k, lane], lanes.y[1, k, lane]
+        total += displacement + velocity
+        if row >= 0:
+            queue.ends[lanes.number[lane], row, 0, k] = displacement
+            queue.ends[lanes.number[lane], row, 1, k] = velocity
+    return bool(np.isfinite(total))

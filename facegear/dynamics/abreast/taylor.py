@@ -46,15 +46,15 @@ def _set_angles(lanes: Lanes) -> None:
 
 
 @inlined
-def _fourier(lanes: Lanes, at: int, terms: int, kinds: int, rows: int, out: Array) -> None:
-    """Coefficients (rows, kinds) at the angles of series (terms, 2, kinds) from value `at` on."""
+def _fourier(lanes: Lanes, at: int, terms: int, count: int, rows: int, out: Array) -> None:
+    """Coefficients (rows, series) at the angles of series (terms, 2, series) from value `at` on."""
     angles, parts, powers = lanes.angles, lanes.parts, lanes.powers
     span = powers.shape[1]
-    for kind in range(kinds):
+    for kind in range(count):
         for j in range(terms):
             cosine, sine = load(angles, j), load(angles, span + j)
-            a = load(lanes.values, at + 2 * j * kinds + kind)
-            b = load(lanes.values, at + (2 * j + 1) * kinds + kind)
+            a = load(lanes.values, at + 2 * j * count + kind)
+            b = load(lanes.values, at + (2 * j + 1) * count + kind)
             store(parts, j, multiply_add(b, cosine, multiply(a, sine)))
             store(parts, span + j, subtract(multiply(a, cosine), multiply(b, sine)))
         for i in range(0, rows - 1, 2):
@@ -71,8 +71,8 @@ def _fourier(lanes: Lanes, at: int, terms: int, kinds: int, rows: int, out: Arra
                 j = terms - 1
                 even_1 = multiply_add(load(parts, j), splat(take(powers, span * i + j)), even_1)
                 odd_1 = multiply_add(load(parts, span + j), splat(take(powers, span * (i + 1) + j)), odd_1)
-            store(out, i * kinds + kind, add(even_1, even_2))
-            store(out, (i + 1) * kinds + kind, add(odd_1, odd_2))
+            store(out, i * count + kind, add(even_1, even_2))
+            store(out, (i + 1) * count + kind, add(odd_1, odd_2))
         if rows % 2 == 1:
             total = splat(0.0)
             start = span * ((rows - 1) % 2)
@@ -80,7 +80,7 @@ def _fourier(lanes: Lanes, at: int, terms: int, kinds: int, rows: int, out: Arra
                 total = multiply_add(
                     load(parts, start + j), splat(take(powers, span * (rows - 1) + j)), total
                 )
-            store(out, (rows - 1) * kinds + kind, total)
+            store(out, (rows - 1) * count + kind, total)
 
 
 @inlined
@@ -118,17 +118,17 @@ def recurrence(shape: Structure, lanes: Lanes) -> None:
 @inlined
 def _push(shape: Structure, lanes: Lanes, i: int) -> None:
     """Coefficient i of the forces, with the factor of the next coefficient of y."""
-    m, kinds = shape.m, shape.law_kinds
+    m, count = shape.m, shape.law_kinds
     rate, pushed = splat(i + 1.0), splat(-1.0 / ((i + 1) * (i + 2)))
     for contact in range(m):
         kind = take(shape.law_kind, contact)
         total, other = splat(0.0), splat(0.0)
         for j in range(i, 0, -2):
             total = multiply_add(
-                load(lanes.law, j * kinds + kind), load(lanes.deflection, (i - j) * m + contact), total
+                load(lanes.law, j * count + kind), load(lanes.deflection, (i - j) * m + contact), total
             )
             other = multiply_add(
-                load(lanes.law, (j - 1) * kinds + kind),
+                load(lanes.law, (j - 1) * count + kind),
                 load(lanes.deflection, (i - j + 1) * m + contact),
                 other,
             )
@@ -186,3 +186,14 @@ def move(shape: Structure, lanes: Lanes) -> None:
             value = multiply_add(value, step, load(lanes.y, i * n + k))
         store(lanes.y, k, value)
         store(lanes.y, n + k, slope)
+
+
+@inlined
+def values(shape: Structure, lanes: Lanes) -> None:
+    """Coordinates at `ahead` into `sample`."""
+    n, step = shape.n, load(lanes.ahead, 0)
+    for k in range(n):
+        value = load(lanes.y, lanes.order * n + k)
+        for i in range(lanes.order - 1, -1, -1):
+            value = multiply_add(value, step, load(lanes.y, i * n + k))
+        store(lanes.sample, k, value)

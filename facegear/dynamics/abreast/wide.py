@@ -1,7 +1,6 @@
 """Vectors of eight doubles inside compiled functions, one double for each machine that runs side by side.
 
-LLVM splits them where the processor's own vectors are shorter. A tail of an array is eight long, and indices
-count vectors.
+LLVM splits them where the processor's own vectors are shorter. Indices count vectors.
 """
 
 from typing import Any
@@ -25,7 +24,7 @@ class WideType(types.Type):
         super().__init__(name=f"wide{WIDTH}")
 
 
-wide = WideType()
+doubles = WideType()
 
 
 @register_model(WideType)
@@ -56,7 +55,7 @@ def load(typing_context: Any, array: Any, index: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.load(_pointer(context, builder, array, *args), align=8)
 
-    return wide(array, types.intp), code
+    return doubles(array, types.intp), code
 
 
 @intrinsic
@@ -69,7 +68,7 @@ def store(typing_context: Any, array: Any, index: Any, value: Any) -> Any:
         builder.store(args[2], _pointer(context, builder, array, *args[:2]), align=8)
         return context.get_dummy_value()
 
-    return types.void(array, types.intp, wide), code
+    return types.void(array, types.intp, doubles), code
 
 
 @intrinsic
@@ -83,14 +82,14 @@ def splat(typing_context: Any, value: Any) -> Any:
         order = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
         return builder.shuffle_vector(first, first, order)
 
-    return wide(types.float64), code
+    return doubles(types.float64), code
 
 
 def _arithmetic(operation: str) -> Any:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return getattr(builder, operation)(*args)
 
-    return wide(wide, wide), code
+    return doubles(doubles, doubles), code
 
 
 @intrinsic
@@ -125,7 +124,7 @@ def _vector_call(name: str, arguments: int) -> Any:
         full = f"llvm.{name}.v{WIDTH}f64"
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, full), args)
 
-    return wide(*[wide] * arguments), code
+    return doubles(*[doubles] * arguments), code
 
 
 @intrinsic
@@ -165,7 +164,7 @@ def where_positive(typing_context: Any, test: Any, then: Any, otherwise: Any) ->
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.select(builder.fcmp_ordered(">", args[0], _constant(_VECTOR, 0.0)), *args[1:])
 
-    return wide(wide, wide, wide), code
+    return doubles(doubles, doubles, doubles), code
 
 
 @intrinsic
@@ -176,7 +175,7 @@ def exponent(typing_context: Any, value: Any) -> Any:
         bits = builder.lshr(builder.bitcast(args[0], _BITS), _constant(_BITS, _MANTISSA))
         return builder.sitofp(builder.sub(bits, _constant(_BITS, _BIAS)), _VECTOR)
 
-    return wide(wide), code
+    return doubles(doubles), code
 
 
 @intrinsic
@@ -187,7 +186,7 @@ def mantissa(typing_context: Any, value: Any) -> Any:
         bits = builder.and_(builder.bitcast(args[0], _BITS), _constant(_BITS, (1 << _MANTISSA) - 1))
         return builder.bitcast(builder.or_(bits, _constant(_BITS, _ONE)), _VECTOR)
 
-    return wide(wide), code
+    return doubles(doubles), code
 
 
 @intrinsic
@@ -198,7 +197,7 @@ def power_of_two(typing_context: Any, value: Any) -> Any:
         whole = builder.add(builder.fptosi(args[0], _BITS), _constant(_BITS, _BIAS))
         return builder.bitcast(builder.shl(whole, _constant(_BITS, _MANTISSA)), _VECTOR)
 
-    return wide(wide), code
+    return doubles(doubles), code
 
 
 @intrinsic
@@ -209,4 +208,4 @@ def positive_lanes(typing_context: Any, test: Any) -> Any:
         positive = builder.fcmp_ordered(">", args[0], _constant(_VECTOR, 0.0))
         return builder.zext(builder.bitcast(positive, ir.IntType(WIDTH)), ir.IntType(64))
 
-    return types.int64(wide), code
+    return types.int64(doubles), code

@@ -1,0 +1,137 @@
+"""Machines that run side by side, one in each lane of a vector, move as each does when it runs alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from force_tables import linear_table
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lumped_machines import make_layout, make_machine
+from oscillators import backlash_oscillator, mathieu, meissner, one_degree
+from random_machines import frequency, machines, speeds
+from references import against, agrees
+from test_dynamics_hard_cases import CASES
+
+from facegear.dynamics.abreast.many import run_many
+from facegear.dynamics.abreast.rows import may_run_abreast
+from facegear.dynamics.abreast.wide import WIDTH
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.steady_state.simulate import build_model, static_start
+from facegear.errors import NotConverged
+from facegear.mesh_law.load_dependent import load_dependent_law
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.machine import OpenFlanks
+from facegear.transmission.printed import PRINTED
+
+SAME = 1e-9
+
+
+def loaded_in_turn(speed):
+    """An oscillator whose load has three harmonics."""
+    return one_degree(0.1, load=((0.0, 0.02, 0.0, 0.01), (0.1, 0.05 * speed**2, 0.03, 0.0)))
+
+
+MACHINES = {
+    **CASES,
+    "contact lost": (make_machine(), 4500.0),
+    "irregular": (make_machine(), 15_000.0),
+    "damper in contact only": (make_machine(open_flanks=OpenFlanks.CONTACT_ONLY), 7500.0),
+}
+OSCILLATORS = {
+    "backlash": (backlash_oscillator(0.75), 0.75),
+    "oscillator's damper in contact only": (backlash_oscillator(0.75, in_gap=0.01), 0.75),
+    "load of three harmonics": (loaded_in_turn(0.8), 0.8),
+    "parametric": (mathieu(0.3), 1.3),
+}
+PUSH_ONLY = one_degree(0.1, contact_damping=0.2, push_only=True)
+IN_PIECES = meissner(0.05, one_sided=True)
+ON_A_TABLE = replace(one_degree(0.1), law=load_dependent_law([linear_table(4, 2.0)]))
+
+
+def integrators(name, count=3):
+    """Integrators of a machine at speeds a little apart, with starts (2, n) that open contacts."""
+    if name in OSCILLATORS:
+        system, speed = OSCILLATORS[name]
+        found = [Integrator(system, speed * (1.0 + 0.1 * i)) for i in range(count)]
+        return found, [np.array([[0.8 + 0.3 * i], [0.2]]) for i in range(count)]
+    machine, speed = MACHINES[name]
+    model = build_model(machine)
+    found = [Integrator(model.system, frequency(model, speed * (1.0 + 0.02 * i))) for i in range(count)]
+    kicks = np.random.default_rng(2).normal(size=(count, 2, model.system.size))
+    kicks *= 0.3 * model.system.scale / np.abs(model.reduced.mesh_jacobian).max()
+    start = static_start(model)
+    return found, [one.by_phase(start) + kick for one, kick in zip(found, kicks, strict=True)]
+
+
+def apart(found, starts, periods):
+    """Largest distance over the length scale of states at ends of periods, side by side and alone."""
+    together = run_many(found, starts, periods, fewest=1)
+    return max(
+        np.abs((run.ends - one.run(start, periods).ends) * one.weights).max() / one.scale
+        for one, start, run in zip(found, starts, together, strict=True)
+    )
+
+
+@against(
+    "other program",
+    "the integrator of a single machine, whose vectors hold its meshes",
+    capability="machine_code dynamics_response",
+    module="facegear.dynamics.abreast.many",
+)
+@pytest.mark.parametrize("name", [*MACHINES, *OSCILLATORS])
+def test_a_machine_moves_beside_others_as_it_does_alone(name):
+    found, starts = integrators(name)
+    assert all(may_run_abreast(one.packed) for one in found)
+    agrees("state beside others, scaled", apart(found, starts, 3), 0.0, absolute=SAME)
+
+
+@settings(max_examples=12, deadline=None)
+@given(machine=machines(kinematics=PRINTED), speed=speeds, seed=st.integers(0, 99))
+def test_any_lumped_machine_moves_beside_others_as_it_does_alone(machine, speed, seed):
+    model = build_model(machine)
+    found = [Integrator(model.system, frequency(model, speed * factor)) for factor in (1.0, 1.1)]
+    kick = np.random.default_rng(seed).normal(size=(2, model.system.size))
+    kick *= 0.2 * model.system.scale / np.abs(model.reduced.mesh_jacobian).max()
+    start = static_start(model)
+    assert apart(found, [one.by_phase(start) + kick for one in found], 2) < SAME
+
+
+def test_more_machines_than_lanes_come_out_in_their_order_with_their_samples():
+    count = 2 * WIDTH + 3
+    speeds_of = np.linspace(0.5, 1.5, count)
+    found = [
+        Integrator(backlash_oscillator(0.75), speed, 10.0 ** -(6 + i % 3))
+        for i, speed in enumerate(speeds_of)
+    ]
+    starts = [np.array([[1.0 + 0.05 * i], [0.1]]) for i in range(count)]
+    runs = run_many(found, starts, 5, kept=2, samples=12)
+    for one, start, run in zip(found, starts, runs, strict=True):
+        alone = one.run(start, 5, samples=12)
+        assert run.ends.shape == (2, 2, 1)
+        assert run.steps == alone.steps
+        assert np.abs(run.ends - alone.ends[3:]).max() < SAME
+        assert np.abs(run.samples - alone.samples).max() < SAME
+
+
+def test_machines_with_physics_that_lanes_have_not_run_alone_among_those_that_run_side_by_side():
+    clearance = replace(perfect(make_layout()), bearing_clearance=np.full(5, 1e-5))
+    beyond = [PUSH_ONLY, IN_PIECES, ON_A_TABLE, build_model(make_machine(imperfections=clearance)).system]
+    assert not any(may_run_abreast(Integrator(system, 0.8).packed) for system in beyond)
+    mixed = [
+        backlash_oscillator(0.75),
+        PUSH_ONLY,
+        backlash_oscillator(0.8),
+        IN_PIECES,
+        backlash_oscillator(0.9),
+    ]
+    found = [Integrator(system, 0.8) for system in mixed]
+    starts = [np.array([[1.2], [0.1 * i]]) for i in range(len(mixed))]
+    assert apart(found, starts, 4) < SAME
+
+
+def test_a_run_that_leaves_all_bounds_is_refused_beside_others():
+    found = [Integrator(backlash_oscillator(0.75), 0.75) for _ in range(4)]
+    starts = [np.array([[1.0], [0.0]]) for _ in range(3)]
+    with pytest.raises(NotConverged, match="beyond all bounds"):
+        run_many(found, [*starts, np.full((2, 1), np.nan)], 2)
