@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.contact.bodies.body import ElasticBody
+from facegear.contact.bodies.body import ROUNDING, ElasticBody
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
 from facegear.geometry import face_gear
@@ -83,6 +83,8 @@ def elastic_tooth(
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     held = np.zeros(tooth.nodes.shape, dtype=bool)
     held[number[tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]]] = True
+    mirror = np.zeros(len(tooth.nodes), dtype=np.int64)
+    mirror[number] = number[_mirrored(tooth)]
     body = ElasticBody(
         mesh=mesh,
         material=material,
@@ -92,8 +94,22 @@ def elastic_tooth(
         left=number[tooth.cut_left],
         right=number[tooth.cut_right],
         turn=tooth.rotated(np.eye(3), tooth.pitch).T,
+        mirror=mirror if _symmetric(tooth) else mirror[:0],
     )
     return body, surface
+
+
+def _mirrored(tooth: FeTooth) -> Integers:
+    """Node (N,) of the plane as far from the other end of the face."""
+    planes = tooth.surfaces["flank_right"].nodes.shape[1]
+    return np.arange(len(tooth.nodes)).reshape(planes, -1)[::-1].ravel()
+
+
+def _symmetric(tooth: FeTooth) -> bool:
+    """Whether both halves of the face are mirror images, as those of a pinion without modifications are."""
+    image = tooth.nodes * np.array([1.0, -1.0, 1.0])
+    image[:, 1] += tooth.nodes[:, 1].min() + tooth.nodes[:, 1].max()
+    return bool(np.abs(tooth.nodes[_mirrored(tooth)] - image).max() <= ROUNDING * np.abs(image).max())
 
 
 def pinion_points(

@@ -8,6 +8,7 @@ import pytest
 import scipy.sparse as sp
 from skfem import MeshHex1, MeshHex2
 
+from facegear.contact.bodies.assembly import elements_of
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
@@ -91,12 +92,30 @@ def quarter_space(size, total, loaded, ratio=2.0):
     return replace(body, flank=body.flank[rows, rows], normals=body.normals[rows, rows])
 
 
+def stiffness(parts):
+    """Matrix (n, n) that small ones add up to."""
+    total = 0.0
+    for part in parts:
+        count, width = part.rows.shape
+        at = np.repeat(part.rows, width, axis=1), np.tile(part.rows, (1, width))
+        entries = part.matrices(np.arange(count)).ravel(), tuple(each.ravel() for each in at)
+        small = sp.csr_matrix(entries, shape=(part.moved.shape[0],) * 2)
+        total = total + part.moved.T @ small @ part.moved
+    return total.tocsr()
+
+
+def stiffness_of(mesh, element="hex27"):
+    """Stiffness of all elements of a mesh on its own nodes."""
+    numbers, moved = np.arange(mesh.nelements), sp.eye(3 * mesh.doflocs.shape[1], format="csr")
+    return stiffness([elements_of(mesh, numbers, numbers, moved, STEEL, element)])
+
+
 def pressed(body, refinement, gap_of, force, reach=None):
     """Press a rigid surface, `gap_of` (n, 3) points, on a body; returns the contact, pressures and hat
     centres.
     """
     system = tied_system(body, refinement)
-    flank = condense(body, system).flank
+    flank = condense(system).flank
     shape = system.surface.shape[:2]
     compliance = system.spread @ flank @ system.spread.T
     points, weight, area = hats_of(system.surface)

@@ -9,8 +9,9 @@ from typing import Any, TypeVar
 import numpy as np
 import pandas as pd
 
-from facegear.contact.bodies.compliance import coupled_compliance
+from facegear.contact.bodies.compliance import coupled_compliance, whole
 from facegear.contact.bodies.layer import tied_system
+from facegear.contact.bodies.mirror import halves
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import even_positions, loaded_contact
@@ -75,7 +76,8 @@ class Stopwatch:
 def measure(design: PairDesign, level: Level, materials: tuple[Material, Material]) -> pd.DataFrame:
     """One row a torque: free dof, times (s), memory (GB), mean and first harmonic of both stiffnesses (N/m).
 
-    Times of both bodies: assembly; factorisation down to flank and cut faces; compliance of the flanks in the
+    Times of both bodies: what their meshes and dof are; element matrices and factorisation down to flank and
+    cut faces; compliance of the flanks in the
     ring; then contact at all positions and torques, and the sum. One position is solved beforehand, so that
     machine code is loaded. The memory is the process's largest so far, so that levels should be measured in
     processes of their own.
@@ -85,10 +87,12 @@ def measure(design: PairDesign, level: Level, materials: tuple[Material, Materia
         tooth = BUILDERS[body](design, level.sizes)
         elastic, side = elastic_tooth(design, tooth, material)
         system = watch.time("assembly_s", tied_system, elastic, plan.refinement, plan.element)
-        condensed = watch.time("factorisation_s", condense, elastic, system)
-        kept = extent(tooth, body, plan)
-        rest = elastic, system, condensed, plan.refinement, *kept, plan.element
-        bodies.append(GearFlank(side, watch.time("compliance_s", coupled_compliance, *rest)))
+        kept, solved = extent(tooth, body, plan), []
+        for half in watch.time("assembly_s", halves, system):
+            condensed = watch.time("factorisation_s", condense, half.system)
+            rest = half.system, condensed, plan.refinement, *kept, plan.element
+            solved.append(watch.time("compliance_s", coupled_compliance, *rest))
+        bodies.append(GearFlank(side, watch.time("compliance_s", whole, solved)))
         dof += int(np.count_nonzero(~system.held))
     model = contact_model(design, *bodies)
     loaded_contact(model, [0.3], plan.torques, plan.options)

@@ -113,7 +113,7 @@ def sector_blocks(
     """
     elastic, _ = elastic_tooth(design, tooth, material, LOADED_SIDE[tooth.body])
     system = tied_system(elastic, refinement)
-    condensed = condense(elastic, system)
+    condensed = condense(system)
     planes = plane_compliance(condensed.faces, teeth)
     seen = system.spread @ condensed.influence
     own = on_lattice(system.spread, condensed.flank)

@@ -8,6 +8,9 @@ from skfem import MeshHex2
 from facegear.arrays import Array, Integers, Mask
 from facegear.geometry.design import Material
 
+ROUNDING = 1e-12
+"""Of positions over the largest, and of unit vectors."""
+
 
 @dataclass(frozen=True, eq=False)
 class ElasticBody:
@@ -30,6 +33,9 @@ class ElasticBody:
         Nodes of the two cut faces, in corresponding order; both empty for a body that does not repeat.
     turn : (3, 3)
         Rotation by one pitch about the gear's axis, which takes the left nodes to the right ones.
+    mirror : (n,)
+        Node behind the middle plane across the y axis of each node; empty for a body that is not its own
+        mirror image.
     """
 
     mesh: MeshHex2
@@ -40,6 +46,7 @@ class ElasticBody:
     left: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     right: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     turn: Array = field(default_factory=lambda: np.eye(3))
+    mirror: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def __post_init__(self) -> None:
         if self.flank.shape[0] % 2 == 0 or self.flank.shape[1] % 2 == 0:
@@ -48,6 +55,20 @@ class ElasticBody:
             gap = np.abs(self.points[self.left] @ self.turn.T - self.points[self.right]).max()
             if gap > 1e-9 * np.abs(self.points).max():
                 raise ValueError(f"the cut faces do not match after one pitch: {gap:.1e} m apart")
+        if self.mirror.size and not self._is_symmetric():
+            raise ValueError("the body is not its own mirror image")
+
+    def _is_symmetric(self) -> bool:
+        """Whether nodes, what is held and the flank stand behind the middle plane as before it."""
+        image = self.points * np.array([1.0, -1.0, 1.0])
+        image[:, 1] += self.points[:, 1].min() + self.points[:, 1].max()
+        apart = np.abs(self.points[self.mirror] - image).max()
+        return bool(
+            apart <= ROUNDING * np.abs(self.points).max()
+            and (self.held[self.mirror] == self.held).all()
+            and (self.mirror[self.flank] == self.flank[:, ::-1]).all()
+            and np.abs(self.normals[:, ::-1] * np.array([1.0, -1.0, 1.0]) - self.normals).max() <= ROUNDING
+        )
 
     @property
     def points(self) -> Array:

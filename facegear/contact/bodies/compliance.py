@@ -8,13 +8,14 @@ import scipy.sparse as sp
 from facegear.arrays import AnyArray, Array, Arrays
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import TiedSystem, tied_system
+from facegear.contact.bodies.mirror import halves, unfolded
 from facegear.contact.bodies.ring import moved_faces, rest_stiffness
 from facegear.contact.bodies.substructure import Superelement, condense, held_by
 from facegear.contact.options import Element, Ends, Refinement
 from facegear.progress import Progress
 
-SHARES = (1, 6, 3)
-"""Tenths of the time that assembly, factorisation and joining the teeth take at the default resolution."""
+SHARES = (7, 3)
+"""Tenths of the time that factorisation and joining the teeth take at the default resolution."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,21 +71,37 @@ def flank_compliance(
     without cut faces stands for itself.
     Raises FacegearError if the body is not held, ValueError if there are too few teeth.
     """
-    progress = Progress("flank compliance", total=sum(SHARES))
     system = tied_system(body, refinement, element)
-    progress.step(SHARES[0])
     if gauges is not None:
-        gauges = gauges @ sp.kron(system.followed(body, refinement), sp.eye(3), format="csr")
-    waiting, system = [system], replace(system, stiffness=sp.csr_matrix((0, 0)))
-    tooth = condense(body, waiting.pop(), gauges)  # nothing else holds the stiffness, which is freed there
-    progress.step(SHARES[1])
-    coupled = coupled_compliance(body, system, tooth, refinement, teeth, neighbours, ends, element)
-    progress.step(SHARES[2])
-    return coupled
+        gauges = (gauges @ sp.kron(system.followed(body, refinement), sp.eye(3), format="csr")).tocsr()
+    several = halves(system)
+    progress = Progress("flank compliance", total=len(several) * sum(SHARES))
+    solved = []
+    for half in several:
+        tooth = condense(half.system, None if gauges is None else (gauges @ half.fold).tocsr())
+        progress.step(SHARES[0])
+        solved.append(coupled_compliance(half.system, tooth, refinement, teeth, neighbours, ends, element))
+        progress.step(SHARES[1])
+    return whole(solved)
+
+
+def whole(solved: list[FlankCompliance]) -> FlankCompliance:
+    """The compliance of a body from that of its even and odd half; that of a body without halves as it is."""
+    if len(solved) == 1:
+        return solved[0]
+    even, odd = solved
+    shape, coarse = even.shape, even.coarse_shape
+    return replace(
+        even,
+        own=unfolded(even.own, odd.own, shape),
+        others=unfolded(even.others, odd.others, coarse),
+        readings=unfolded(even.readings, odd.readings, coarse, rows=False),
+        shape=(shape[0], 2 * shape[1] - 1),
+        coarse_shape=(coarse[0], 2 * coarse[1] - 1),
+    )
 
 
 def coupled_compliance(
-    body: ElasticBody,
     system: TiedSystem,
     tooth: Superelement,
     refinement: Refinement,
@@ -93,16 +110,16 @@ def coupled_compliance(
     ends: Ends,
     element: Element,
 ) -> FlankCompliance:
-    """The last step of `flank_compliance`: copies of a condensed tooth joined to a ring or sector.
+    """Copies of a condensed tooth, or of one of its halves, joined to a ring or sector.
 
     Raises ValueError if there are too few teeth.
     """
-    shape, coarse_shape = system.surface.shape[:2], body.flank.shape
-    others, rest = np.zeros((1, body.flank.size, body.flank.size)), np.zeros((0, 0))
-    nodes = np.arange(shape[0] * shape[1]).reshape(shape)
-    spread = system.spread[nodes[:: refinement.profile, :: refinement.width].ravel()]
+    shape = system.surface.shape[:2]
+    nodes = np.arange(shape[0] * shape[1]).reshape(shape)[:: refinement.profile, :: refinement.width]
+    others, rest = np.zeros((1, nodes.size, nodes.size)), np.zeros((0, 0))
+    spread = system.spread[nodes.ravel()]
     readings = (spread @ tooth.gauge_flank.T).T[None]
-    if body.left.size:
+    if system.left.size:
         rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
         seen = spread @ tooth.influence
         moved = moved_faces(tooth.faces, rests, seen.T)
@@ -115,7 +132,7 @@ def coupled_compliance(
         own=own,
         others=others,
         shape=shape,
-        coarse_shape=coarse_shape,
+        coarse_shape=nodes.shape,
         refinement=refinement,
         linear=element != "hex27",
         readings=readings,

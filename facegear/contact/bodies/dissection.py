@@ -23,10 +23,14 @@ DIRECTIONS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 0, -1)]) 
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Dof (p,) that are eliminated together, after the fronts `before`, numbers of a list in this order."""
+    """Dof (p,) that are eliminated together, after the fronts `before`, numbers of a list in this order.
+
+    `cells` (m,) are those of a part that is not cut further; none come with a front that joins others.
+    """
 
     dof: Integers
     before: tuple[int, ...]
+    cells: Integers
 
 
 def dissection(cells: sp.csr_matrix, centres: Array, kept: Integers) -> list[Front]:
@@ -72,12 +76,12 @@ def _dissect(cells: _Cells, members: Integers, taken: Mask, fronts: list[Front])
     halves = _halves(cells, members, taken) if inside.size > LEAF and members.size > 1 else None
     if halves is None:
         taken[inside] = True
-        fronts.append(Front(inside, ()))
+        fronts.append(Front(inside, (), members))
         return len(fronts) - 1
     first, second, shared = halves
     taken[shared] = True
     before = tuple(_dissect(cells, half, taken, fronts) for half in (first, second))
-    fronts.append(Front(shared, before))
+    fronts.append(Front(shared, before, members[:0]))
     return len(fronts) - 1
 
 

@@ -4,34 +4,37 @@ Each front is a small dense matrix, and goes as soon as it is added to the next:
 them lie in one piece of memory, a stack, whose pages are asked of the system once.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 
-from facegear.arrays import Array, Integers, Mask
+from facegear.arrays import Array, Integers
+from facegear.contact.bodies.cellwise import Part, coupled, in_turn
 from facegear.contact.bodies.dissection import Front, dissection
 from facegear.errors import FacegearError
 from facegear.machine_code.compiler import compiler
 
 compiled = compiler()
 
+Entries = tuple[Array, Integers, Integers, Integers, Array]
+"""Small matrices (k, a, a), their rows (k, a) of a sparse one, and its pointers, columns and values."""
 SINGULAR = "the stiffness matrix is singular: the body is not held or its mesh is broken"
-Sparse = tuple[Integers, Integers, Array, Integers]
-"""Rows of a symmetric matrix: pointers, columns, values; and the place of each dof in the elimination."""
 
 
 @dataclass(frozen=True, eq=False)
 class Step:
     """A front with the places in the elimination of its own dof (p,) and of those it is coupled to (m,).
 
-    `base` and `left` say where in the stack the front begins, and where its remainder is put afterwards.
+    It comes after the fronts `before`. `base` and `left` say where in the stack the front begins, and where
+    its remainder is put afterwards.
     """
 
-    front: Front
     own: Integers
     outside: Integers
+    before: tuple[int, ...]
     base: int
     left: int
 
@@ -55,43 +58,52 @@ def _block(stack: Array, start: int, rows: int, columns: int) -> Array:
     return stack[start : start + rows * columns].reshape((rows, columns), order="F")
 
 
-def schur_complement(matrix: sp.csr_matrix, kept: Integers, cells: sp.csr_matrix, centres: Array) -> Array:
+def schur_complement(parts: Sequence[Part], kept: Integers, centres: Array) -> Array:
     """Dense A_kk - A_kr A_rr^-1 A_rk with k the `kept` dof and r the others, shape (k, k), ordered as `kept`.
 
-    `matrix` (n, n) is symmetric and positive definite on r. Row i of `cells` (m, n) has an entry for each dof
-    of a cell around `centres` (m, 3); dof that share no cell are not coupled. Raises FacegearError if the
-    matrix is not positive definite: the body is not held or its mesh is broken.
+    A, the sum of `parts`, is symmetric and positive definite on r; its cells lie around `centres` (m, 3).
+    Raises FacegearError if it is not positive definite: the body is not held or its mesh is broken.
     """
+    cells = coupled(parts, len(centres))
     fronts = dissection(cells, centres, kept)
     order = np.concatenate([*(front.dof for front in fronts), kept])
     number = np.empty(len(order), dtype=np.int64)
     number[order] = np.arange(len(order))
-    sparse = matrix.indptr, matrix.indices, matrix.data, number
-    steps, size = _steps(sparse, fronts, kept)
-    stack = np.empty(size)
-    for step in steps[:-1]:
-        (pivot, below), rest = step.columns(stack), step.rest(stack)
-        _sum_up(sparse, step, steps, stack, (pivot, below, rest))
-        _eliminate(pivot, below, rest)
-        _move_down(rest.ravel(order="F"), step.remainder(stack).ravel(order="F"))
-    last = steps[-1]
-    pivot, below = last.columns(stack)
+    steps, size = _steps(cells, number, fronts, kept.size)
+    del cells
+    stack, row_of = np.empty(size), np.empty(order.size, dtype=np.int64)
     complement = np.empty((kept.size, kept.size), order="F")
-    row_of = _sum_up(sparse, last, steps, stack, (pivot, below, complement))
-    _add_entries(*sparse, kept, row_of, last.own.size, complement, below[:0])
-    _eliminate(pivot, below, complement)
+    for step, added in zip(steps, _added(parts, number, fronts, len(centres)), strict=True):
+        pivot, below = step.columns(stack)
+        rest = complement if step is steps[-1] else step.rest(stack)
+        _sum_up(added, step, steps, stack, row_of, (pivot, below, rest))
+        _eliminate(pivot, below, rest)
+        if step is not steps[-1]:
+            _move_down(rest.ravel(order="F"), step.remainder(stack).ravel(order="F"))
     _mirror(complement)
     if not np.isfinite(complement).all():
         raise FacegearError(SINGULAR)
     return complement
 
 
-def _steps(sparse: Sparse, fronts: list[Front], kept: Integers) -> tuple[list[Step], int]:
+def _added(
+    parts: Sequence[Part], number: Integers, fronts: list[Front], cells: int
+) -> Iterator[list[Entries]]:
+    """What each front adds of the small matrices, their unknowns by their place in the elimination."""
+    group = np.empty(cells, dtype=np.int64)
+    for which, front in enumerate(fronts):
+        group[front.cells] = which
+    moved = [(part.moved.indptr, number[part.moved.indices], part.moved.data) for part in parts]
+    turns = zip(*(in_turn(part, group, len(fronts)) for part in parts), strict=True)
+    for turn in turns:
+        yield [(*small, *by) for small, by in zip(turn, moved, strict=True)]
+
+
+def _steps(cells: sp.csr_matrix, number: Integers, fronts: list[Front], kept: int) -> tuple[list[Step], int]:
     """What each front is coupled to among the dof that are eliminated after it or kept, and its memory.
 
     Also the size of the stack. The last front is coupled to all that is kept, which lies elsewhere.
     """
-    number = sparse[-1]
     steps: list[Step] = []
     top = size = 0
     for which, front in enumerate(fronts):
@@ -100,35 +112,40 @@ def _steps(sparse: Sparse, fronts: list[Front], kept: Integers) -> tuple[list[St
         touched = np.zeros(number.size, dtype=np.bool_)
         for other in front.before:
             touched[steps[other].outside] = True
-        touched[number[kept]] |= last
-        _touch(*sparse, front.dof, touched)
-        first = own[-1] + 1 if own.size else 0
-        outside = first + np.flatnonzero(touched[first:])
+        touched[number[cells[front.cells].indices]] = True
+        touched[number.size - kept :] |= last
+        touched[own] = False
+        outside = np.flatnonzero(touched)
         left = steps[front.before[0]].left if front.before else top
-        steps.append(Step(front, own, outside, top, left))
+        steps.append(Step(own, outside, front.before, top, left))
         size = max(size, top + own.size * (own.size + outside.size) + (0 if last else outside.size**2))
         top = left + outside.size**2
     return steps, size
 
 
 def _sum_up(
-    sparse: Sparse, step: Step, steps: list[Step], stack: Array, parts: tuple[Array, Array, Array]
-) -> Integers:
-    """Fill a front from the matrix and from what the fronts before it left; lower triangles alone.
+    added: list[Entries],
+    step: Step,
+    steps: list[Step],
+    stack: Array,
+    row_of: Integers,
+    parts: tuple[Array, Array, Array],
+) -> None:
+    """Fill a front from the small matrices and from what the fronts before it left; lower triangles alone.
 
-    Returns where in it each dof stands, by the place in the elimination, -1 if nowhere.
+    `row_of` is filled with where in it each dof stands, by the place in the elimination, -1 if nowhere.
     """
     pivot, below, rest = parts
-    row_of = np.full(len(sparse[-1]), -1, dtype=np.int64)
+    row_of[:] = -1
     row_of[step.own] = np.arange(step.own.size)
     row_of[step.outside] = step.own.size + np.arange(step.outside.size)
     _clear(pivot)
     _clear(rest)
     below[:] = 0.0
-    _add_entries(*sparse, step.front.dof, row_of, 0, pivot, below)
-    for other in step.front.before:
+    for entries in added:
+        _add_entries(*entries, row_of, *parts)
+    for other in step.before:
         _add_front(steps[other].remainder(stack), row_of[steps[other].outside], *parts)
-    return row_of
 
 
 def _eliminate(pivot: Array, below: Array, rest: Array) -> None:
@@ -144,39 +161,35 @@ def _eliminate(pivot: Array, below: Array, rest: Array) -> None:
 
 
 @compiled
-def _touch(
-    indptr: Integers, indices: Integers, data: Array, number: Integers, dof: Integers, touched: Mask
-) -> None:
-    """Mark what is coupled to some dof, by its place in the elimination."""
-    for column in dof:
-        for entry in range(indptr[column], indptr[column + 1]):
-            touched[number[indices[entry]]] = True
-
-
-@compiled
 def _add_entries(
+    matrices: Array,
+    rows: Integers,
     indptr: Integers,
     indices: Integers,
     data: Array,
-    number: Integers,
-    dof: Integers,
     row_of: Integers,
-    first: int,
-    square: Array,
+    pivot: Array,
     below: Array,
+    rest: Array,
 ) -> None:
-    """Add the columns of some dof, the first of which has the place `first` in the front.
-
-    Their own rows to the lower triangle of `square`, rows of a larger one to `below`.
-    """
-    size = square.shape[0]
-    for column in range(dof.shape[0]):
-        for entry in range(indptr[dof[column]], indptr[dof[column] + 1]):
-            row = row_of[number[indices[entry]]] - first
-            if row >= size:
-                below[row - size, column] += data[entry]
-            elif row >= column:
-                square[row, column] += data[entry]
+    """Add small matrices (k, a, a), whose rows are those (k, a) of a sparse matrix."""
+    size = pivot.shape[0]
+    for which in range(rows.shape[0]):
+        for a in range(rows.shape[1]):
+            for p in range(indptr[rows[which, a]], indptr[rows[which, a] + 1]):
+                column = row_of[indices[p]]
+                for b in range(rows.shape[1]):
+                    entry = data[p] * matrices[which, a, b]
+                    for q in range(indptr[rows[which, b]], indptr[rows[which, b] + 1]):
+                        row = row_of[indices[q]]
+                        if row < column:
+                            continue
+                        if column >= size:
+                            rest[row - size, column - size] += entry * data[q]
+                        elif row >= size:
+                            below[row - size, column] += entry * data[q]
+                        else:
+                            pivot[row, column] += entry * data[q]
 
 
 @compiled

@@ -12,8 +12,9 @@ import scipy.sparse as sp
 from skfem import ElementHex2, MeshHex1, MeshHex2
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.bodies.assembly import Part, stiffness_matrix
+from facegear.contact.bodies.assembly import elements_of
 from facegear.contact.bodies.body import ElasticBody
+from facegear.contact.bodies.cellwise import Part
 from facegear.contact.bodies.elements import hex_values
 from facegear.contact.options import Element, Refinement
 
@@ -25,15 +26,16 @@ ROUNDING = 1e-12
 class TiedSystem:
     """Stiffness of a body with refined flank layer, on its free (master) nodes.
 
-    `stiffness` (3n, 3n) in N/m on the masters at `points` (n, 3), of which `held` (n, 3) stay at zero;
+    The stiffness (3n, 3n) in N/m on the masters at `points` (n, 3), of which `held` (n, 3) stay at zero, is
+    the sum of `parts`, whose cells are the elements of the body around `centres` (m, 3), whole or cut.
     `coarse` maps a node of the body to its master, -1 if it was refined away. The refined surface has nodes
     `surface` (nu, nv, 3) with normals `normals` of that shape; its normal displacement is `spread` (nu nv, k)
-    times that of the master nodes `loaded` (k,), whose normals are `loaded_normals` (k, 3). Row i of `cells`
-    (m, n) has an entry for each master that an element of the body around `centres` (m, 3), whole or cut,
-    depends on.
+    times that of the master nodes `loaded` (k,), whose normals are `loaded_normals` (k, 3). `left` and
+    `right` (s,) are the masters of the cut faces and `turn` takes the first to the others, `mirror` (n,) is
+    the master behind the middle plane of each: as in `ElasticBody`.
     """
 
-    stiffness: sp.csr_matrix
+    parts: tuple[Part, ...]
     points: Array
     held: Mask
     coarse: Integers
@@ -42,8 +44,11 @@ class TiedSystem:
     loaded: Integers
     loaded_normals: Array
     spread: sp.csr_matrix
-    cells: sp.csr_matrix
     centres: Array
+    left: Integers
+    right: Integers
+    turn: Array
+    mirror: Integers
 
     def followed(self, body: ElasticBody, refinement: Refinement) -> sp.csr_matrix:
         """Displacements (m, n) of the body's m nodes by those of the n masters, for nodes on its surfaces.
@@ -182,8 +187,6 @@ def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "h
     rows, slots = np.nonzero(np.where(tied[:, None], weights, 0.0))
     tie = sp.csr_matrix((weights[rows, slots], (rows, coarse[parents[rows, slots]])), shape=free.shape)
     follow = (free + tie).tocsr()
-    matrix = _stiffness(body, Part(body.mesh, np.flatnonzero(stays), coarse), layer, fine, follow, element)
-
     top, shape = layer.surface, layer.number.shape[:2]
     all_normals = np.zeros_like(body.points)
     all_normals[body.flank] = body.normals
@@ -198,7 +201,7 @@ def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "h
         [body.held[used], (body.held[parents] | (weights == 0.0)[..., None]).all(axis=1)[~tied]]
     )
     return TiedSystem(
-        stiffness=matrix,
+        parts=_parts(body, under, np.flatnonzero(stays), coarse, layer, follow, refinement, element),
         points=np.concatenate([body.points[used], layer.points[~tied]]),
         held=held,
         coarse=coarse,
@@ -207,12 +210,15 @@ def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "h
         loaded=loaded,
         loaded_normals=loaded_normals[loaded],
         spread=follow[top][:, loaded].tocsr(),
-        cells=_cells(body, under, np.flatnonzero(stays), coarse, layer, follow, refinement),
         centres=_centres(body)[np.concatenate([np.flatnonzero(stays), under.elements.ravel()])],
+        left=coarse[body.left],
+        right=coarse[body.right],
+        turn=body.turn,
+        mirror=_mirrored(body, layer, coarse, fine),
     )
 
 
-def _cells(
+def _parts(
     body: ElasticBody,
     under: FlankElements,
     stays: Integers,
@@ -220,22 +226,32 @@ def _cells(
     layer: Layer,
     follow: sp.csr_matrix,
     refinement: Refinement,
-) -> sp.csr_matrix:
-    """Masters of the elements that stay, then of those under the flank, row by row."""
-    nodes = coarse[body.mesh.dofs.element_dofs[:, stays].T]
-    whole = _incidence(np.arange(len(stays)), nodes, follow.shape[1], len(stays))
+    element: Element,
+) -> tuple[Part, Part]:
+    """Elements that stay, each a cell; and those of the layer, in the cells of which they were cut."""
     members = layer.mesh.dofs.element_dofs.T
     cuts = 2 * np.array([refinement.profile, refinement.width])
     row, column = (layer.lattice[members, :2].min(axis=1) // cuts).T
-    rows, columns = under.elements.shape
-    cut = _incidence(row * columns + column, members, len(layer.points), rows * columns)
-    return sp.vstack([whole, cut @ abs(follow)], format="csr")
+    cell = len(stays) + row * under.elements.shape[1] + column
+    used = np.flatnonzero(coarse >= 0)
+    own = sp.csr_matrix((np.ones(used.size), (used, coarse[used])), shape=(len(body.points), follow.shape[1]))
+    whole, cut = (sp.kron(nodes, sp.eye(3), format="csr") for nodes in (own, follow))
+    return (
+        elements_of(body.mesh, stays, np.arange(len(stays)), whole, body.material, element),
+        elements_of(layer.mesh, np.arange(len(members)), cell, cut, body.material, element),
+    )
 
 
-def _incidence(cells: Integers, nodes: Integers, count: int, number: int) -> sp.csr_matrix:
-    """Matrix (number, count) with an entry for the nodes (e, a) of each of e elements, in its cell (e,)."""
-    at = np.repeat(cells, nodes.shape[1]), nodes.ravel()
-    return sp.csr_matrix((np.ones(nodes.size), at), shape=(number, count))
+def _mirrored(body: ElasticBody, layer: Layer, coarse: Integers, fine: Integers) -> Integers:
+    """Master (n,) behind the middle plane of each master; empty for a body without one."""
+    if not body.mirror.size:
+        return body.mirror
+    mirror = np.full(max(coarse.max(), fine.max()) + 1, -1)
+    used, behind = np.flatnonzero(coarse >= 0), np.flatnonzero(fine >= 0)
+    mirror[coarse[used]] = coarse[body.mirror[used]]
+    across, along, deep = layer.lattice[behind].T
+    mirror[fine[behind]] = fine[layer.number[across, layer.number.shape[1] - 1 - along, deep]]
+    return mirror
 
 
 def _centres(body: ElasticBody) -> Array:
@@ -248,30 +264,3 @@ def _tied_nodes(layer: Layer, used: Mask) -> Mask:
     at, ends = layer.lattice, np.array(layer.number.shape) - 1
     edge = (at[:, :2] == 0).any(axis=1) | (at == ends).any(axis=1)
     return edge & (used[layer.parents] | (layer.weights == 0.0)).all(axis=1)
-
-
-def _stiffness(
-    body: ElasticBody,
-    rest: Part,
-    layer: Layer,
-    fine: Integers,
-    follow: sp.csr_matrix,
-    element: Element,
-) -> sp.csr_matrix:
-    """Stiffness on the masters; only elements with tied nodes need the costly triple product."""
-    members = layer.mesh.dofs.element_dofs
-    touches = (fine[members] < 0).any(axis=0)
-    plain = Part(layer.mesh, np.flatnonzero(~touches), fine)
-    matrix = stiffness_matrix([rest, plain], follow.shape[1], body.material, element)
-    nodes = np.unique(members[:, touches])
-    compact = np.full(len(fine), -1)
-    compact[nodes] = np.arange(len(nodes))
-    tied = Part(layer.mesh, np.flatnonzero(touches), compact)
-    partial = stiffness_matrix([tied], len(nodes), body.material, element)
-    weights = follow[nodes]
-    blocks = weights.data[:, None, None] * np.eye(3)
-    shape = 3 * len(nodes), 3 * follow.shape[1]
-    ties = sp.bsr_matrix((blocks, weights.indices, weights.indptr), shape=shape)
-    added = ties.T @ partial @ ties
-    added.sort_indices()
-    return (matrix + added).tocsr()

@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from scipy.linalg import solve_triangular
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.bodies.body import ElasticBody
+from facegear.contact.bodies.cellwise import Part
 from facegear.contact.bodies.dense import cholesky, inverse
 from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.layer import TiedSystem
@@ -31,24 +31,22 @@ class Superelement:
     gauge_faces: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
-def condense(body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superelement:
+def condense(system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superelement:
     """Eliminate everything but the normal displacements of the flank and the cut faces.
 
     `gauges` (g, 3 n): readings by the displacements of the system's masters; they cost as much as so many
     more flank nodes.
     Raises FacegearError if the body is not held, ValueError if the flank touches a held or a cut face.
     """
-    stiffness, turn, flank, faces = _turned(body, system)
+    turn, flank, faces = _turned(system)
     kept = np.concatenate([flank, faces])
-    cells, centres = _coupled(system.cells, turn), system.centres
+    parts, centres = [part.seen_by(turn.T) for part in system.parts], system.centres
     if gauges is not None:
-        kept = np.concatenate([kept, len(stiffness.indptr) - 1 + np.arange(gauges.shape[0])])
-        gauges = (gauges @ turn.T).tocsr()
-        stiffness = _with_gauges(stiffness, gauges)
+        kept = np.concatenate([kept, turn.shape[0] + np.arange(gauges.shape[0])])
+        read = (gauges @ turn.T).tocsr()
         at = system.points[turn.indices[turn.indptr[:-1]] // 3]
-        cells, centres = _with_gauge_cells(cells, centres, gauges, at)
-    del system
-    schur = schur_complement(stiffness, kept, cells, centres)
+        parts, centres = _with_gauges(parts, centres, read, at)
+    schur = schur_complement(parts, kept, centres)
     k, ends = flank.size, flank.size + faces.size
     readings, schur = schur[ends:, :ends], schur[:ends, :ends]
     lower = cholesky(schur[:k, :k])
@@ -66,25 +64,27 @@ def condense(body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None
     )
 
 
-def _with_gauges(stiffness: sp.csr_matrix, gauges: sp.csr_matrix) -> sp.csr_matrix:
-    """The stiffness bordered by gauges, whose own part of a Schur complement has no meaning."""
-    return sp.bmat([[stiffness, gauges.T], [gauges, sp.eye(gauges.shape[0])]], format="csr")
+def _with_gauges(
+    parts: list[Part], centres: Array, read: sp.csr_matrix, points: Array
+) -> tuple[list[Part], Array]:
+    """The stiffness bordered by gauges, whose own part of a Schur complement has no meaning.
 
-
-def _coupled(cells: sp.csr_matrix, turn: sp.csr_matrix) -> sp.csr_matrix:
-    """Free dof of each cell, from its nodes (m, n)."""
-    return (sp.kron(cells, np.ones((1, 3)), format="csr") @ abs(turn).T).tocsr()
-
-
-def _with_gauge_cells(
-    cells: sp.csr_matrix, centres: Array, gauges: sp.csr_matrix, points: Array
-) -> tuple[sp.csr_matrix, Array]:
-    """A cell more for each gauge (g, n), of it and the dof at `points` (n, 3) that it reads."""
-    reads = (gauges != 0.0).astype(float)
+    `read` (g, n) are their readings by the n free dof at `points` (n, 3). Each gauge has a cell of its own.
+    """
+    count, free = read.shape
+    reads = (read != 0.0).astype(float)
     number = np.maximum(reads.sum(axis=1), 1.0)
-    return (
-        sp.bmat([[cells, None], [reads, sp.eye(gauges.shape[0])]], format="csr"),
-        np.concatenate([centres, reads @ points / np.asarray(number).reshape(-1, 1)]),
+    middle = np.asarray((reads @ points) / np.asarray(number).reshape(-1, 1))
+    moved = sp.block_array([[None, sp.eye(count)], [read, None]], format="csr")
+    rows = np.arange(count)[:, None] + np.array([0, count])
+    crossed = np.array([[0.0, 1.0], [1.0, 0.0]])
+
+    def bordering(members: Integers) -> Array:
+        return np.tile(crossed, (len(members), 1, 1))
+
+    wider = [part.seen_by(sp.eye(free, free + count, format="csr")) for part in parts]
+    return [*wider, Part(bordering, rows, moved, len(centres) + np.arange(count))], np.concatenate(
+        [centres, middle]
     )
 
 
@@ -110,28 +110,29 @@ def frames_of(normals: Array, held: Mask) -> Array:
     return np.stack([normals, first, np.cross(normals, first)], axis=1)
 
 
-def _turned(body: ElasticBody, system: TiedSystem) -> tuple[sp.csr_matrix, sp.csr_matrix, Integers, Integers]:
-    """Stiffness on the free dof, flank nodes turned to their normals and right faces to the left's frame.
+def _turned(system: TiedSystem) -> tuple[sp.csr_matrix, Integers, Integers]:
+    """Turn of the displacements to the free dof (f, 3 n): those of flank nodes along their normals and axes
+    across, those of right faces in the left's frame.
 
-    Also the turn itself (free dof, 3 n), the positions of the flank's normal dof and of the faces' dof (left,
-    then right) in it.
+    Also the positions of the flank's normal dof and of the faces' dof (left, then right) in it.
     """
     count = len(system.points)
     frames = np.tile(np.eye(3), (count, 1, 1))
     held = system.held.copy()
     frames[system.loaded] = frames_of(system.loaded_normals, held[system.loaded])
     held[system.loaded] = held[system.loaded].sum(axis=1)[:, None] > np.array([3, 0, 1])
-    left, right = system.coarse[body.left], system.coarse[body.right]
-    frames[right] = body.turn.T
+    frames[system.right] = system.turn.T
     turn = sp.bsr_matrix((frames, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count))
     free = ~held.ravel()
-    stiffness = (turn @ system.stiffness.tobsr((3, 3)) @ turn.T).tocsr()[free][:, free]
     turn = turn.tocsr()[free]
+    turn.eliminate_zeros()
     position = np.cumsum(free) - 1
-    faces = np.concatenate([(3 * face[:, None] + np.arange(3)).ravel() for face in (left, right)])
+    faces = np.concatenate(
+        [(3 * face[:, None] + np.arange(3)).ravel() for face in (system.left, system.right)]
+    )
     if np.intersect1d(3 * system.loaded, faces).size:
         raise ValueError("a flank node lies on a cut face")
     left_free, right_free = np.split(free[faces], 2)
     if not np.array_equal(left_free, right_free):
         raise ValueError("the two cut faces are not held alike")
-    return stiffness, turn, position[3 * system.loaded], position[faces[free[faces]]]
+    return turn, position[3 * system.loaded], position[faces[free[faces]]]

@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from contact_bodies import STEEL, pair_design
+from contact_bodies import STEEL, pair_design, stiffness
 from references import against, agrees
 
 from facegear.contact.bodies.compliance import flank_compliance
@@ -51,10 +51,9 @@ def answer(system, nodal):
     force[system.loaded] = (system.spread.T @ nodal)[:, None] * system.loaded_normals
     free = ~system.held.ravel()
     moved = np.zeros(free.size)
-    moved[free] = solve_sparse(
-        sp.csr_matrix(system.stiffness[free][:, free]), -force.ravel()[free][:, None]
-    ).ravel()
-    reaction = (system.stiffness @ moved).reshape(force.shape) + force
+    matrix = stiffness(system.parts)
+    moved[free] = solve_sparse(matrix[free][:, free], -force.ravel()[free][:, None]).ravel()
+    reaction = (matrix @ moved).reshape(force.shape) + force
     return -force, moved.reshape(force.shape), np.where(system.held, reaction, 0.0)
 
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spl
-from contact_bodies import STEEL, block, half_disc
+from contact_bodies import STEEL, block, half_disc, stiffness, stiffness_of
 from references import against, agrees
 from skfem import Basis, ElementHex1, ElementHex2, ElementTetP1, ElementVector, MeshHex1, MeshHex2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from facegear.contact.bodies import dissection, factor
-from facegear.contact.bodies.assembly import Part, stiffness_matrix
+from facegear.contact.bodies.cellwise import coupled
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.elements import mesh_of
 from facegear.contact.bodies.elimination import schur_complement
@@ -27,7 +27,7 @@ from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometr
 from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import pinion_tooth
+from facegear.mesh.tooth import gear_tooth, pinion_tooth
 from validation.contact.sector_model import sector_blocks
 from validation.contact.twin import slab_tooth
 
@@ -53,17 +53,18 @@ def slab():
     return tooth, replace(elastic, held=held)
 
 
-def whole(mesh, element="hex27"):
-    """Stiffness of all elements of a mesh on its own nodes."""
-    count = mesh.doflocs.shape[1]
-    part = Part(mesh, np.arange(mesh.nelements), np.arange(count))
-    return stiffness_matrix([part], count, STEEL, element).tocsr()
+@pytest.fixture(scope="module")
+def ring(slab):
+    """All teeth meshed whole, and their stiffness."""
+    tooth, _ = slab
+    teeth = sector(tooth, tooth.teeth)
+    return teeth, in_tooth_order(*hex_mesh(teeth.nodes, teeth.hexes))
 
 
 def in_tooth_order(mesh, number):
     """Stiffness with its dof in the order of the nodes of which `number` are the mesh's."""
     order = (3 * number[:, None] + np.arange(3)).ravel()
-    return whole(mesh)[order][:, order]
+    return stiffness_of(mesh)[order][:, order]
 
 
 def bent(points):
@@ -87,12 +88,12 @@ def test_batched_assembly_is_scikit_fem_s_own_form_to_rounding(element, kind):
     degree = {"hex27": 5, "hex8": 3, "tet4": 1}[element]
     basis = Basis(mesh_of(mesh, element), ElementVector(kind()), intorder=degree)
     form = linear_elasticity(*lame_parameters(STEEL.young_modulus, STEEL.poisson_ratio))
-    difference = whole(mesh, element) - form.assemble(basis)
+    difference = stiffness_of(mesh, element) - form.assemble(basis)
     agrees(
         "difference of stiffness matrices, N/m",
         difference.data,
         0.0,
-        absolute=1e-13 * np.abs(whole(mesh, element).data).max(),
+        absolute=1e-13 * np.abs(stiffness_of(mesh, element).data).max(),
     )
 
 
@@ -111,7 +112,7 @@ def test_an_element_turned_inside_out_is_refused():
     corner = mesh.doflocs.copy()
     corner[:, 0] = [0.9, 0.9, 0.9]
     with pytest.raises(ValueError, match="1 elements are inverted"):
-        whole(replace(mesh, doflocs=corner))
+        stiffness_of(replace(mesh, doflocs=corner))
 
 
 @against(
@@ -123,11 +124,11 @@ def test_an_element_turned_inside_out_is_refused():
 @pytest.mark.parametrize("cuts", [Refinement(), CUTS, Refinement(2, 2, 3, 1.5)])
 def test_rigid_motion_of_a_refined_body_needs_no_force(cuts):
     system = tied_system(DISC, cuts)
-    points = system.points
+    points, matrix = system.points, stiffness(system.parts)
     rotation = np.cross([0.3, -0.2, 1.0], points)
     for motion in (np.ones_like(points), rotation):
-        force = system.stiffness @ motion.ravel()
-        scale = np.abs(system.stiffness).max() * np.abs(motion).max()
+        force = matrix @ motion.ravel()
+        scale = np.abs(matrix).max() * np.abs(motion).max()
         agrees("force of a rigid motion, N", force, 0.0, absolute=1e-12 * scale)
 
 
@@ -148,7 +149,7 @@ def test_uniform_strain_passes_the_ties_of_the_refined_layer():
     piece = replace(box, flank=box.flank[rows], normals=box.normals[rows])
     system = tied_system(piece, CUTS)
     strain = np.array([[1.0, 0.4, -0.2], [0.4, -0.5, 0.3], [-0.2, 0.3, 0.8]])
-    force = (system.stiffness @ (system.points @ strain).ravel()).reshape(-1, 3)
+    force = (stiffness(system.parts) @ (system.points @ strain).ravel()).reshape(-1, 3)
     p = system.points
     inside = ((p > 1e-9) & (p < np.array([2, 1, 1]) - 1e-9)).all(axis=1)
     assert inside.sum() > 50
@@ -188,13 +189,13 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
     monkeypatch.setattr(dissection, "LEAF", leaf)
     system = tied_system(DISC, CUTS)
     free = ~system.held.ravel()
-    matrix = system.stiffness[free][:, free].tocsr()
-    cells = sp.kron(system.cells, np.ones((1, 3)), format="csr")[:, free]
+    parts = [part.seen_by(sp.eye(free.size, format="csr")[:, free]) for part in system.parts]
+    matrix = stiffness(parts)
     kept = np.arange(90, 0, -3)
     rest = np.setdiff1d(np.arange(matrix.shape[0]), kept)
     across = matrix[rest][:, kept].toarray()
     expected = matrix[kept][:, kept] - across.T @ spl.splu(matrix[rest][:, rest].tocsc()).solve(across)
-    computed = schur_complement(matrix, kept, cells, system.centres)
+    computed = schur_complement(parts, kept, system.centres)
     agrees(
         "Schur complement, N/m",
         computed,
@@ -202,6 +203,7 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
         relative=1e-7,
         absolute=1e-11 * np.abs(expected).max(),
     )
+    cells = coupled(parts, len(system.centres))
     assert (len(dissection.dissection(cells, system.centres, kept)) > 1) == (leaf < 10**6)
 
 
@@ -214,7 +216,7 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
 def test_both_sparse_solvers_give_the_same_displacements(monkeypatch):
     system = tied_system(DISC, CUTS)
     free = ~system.held.ravel()
-    matrix = system.stiffness[free][:, free].tocsr()
+    matrix = stiffness(system.parts)[free][:, free].tocsr()
     unit = np.zeros((matrix.shape[0], 1))
     unit[0] = 1.0
     first = factor.solve_sparse(matrix, unit)
@@ -243,13 +245,11 @@ def test_body_that_nothing_holds_is_refused_in_one_line():
     module="facegear.contact.bodies.compliance",
 )
 @pytest.mark.parametrize("places", [0, 1, -2])
-def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
-    tooth, elastic = slab
+def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, ring, places):
+    (tooth, elastic), (ring, stiffness) = slab, ring
     _, gauges = root_gauges(tooth, STEEL)
     compliance = flank_compliance(elastic, Refinement(), tooth.teeth, 2, "ring", gauges=gauges)
-    ring = sector(tooth, tooth.teeth)
     assert ring.closed
-    stiffness = in_tooth_order(*hex_mesh(ring.nodes, ring.hexes))
     flank = contact_side(spur(), tooth, "right").nodes.ravel()
     normals = elastic.normals.reshape(-1, 3)
     free = np.ones((len(ring.nodes), 3), dtype=bool)
@@ -315,6 +315,40 @@ def test_neighbouring_refined_teeth_move_each_other_alike(slab):
             relative=1e-7,
             absolute=1e-10 * np.abs(there).max(),
         )
+
+
+@pytest.mark.parametrize(("layers", "element"), [(2, "hex27"), (3, "hex27"), (1, "tet4"), (2, "hex8")])
+def test_two_halves_of_a_symmetric_tooth_give_way_as_the_whole_one(layers, element):
+    design = spur()
+    tooth = pinion_tooth(design, MeshSizes(2.5e-3, design.pinion.width / layers, 4e-3))
+    elastic, _ = elastic_tooth(design, tooth, STEEL)
+    _, gauges = root_gauges(tooth, STEEL)
+    cuts = Refinement(2, 2, 1)
+    assert elastic.mirror.size
+    uncut = replace(elastic, mirror=elastic.mirror[:0])
+    halved, expected = (
+        flank_compliance(body, cuts, tooth.teeth, 1, element=element, gauges=gauges)
+        for body in (elastic, uncut)
+    )
+    for name in ("own", "others", "readings"):
+        known = getattr(expected, name)
+        np.testing.assert_allclose(
+            getattr(halved, name), known, rtol=0.0, atol=1e-11 * np.abs(known).max(), err_msg=name
+        )
+
+
+def test_only_a_tooth_that_is_its_own_mirror_image_is_halved():
+    tooth = pinion_tooth(spur(), MeshSizes(2.5e-3, 11e-3, 4e-3))
+    askew = replace(tooth, nodes=tooth.nodes + np.array([1e-9, 0.0, 0.0]) * tooth.nodes[:, 1:2])
+    wide = gear_tooth(spur(), MeshSizes(2.5e-3, 5e-3, 4e-3))
+    assert elastic_tooth(spur(), tooth, STEEL)[0].mirror.size == len(tooth.nodes)
+    for other in (askew, wide):
+        assert elastic_tooth(spur(), other, STEEL)[0].mirror.size == 0
+    body, _ = elastic_tooth(spur(), tooth, STEEL)
+    held = body.held.copy()
+    held[body.flank[0, 0]] = True
+    with pytest.raises(ValueError, match="mirror image"):
+        replace(body, held=held)
 
 
 def test_sectors_bracket_the_ring_and_close_in_on_it(slab):

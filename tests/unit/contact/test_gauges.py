@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contact_bodies import STEEL
+from contact_bodies import STEEL, stiffness_of
 from references import against, agrees
 from skfem import MeshHex1, MeshHex2
 
-from facegear.contact.bodies.assembly import Part, stiffness_matrix
 from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.gauges import gauges_on
 
@@ -28,10 +27,7 @@ def quarter_annulus(across, around):
 
 def displaced(mesh, given, force=None):
     """Displacements (3 n,) with those `given` (n, 3) where not nan, and nodal forces (n, 3)."""
-    count = mesh.doflocs.shape[1]
-    stiffness = stiffness_matrix(
-        [Part(mesh, np.arange(mesh.nelements), np.arange(count))], count, STEEL
-    ).tocsr()
+    stiffness = stiffness_of(mesh)
     free = np.isnan(given).ravel()
     u = np.nan_to_num(given).ravel()
     load = np.zeros(u.size) if force is None else force.ravel()
@@ -180,8 +176,7 @@ def test_notched_strip_has_the_stress_concentration_of_the_charts():
     u = displaced(mesh, given)
     gauges = gauges_on(points, top, STEEL)
     largest = (gauges.normal @ u).max()
-    whole = Part(mesh, np.arange(mesh.nelements), np.arange(len(points)))
-    force = (stiffness_matrix([whole], len(points), STEEL) @ u).reshape(-1, 3)[far, 0].sum()
+    force = (stiffness_of(mesh) @ u).reshape(-1, 3)[far, 0].sum()
     nominal = force / (0.1 * (half - radius))
     part = radius / half
     chart = 3.065 - 3.472 * part + 1.009 * part**2 + 0.405 * part**3

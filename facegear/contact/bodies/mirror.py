@@ -1,0 +1,126 @@
+"""A body that is its own mirror image as two bodies of half the size.
+
+Displacements that are even across the middle plane do not mix with those that are odd. Either kind is known
+from the half before the plane, where it is held along the plane's normal or across it. An element that the
+plane crosses counts half and is not cut, so that both halves together are the whole to rounding.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from facegear.arrays import Array, Integers, Mask
+from facegear.contact.bodies.cellwise import Part
+from facegear.contact.bodies.layer import TiedSystem
+
+IMAGE = np.array([1.0, -1.0, 1.0])
+"""Signs of a vector's mirror image."""
+ON_THE_PLANE = 1e-6
+"""Distance of an element's centre from the middle plane over the width of the body."""
+
+
+@dataclass(frozen=True, eq=False)
+class Half:
+    """The half of a system before its middle plane, for even (`sign` 1) or odd (-1) displacements.
+
+    `fold` (3n, 3h): displacements of all n masters by those of its h masters. `system` is the whole one where
+    there is no such plane, with `sign` 0.
+    """
+
+    system: TiedSystem
+    sign: float
+    fold: sp.csr_matrix
+
+
+def halves(system: TiedSystem) -> list[Half]:
+    """Two halves of a system that is its own mirror image; else the system itself."""
+    if not system.mirror.size:
+        return [Half(system, 0.0, sp.eye(3 * len(system.points), format="csr"))]
+    parts, centres = _before_the_plane(system)
+    return [_half(replace(system, parts=parts, centres=centres), sign) for sign in (1.0, -1.0)]
+
+
+def unfolded(even: Array, odd: Array, shape: tuple[int, int], rows: bool = True) -> Array:
+    """Matrix (..., nu nv, nu nv) of the whole lattice from those of both halves with lattice `shape` (nu, h).
+
+    Without `rows` (..., g, nu nv): only its columns stand for nodes of the lattice.
+    """
+    along = np.minimum(np.arange(2 * shape[1] - 1), np.arange(2 * shape[1] - 1)[::-1])
+    node = (shape[1] * np.arange(shape[0])[:, None] + along).ravel()
+    sign = np.tile(np.where(np.arange(along.size) < shape[1], 1.0, -1.0), shape[0])
+    if not rows:
+        return np.asarray(0.5 * (even[..., node] + sign * odd[..., node]))
+    whole = odd[..., node[:, None], node]
+    whole *= sign[:, None] * sign
+    whole += even[..., node[:, None], node]
+    whole *= 0.5
+    return np.asarray(whole)
+
+
+def _before_the_plane(system: TiedSystem) -> tuple[tuple[Part, ...], Array]:
+    """Elements before the middle plane, those on it with half weight, and the centres of their cells."""
+    width = np.ptp(system.points[:, 1])
+    plane = system.points[:, 1].min() + 0.5 * width
+    chosen = []
+    for part in system.parts:
+        beyond = (part.moved @ system.points.ravel())[part.rows[:, 1::3]].mean(axis=1) - plane
+        members = np.flatnonzero(beyond <= ON_THE_PLANE * width)
+        weights = np.where(beyond[members] < -ON_THE_PLANE * width, 1.0, 0.5)
+        chosen.append((part, members, weights))
+    cells = np.unique(np.concatenate([part.cell[members] for part, members, _ in chosen]))
+    number = np.full(len(system.centres), -1)
+    number[cells] = np.arange(cells.size)
+    parts = tuple(
+        part.chosen(members, weights, number[part.cell[members]]) for part, members, weights in chosen
+    )
+    return parts, system.centres[cells]
+
+
+def _half(system: TiedSystem, sign: float) -> Half:
+    behind, count = system.mirror, len(system.points)
+    on_plane = behind == np.arange(count)
+    before = on_plane | (system.points[:, 1] < system.points[behind, 1])
+    kept = np.flatnonzero(before)
+    number = np.full(count, -1)
+    number[kept] = np.arange(kept.size)
+    image = np.where(before, number, number[behind])
+    held = system.held.copy()
+    held[np.ix_(on_plane, [1] if sign > 0 else [0, 2])] = True
+    values = np.where(before[:, None], 1.0, sign * IMAGE)
+    columns = 3 * image[:, None] + np.arange(3)
+    fold = sp.csr_matrix(
+        (values.ravel(), columns.ravel(), np.arange(3 * count + 1)), shape=(3 * count, 3 * kept.size)
+    )
+    nu, nv = system.surface.shape[:2]
+    lattice = slice(0, nv // 2 + 1)
+    loaded, spread = _loaded(system, before & ~(on_plane & (sign < 0)), image, sign)
+    rows = np.arange(nu * nv).reshape(nu, nv)[:, lattice].ravel()
+    half = TiedSystem(
+        parts=tuple(part.seen_by(fold) for part in system.parts),
+        points=system.points[kept],
+        held=held[kept],
+        coarse=np.where(system.coarse >= 0, np.where(before, number, -1)[system.coarse], -1),
+        surface=system.surface[:, lattice],
+        normals=system.normals[:, lattice],
+        loaded=number[system.loaded[loaded]],
+        loaded_normals=system.loaded_normals[loaded],
+        spread=(system.spread[rows] @ spread).tocsr(),
+        centres=system.centres,
+        left=number[system.left[before[system.left]]],
+        right=number[system.right[before[system.right]]],
+        turn=system.turn,
+        mirror=behind[:0],
+    )
+    return Half(half, sign, fold)
+
+
+def _loaded(system: TiedSystem, moves: Mask, image: Integers, sign: float) -> tuple[Integers, sp.csr_matrix]:
+    """Which of the loaded masters stay in a half, and what they make of the normal displacements of all."""
+    stay = np.flatnonzero(moves[system.loaded])
+    column = np.full(image.max() + 1, -1)
+    column[image[system.loaded[stay]]] = np.arange(stay.size)
+    at = column[image[system.loaded]]
+    rows = np.flatnonzero(at >= 0)
+    values = np.where(moves[system.loaded[rows]], 1.0, sign)
+    return stay, sp.csr_matrix((values, (rows, at[rows])), shape=(system.loaded.size, stay.size))
