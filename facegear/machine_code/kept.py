@@ -35,6 +35,11 @@ def read(name: str) -> bytes | None:
         os.utime(path)
     except OSError:
         return None
+    return checked(stored)
+
+
+def checked(stored: bytes) -> bytes | None:
+    """The content of what write() wrote; None if it is damaged."""
     digest, content = stored[:_DIGEST], stored[_DIGEST:]
     return content if hashlib.sha256(content).digest() == digest else None
 

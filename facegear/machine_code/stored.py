@@ -23,7 +23,7 @@ from numba.core.serialize import dumps
 from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
-from facegear.machine_code import kept
+from facegear.machine_code import kept, shipped
 from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
@@ -61,8 +61,9 @@ class SourcesCache(_Cache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for a signature; None if the caller is to compile it, for others too."""
         target_context.refresh()
-        name = self._name(sig, target_context.codegen())
-        content = kept.read(name)
+        processor = target_context.codegen().magic_tuple()
+        name = self._name(sig, processor)
+        content = kept.read(name) or self._shipped(sig, processor)
         if content is None and name not in self._locks:
             if (lock := _wait(name)) is not None:
                 self._locks[name] = lock
@@ -77,7 +78,7 @@ class SourcesCache(_Cache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled, unless addresses of this process are in it."""
-        name = self._name(sig, data.codegen)
+        name = self._name(sig, data.codegen.magic_tuple())
         if not data.library.has_dynamic_globals:
             kept.write(name, dumps(data._reduce()))
         self._release(name)
@@ -91,7 +92,14 @@ class SourcesCache(_Cache):
     def flush(self) -> None:
         """Numba asks for it; what is kept is never stale."""
 
-    def _name(self, sig: Any, codegen: Any) -> str:
+    def _shipped(self, sig: Any, processor: tuple[str, str, str]) -> bytes | None:
+        """What came with the release for processors like this one."""
+        archive, system = shipped.archive(), processor[0]
+        if archive is None:
+            return None
+        return shipped.read(archive, self._name(sig, (system, shipped.CPU, shipped.FEATURES)))
+
+    def _name(self, sig: Any, processor: tuple[str, str, str]) -> str:
         """The file for a signature: a hash of sources, types, processor, and versions."""
         records = {record for kind in sig for record in _records(kind)}
         files = {sys.modules[record.__module__].__file__ for record in records}
@@ -105,7 +113,7 @@ class SourcesCache(_Cache):
             *sorted(f"{record.__module__}.{record.__qualname__}" for record in records),
             text_of(*sorted(Path(file) for file in files if file is not None)),
             self._text,
-            codegen.magic_tuple(),
+            processor,
             (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__),
         )
         return f"{function.__name__}-{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"

@@ -1,6 +1,7 @@
 """Stored machine code: used again while all kernels are the same, never after one of them changed."""
 
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -19,7 +20,7 @@ from facegear.dynamics.integrator.compiled import pack
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.prepare import _smallest
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.machine_code import kept
+from facegear.machine_code import kept, shipped
 from facegear.machine_code.compiler import for_callers
 from facegear.machine_code.versions import KNOWN, is_known
 from facegear.mesh_law.terms import held_force
@@ -54,9 +55,9 @@ def environment(tmp_path, sources):
     return {**os.environ, "PYTHONPATH": path, kept.VARIABLE: str(tmp_path / "cache")}
 
 
-def printed(tmp_path, sources, of="1.0"):
-    """The kernel's value, and how many kernels were found in the cache."""
-    command = [sys.executable, "-c", PRINT.format(of=of)]
+def printed(tmp_path, sources, of="1.0", before=""):
+    """The kernel's value, and how many kernels were not compiled; `before` is run first."""
+    command = [sys.executable, "-c", before + PRINT.format(of=of)]
     done = subprocess.run(
         command, env=environment(tmp_path, sources), capture_output=True, text=True, check=False
     )
@@ -102,6 +103,37 @@ def test_kernels_run_where_no_cache_can_be_written(tmp_path, clone):
     folder = clone("one")
     (tmp_path / "cache").write_text("a file where the folder should be")
     assert printed(tmp_path, folder) == printed(tmp_path, folder) == ["4.0", "0"]
+
+
+def test_code_of_a_release_is_run_from_an_empty_cache_and_compiled_where_it_is_damaged(
+    tmp_path, clone, monkeypatch
+):
+    if not shipped.can_run(shipped.INSTRUCTIONS):
+        pytest.skip("this processor cannot run what a release holds")
+    folder, archive, cache = clone("release"), tmp_path / shipped.ARCHIVE, tmp_path / "cache"
+    with monkeypatch.context() as other_computer:
+        for name, value in shipped.COMPILING.items():
+            other_computer.setenv(name, value)
+        assert printed(tmp_path, folder) == ["4.0", "0"]
+    shipped.write(archive, cache / "machine_code")
+    shutil.rmtree(cache)
+    lies_there = (
+        "from pathlib import Path; from facegear.machine_code import shipped; "
+        f"shipped.archive = lambda: Path({str(archive)!r}); "
+    )
+    assert printed(tmp_path, folder, before=lies_there) == ["4.0", "1"]
+    assert not cache.exists()
+    whole = archive.read_bytes()
+    archive.write_bytes(whole[:100] + bytes(len(whole) // 2) + whole[100 + len(whole) // 2 :])
+    assert printed(tmp_path, folder, before=lies_there) == ["4.0", "0"]
+
+
+def test_code_of_a_release_is_left_alone_where_the_processor_lacks_an_instruction_or_numba_is_to_use_others(
+    monkeypatch,
+):
+    assert not shipped.can_run(("an instruction of tomorrow",))
+    monkeypatch.setattr(numba.config, "CPU_NAME", "generic")
+    assert not shipped.can_run(())
 
 
 def test_machine_code_used_least_lately_is_removed_first(tmp_path, monkeypatch):
