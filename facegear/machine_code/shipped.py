@@ -41,7 +41,7 @@ def archive() -> Path | None:
 
 
 def can_run(instructions: tuple[str, ...]) -> bool:
-    """Whether the processor has these instructions, and the user has not told numba to use others."""
+    """Whether the processor has these instructions, and the user asks numba for no others."""
     if config.CPU_NAME is not None or config.CPU_FEATURES is not None or not config.ENABLE_AVX:
         return False
     try:
