@@ -5,7 +5,7 @@ held against plain running: 20 000 further periods by our own integrator, and th
 start by closed-form pieces that share nothing with it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -14,6 +14,7 @@ import pandas as pd
 from numba import njit
 
 from facegear.arrays import Array
+from facegear.dynamics.abreast.many import run_many
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
@@ -25,6 +26,8 @@ LOOKED_AT = 2_048
 """Periods at the end of a plain run on which its class is read off."""
 SAME = 1e-5
 """Distance over the length scale within which two states are one."""
+TOGETHER = 50
+"""Oscillators judged at a time."""
 LONGEST = 512
 PARTS = 64
 """Looks for a contact switch in each period of the closed-form run."""
@@ -78,21 +81,38 @@ def random_oscillators(count: int, seed: int = 13) -> Iterator[Oscillator]:
         yield Oscillator(*numbers, *start.tolist())
 
 
-def judge(oscillator: Oscillator, settings: Settings) -> dict[str, object]:
-    """One row: the label with and without refinement, and what plain running says of both.
+def judge(oscillators: Sequence[Oscillator], settings: Settings) -> list[dict[str, object]]:
+    """One row each: the label with and without refinement, and what plain running says of both.
 
     agrees: the motion after FURTHER periods is the one named, on the same orbit if it is periodic. reached:
     the undisturbed run from the start comes to that orbit. sensitive: that run's own end changes when its
-    tolerance is ten times tighter, so that nobody's is the only right one.
+    tolerance is ten times tighter, so that nobody's is the only right one. The plain runs of all oscillators
+    go side by side.
     """
-    response = steady_state(oscillator.system, oscillator.speed, settings, oscillator.start)
-    plain = steady_state(
-        oscillator.system, oscillator.speed, replace(settings, refine=False), oscillator.start
+    tolerance, starts = settings.tolerance, [oscillator.start for oscillator in oscillators]
+    responses = [_response(oscillator, settings) for oscillator in oscillators]
+    plain = [_response(oscillator, replace(settings, refine=False)) for oscillator in oscillators]
+    states = [response.state for response in responses]
+    ends = (
+        map(end_of, plain_runs(oscillators, states, FURTHER, tolerance)),
+        map(end_of, plain_runs(oscillators, starts, FURTHER, tolerance)),
+        map(end_of, plain_runs(oscillators, starts, FURTHER, 0.1 * tolerance)),
     )
-    tolerance = settings.tolerance
-    later = end_of(plain_run(oscillator, response.state, FURTHER, tolerance))
-    direct = end_of(plain_run(oscillator, oscillator.start, FURTHER, tolerance))
-    tighter = end_of(plain_run(oscillator, oscillator.start, FURTHER, 0.1 * tolerance))
+    return [_row(*seen) for seen in zip(oscillators, responses, plain, *ends, strict=True)]
+
+
+def _response(oscillator: Oscillator, settings: Settings) -> SteadyState:
+    return steady_state(oscillator.system, oscillator.speed, settings, oscillator.start)
+
+
+def _row(
+    oscillator: Oscillator,
+    response: SteadyState,
+    plain: SteadyState,
+    later: "OscillatorEnd",
+    direct: "OscillatorEnd",
+    tighter: "OscillatorEnd",
+) -> dict[str, object]:
     closed = end_of(closed_form_run(oscillator, FURTHER))
     return {
         **vars(oscillator),
@@ -142,11 +162,15 @@ def _passes(states: Array, state: State) -> bool:
     return bool(np.abs(states[-LONGEST:] - here).max(axis=1).min() <= 10.0 * SAME)
 
 
-def plain_run(oscillator: Oscillator, start: State, periods: int, tolerance: float) -> Array:
-    """States (periods, 2) by time at the ends of the periods, by our integrator and nothing else."""
-    integrator = Integrator(oscillator.system, oscillator.speed, tolerance)
-    ends = integrator.run(integrator.by_phase(start), periods).ends
-    return ends[:, :, 0] * np.array([1.0, oscillator.speed])
+def plain_runs(
+    oscillators: Sequence[Oscillator], starts: Sequence[State], periods: int, tolerance: float
+) -> list[Array]:
+    """States (LOOKED_AT, 2) by time at the ends of the last periods, by our integrator and nothing else."""
+    integrators = [Integrator(each.system, each.speed, tolerance) for each in oscillators]
+    by_phase = [each.by_phase(start) for each, start in zip(integrators, starts, strict=True)]
+    runs = run_many(integrators, by_phase, periods, kept=LOOKED_AT)
+    speeds = [oscillator.speed for oscillator in oscillators]
+    return [run.ends[:, :, 0] * np.array([1.0, speed]) for run, speed in zip(runs, speeds, strict=True)]
 
 
 def closed_form_run(oscillator: Oscillator, periods: int) -> Array:
@@ -237,10 +261,13 @@ def _moved(terms: _Terms, x: float, v: float, side: float, now: float, ahead: fl
 
 def suite(count: int, settings: Settings, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
     """judge() for `count` random oscillators, one row each."""
-    rows = []
-    for oscillator in random_oscillators(count):
-        rows.append(judge(oscillator, settings))
-        step()
+    rows: list[dict[str, object]] = []
+    oscillators = list(random_oscillators(count))
+    for begin in range(0, count, TOGETHER):
+        of_turn = oscillators[begin : begin + TOGETHER]
+        rows += judge(of_turn, settings)
+        for _ in of_turn:
+            step()
     return pd.DataFrame(rows)
 
 

@@ -19,12 +19,11 @@ class Lanes(NamedTuple):
 
     values (P,): the machines' rows. y, deflection, law, error, load (rows, coordinates, contacts or kinds):
     Taylor coefficients. force, side, level, active, acting, edge (contacts,): as in the single integrator's
-    Work, with one piece of the law. scaled, bernstein (rows,), low, high: of one contact's deflection over
-    the step. first: fraction of the step up to a switch. phase in the period and length of the step, rad.
-    ahead: from the start of the step to a sample, sample (coordinates,). number of the machine in a lane or
+    Work, with one piece of the law. scaled (rows,): terms of one contact's deflection over the step, terms:
+    of its way from a level. first: fraction of the step up to a switch. phase in the period and length of the
+    step, rad; ahead: from its start to a sample, sample (coordinates,). number of the machine in a lane or
     NONE; period: periods it has run; taken, sampled: steps and samples of this one. parts, angles: of Fourier
-    series. powers, conversion, conversion_less: tables that are only read. polynomial, subdivision: of one
-    lane's zeros.
+    series. powers, conversion: tables that are only read. polynomial, subdivision: of one lane's zeros.
     """
 
     order: int
@@ -41,9 +40,7 @@ class Lanes(NamedTuple):
     acting: Array
     edge: Array
     scaled: Array
-    bernstein: Array
-    low: Array
-    high: Array
+    terms: Array
     phase: Array
     length: Array
     ahead: Array
@@ -58,7 +55,6 @@ class Lanes(NamedTuple):
     angles: Array
     polynomial: Array
     conversion: Array
-    conversion_less: Array
     subdivision: Array
 
 
@@ -75,20 +71,17 @@ def make_lanes(structure: Structure, order: int) -> Lanes:
         error=aligned(rows, structure.error_kinds, WIDTH),
         load=aligned(rows, n, WIDTH),
         scaled=aligned(rows, WIDTH),
-        low=aligned(WIDTH),
-        high=aligned(WIDTH),
         phase=aligned(WIDTH),
         length=aligned(WIDTH),
         ahead=aligned(WIDTH),
         first=aligned(WIDTH),
         sample=aligned(n, WIDTH),
-        bernstein=aligned(rows, WIDTH),
+        terms=aligned(rows, WIDTH),
         powers=fourier_scratch(terms, rows).powers,
         parts=aligned(2, terms, WIDTH),
         angles=aligned(2, terms, WIDTH),
         polynomial=aligned(rows),
         conversion=bernstein_matrix(order),
-        conversion_less=bernstein_matrix(order - 1),
         subdivision=aligned(MAX_DEPTH + 2, rows),
         force=aligned(m, WIDTH),
         side=aligned(m, WIDTH),

@@ -1,7 +1,7 @@
 """Which motions exist at a speed: random starts, the fraction of them that ends on each, and what is new."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -24,7 +24,11 @@ ALONG = 0.2
 REAL = 1e-9
 """Rounding of the fraction of a chord."""
 BLOCK = 8
+"""Mesh periods after which a run is held against the known orbits."""
 PATIENCE = 40
+"""Blocks for which it may come to one of them."""
+ROUND = 4
+"""Blocks after which runs that have come to one make room."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,19 +69,23 @@ def explore(
 
     Motions that are not periodic count by their class.
     """
-    u = float(np.log(value))
-    motions: list[SettledMotion] = []
-    for start in starts:
-        z, index = _run(period_map, u, start, motions)
-        if index is None:
-            motion = _settled(period_map, u, z, settings)
-            index = next(
-                (i for i, other in enumerate(motions) if _same(period_map, u, motion, other)), len(motions)
-            )
-            if index == len(motions):
-                motions.append(motion)
-        motions[index] = replace(motions[index], count=motions[index].count + 1)
-        step()
+    runs = _Runs(period_map, float(np.log(value)), settings)
+    paths = [[start] for start in starts]
+    while paths:
+        runs.go_on(paths)
+        waiting = []
+        for path in paths:
+            index = runs.reached(path)
+            if index is None:
+                waiting.append(path)
+            else:
+                runs.add(index)
+                step()
+        paths = waiting
+        if paths and len(paths[0]) > runs.patience:
+            runs.add(runs.settle(paths.pop(0)[-1]))
+            step()
+    motions = runs.motions
     motions.sort(key=lambda motion: -motion.count)
     fractions = [motion.count / len(starts) for motion in motions]
     return [
@@ -93,24 +101,60 @@ def box(period_map: PeriodMap, value: float, centre: Array, half: Array, count: 
     return centre + half * random.uniform(-1.0, 1.0, size=(count, 2 * size))
 
 
-def _run(period_map: PeriodMap, u: float, z: Array, motions: list[SettledMotion]) -> tuple[Array, int | None]:
-    """Run until a known stable orbit is reached, or patience ends."""
-    block = period_map.over(BLOCK)
-    known = [
-        (i, image)
-        for i, motion in enumerate(motions)
-        if motion.point is not None and BLOCK % motion.period == 0
-        for image in period_map.over(motion.period).images(motion.z, u)
-    ]
-    before = np.full(len(known), np.inf)
-    for _ in range(PATIENCE if known else 1):
-        z = z + block.gap(z, u)
-        distance = np.array([np.abs(z - image).max() for _, image in known])
-        close = np.flatnonzero((distance < NEAR) & (distance < before))
-        if close.size:
-            return z, known[close[0]][0]
-        before = distance
-    return z, None
+@dataclass(eq=False)
+class _Runs:
+    """Runs at one parameter's logarithm u, and the motions that they have come to.
+
+    A path holds the weighted states (2 n,) of a run at the ends of blocks of periods, the start first.
+    images: states of stable orbits, each with the number of its motion.
+    """
+
+    period_map: PeriodMap
+    u: float
+    settings: Settings
+    motions: list[SettledMotion] = field(default_factory=list)
+    images: list[tuple[int, Array]] = field(default_factory=list)
+
+    @property
+    def patience(self) -> int:
+        """Blocks for which a run may come to a known orbit."""
+        return PATIENCE if self.images else 1
+
+    def go_on(self, paths: list[list[Array]]) -> None:
+        """Run all paths, side by side, some blocks further, but no longer than patience allows."""
+        blocks = min(ROUND, self.patience + 1 - min(len(path) for path in paths))
+        running = [path for path in paths if len(path) + blocks <= self.patience + 1]
+        if blocks < 1 or not running:
+            return
+        states = np.array([path[-1] for path in running])
+        for path, ends in zip(running, self.period_map.ends(states, self.u, BLOCK * blocks), strict=True):
+            path.extend(ends[BLOCK - 1 :: BLOCK])
+
+    def reached(self, path: list[Array]) -> int | None:
+        """The motion whose orbit a path comes near to, and nearer still."""
+        if not self.images:
+            return None
+        apart = np.array([[np.abs(z - image).max() for _, image in self.images] for z in path[1:]])
+        before = np.vstack([np.full(len(self.images), np.inf), apart[:-1]])
+        close = np.argwhere((apart < NEAR) & (apart < before))
+        return self.images[close[0, 1]][0] if len(close) else None
+
+    def settle(self, z: Array) -> int:
+        """The motion that a run comes to by itself."""
+        motion = _settled(self.period_map, self.u, z, self.settings)
+        for number, other in enumerate(self.motions):
+            if _same(self.period_map, self.u, motion, other):
+                return number
+        self.motions.append(motion)
+        number = len(self.motions) - 1
+        if motion.point is not None and BLOCK % motion.period == 0:
+            images = self.period_map.over(motion.period).images(motion.z, self.u)
+            self.images += [(number, image) for image in images]
+        return number
+
+    def add(self, number: int) -> None:
+        """Count one more start that ends on a motion."""
+        self.motions[number] = replace(self.motions[number], count=self.motions[number].count + 1)
 
 
 def _settled(period_map: PeriodMap, u: float, z: Array, settings: Settings) -> SettledMotion:

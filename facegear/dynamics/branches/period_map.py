@@ -6,6 +6,7 @@ from typing import cast
 import numpy as np
 
 from facegear.arrays import Array, Mask
+from facegear.dynamics.abreast.many import run_many
 from facegear.dynamics.branches.extrema import extrema
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.integrator.integrator import Integrator
@@ -114,6 +115,13 @@ class PeriodMap:
         integrator = self.integrator(u)
         end = integrator.run(self._by_phase(integrator, z), self.period, fine=True).state
         return self.weights(integrator) * end.ravel() - z
+
+    def ends(self, states: Array, u: float, periods: int) -> list[Array]:
+        """Weighted states (periods, 2 n) at the ends of mesh periods, from each of some states (S, 2 n)."""
+        integrator = self.integrator(u)
+        starts = [self._by_phase(integrator, z) for z in states]
+        runs = run_many([integrator] * len(starts), starts, periods)
+        return [self.weights(integrator) * run.ends.reshape(periods, -1) for run in runs]
 
     def linear(self, z: Array, u: float) -> Linear:
         """The map with its matrix and its slope at a state."""

@@ -23,7 +23,7 @@ from validation.dynamics.oscillators import (
     closed_form_run,
     end_of,
     judge,
-    plain_run,
+    plain_runs,
     random_oscillators,
 )
 
@@ -64,15 +64,17 @@ def test_a_spiral_that_turns_by_parts_of_a_period_is_period_1_without_refinement
     module="facegear.dynamics.integrator.integrator",
 )
 def test_closed_form_pieces_and_taylor_steps_agree_before_chaos_parts_them():
-    for oscillator in random_oscillators(6):
-        ours = plain_run(oscillator, oscillator.start, 8, 1e-13)
+    oscillators = list(random_oscillators(6))
+    starts = [oscillator.start for oscillator in oscillators]
+    runs = plain_runs(oscillators, starts, 8, 1e-13)
+    for oscillator, ours in zip(oscillators, runs, strict=True):
         agrees(
             "motion over eight periods", ours, closed_form_run(oscillator, 8), relative=1e-7, absolute=1e-7
         )
 
 
 def test_labels_of_random_oscillators_hold_for_20_000_further_periods():
-    rows = [judge(oscillator, Settings()) for oscillator in random_oscillators(8)]
+    rows = judge(list(random_oscillators(8)), Settings())
     assert all(row["agrees"] or row["label"] == Motion.NOT_SETTLED for row in rows)
     assert sum(row["label"] == Motion.NOT_SETTLED for row in rows) == 0
     assert all(row["refinement_agrees"] for row in rows)
