@@ -33,15 +33,14 @@ def bearing_history(model: Model, response: SteadyState) -> Array:
     outside and is no bearing's. With clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its
     damping is beta dF/dt.
     """
-    basis, linear = model.reduced.basis, model.machine.linear
+    basis, linear, coordinates = model.reduced.basis, model.machine.linear, response.coordinates
     lag, rings = linear.bearing_damping, linear.rings
     rate, held = velocities(response), linear.translations
     forces = _held_by(model, response, rate, held.ravel()).reshape(-1, *held.shape)
-    for places, i, spring, clearance in zip(
-        linear.ring_coordinates, rings.body, rings.stiffness, rings.clearance, strict=True
-    ):
-        rows = basis[places].T
-        forces[:, i, :2] = _ring_force(response.coordinates @ rows, rate @ rows, spring, clearance, lag)
+    if rings.body.size:
+        rows = basis[linear.ring_coordinates.ravel()].T
+        moved, moving = ((motion @ rows).reshape(-1, rings.body.size, 2) for motion in (coordinates, rate))
+        forces[:, rings.body, :2] = _ring_force(moved, moving, rings.stiffness, rings.clearance, lag)
     return forces
 
 
@@ -70,13 +69,16 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     return shaft_bearing_loads(line, forces, moments)
 
 
-def _ring_force(displacement: Array, speed: Array, stiffness: float, clearance: float, lag: float) -> Array:
-    """Force of a bearing with clearance at displacements (K, 2) and speeds (K, 2)."""
-    distance = np.maximum(np.hypot(displacement[:, :1], displacement[:, 1:]), clearance)
+def _ring_force(displacement: Array, speed: Array, stiffness: Array, clearance: Array, lag: float) -> Array:
+    """Forces (K, R, 2) of R bearings with clearance at displacements and speeds (K, R, 2)."""
+    (x, y), (u, v) = np.moveaxis(displacement, -1, 0), np.moveaxis(speed, -1, 0)
+    distance = np.maximum(np.hypot(x, y), clearance)
     fraction = 1.0 - clearance / distance
-    radial = (displacement * speed).sum(axis=1, keepdims=True) / distance**2
-    damping = (fraction * speed + (1.0 - fraction) * radial * displacement) * (distance > clearance)
-    return stiffness * (fraction * displacement + lag * damping)
+    turned = (1.0 - fraction) * (x * u + y * v) / distance**2
+    touching = lag * (distance > clearance)
+    both = ((x, u), (y, v))
+    along = [fraction * place + (fraction * rate + turned * place) * touching for place, rate in both]
+    return stiffness[:, None] * np.stack(along, axis=-1)
 
 
 def velocities(response: SteadyState) -> Array:

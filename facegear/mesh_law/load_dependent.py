@@ -17,6 +17,8 @@ from facegear.mesh_law.law import Held
 
 LOOKS = 8
 """Phases for each harmonic at which slopes are checked."""
+KEPT = 2
+"""Sets of phases at which the coefficients of the pieces are kept."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,23 +154,40 @@ class LoadDependentLaw:
 
         Only pieces that contacts are pressed into are evaluated.
         """
-        angle = 2.0 * np.pi * np.outer(np.arange(self._coefficients.shape[-1]), cycles)
-        waves = np.stack([np.sin(angle), np.cos(angle)])
-        values = np.zeros(beyond.shape)
-        for m, kind in enumerate(self.kind):
+        pieces, values = self._pieces_at(cycles), np.zeros(beyond.shape)
+        for m, kind in enumerate(self.kind.tolist()):
             ahead = np.abs(beyond[..., m])
-            piece = np.searchsorted(self._levels[kind], ahead, side="right") - 1
             pressed = ahead > 0.0
-            for number, begin in enumerate(self._levels[kind]):
+            if not pressed.any():
+                continue
+            piece = np.searchsorted(self._levels[kind], ahead, side="right") - 1
+            for number in range(piece.min(where=pressed, initial=len(self._levels[kind])), piece.max() + 1):
                 here = pressed & (piece == number)
                 if here.any():
-                    series = self._coefficients[kind, number]
-                    coefficients = series[:, 0] @ waves[0] + series[:, 1] @ waves[1]
-                    np.copyto(values[..., m], law(ahead - begin, coefficients), where=here)
+                    begin = self._levels[kind, number]
+                    np.copyto(values[..., m], law(ahead - begin, pieces(kind, number)), where=here)
         return values
+
+    def _pieces_at(self, cycles: Array) -> Callable[[int, int], Array]:
+        """Coefficients (4, K) of the pieces of each kind at some phases; the last ones are kept."""
+        phases, kept = cycles.tobytes(), self._pieces
+        pieces = kept.get(phases)
+        if pieces is None:
+            for old in list(kept)[: max(len(kept) + 1 - KEPT, 0)]:
+                kept.pop(old, None)
+            pieces = kept[phases] = _Pieces(self._coefficients, cycles)
+        return pieces
+
+    @cached_property
+    def _pieces(self) -> dict[bytes, "_Pieces"]:
+        return {}
 
     def mean(self) -> "LoadDependentLaw":
         """Mean forces and slopes at every level."""
+        return self._mean
+
+    @cached_property
+    def _mean(self) -> "LoadDependentLaw":
         return self._changed(
             [(table.forces[..., :1], table.slopes[..., :1]) for table in self.tables], self.kind
         )
@@ -214,6 +233,22 @@ class LoadDependentLaw:
         shapes = dict.fromkeys(LoadDependentSeries._fields, (rows, width))
         shapes |= {"four": (rows, LANES), "filled": (1, width)}
         return LoadDependentSeries(**{name: aligned(*shape) for name, shape in shapes.items()})
+
+
+class _Pieces:
+    """Coefficients (4, K) of cubics at K phases, of series (kinds, L, 4, 2, harmonics + 1), as asked for."""
+
+    def __init__(self, series: Array, cycles: Array) -> None:
+        angle = 2.0 * np.pi * np.outer(np.arange(series.shape[-1]), cycles)
+        self.series, self.sine, self.cosine = series, np.sin(angle), np.cos(angle)
+        self.kept: dict[tuple[int, int], Array] = {}
+
+    def __call__(self, kind: int, number: int) -> Array:
+        """Those of one piece of one kind."""
+        if (kind, number) not in self.kept:
+            own = self.series[kind, number]
+            self.kept[kind, number] = own[:, 0] @ self.sine + own[:, 1] @ self.cosine
+        return self.kept[kind, number]
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:

@@ -13,13 +13,14 @@ from functools import lru_cache
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.by_content import kept_by_content
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
-from facegear.mesh_law.load_dependent import LoadDependentLaw, lagging, load_dependent_law
+from facegear.mesh_law.load_dependent import ForceTable, LoadDependentLaw, lagging, load_dependent_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
-from facegear.transmission.machine import Machine, OpenFlanks
+from facegear.transmission.machine import FlankTables, Machine, OpenFlanks
 from facegear.transmission.soft_tables import softened
 
 NO_LOAD = 1e-9
@@ -39,7 +40,7 @@ def flank_gaps(machine: Machine) -> Array:
 
 def stiffness_series(machine: Machine) -> list[Harmonics]:
     """k of every flank over the reference's mesh cycle, N/m."""
-    return _both(list(machine.mesh_stiffness), machine.phases)
+    return list(_both(machine.mesh_stiffness, machine.phases))
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +93,10 @@ def flank_law(machine: Machine) -> MeshLaw:
     """The law of all drive flanks, then all back flanks: the machine's own, or else its mesh stiffness."""
     if machine.law is not None:
         return machine.law
-    return linear_law(stiffness_series(machine)) if machine.tables is None else _tables_of_flanks(machine)
+    if machine.tables is None:
+        return _linear_law(machine.mesh_stiffness, machine.phases)
+    gears, own = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
+    return _law_of_tables(machine.tables, gears, own, machine.softening, tuple(_lags(machine)))
 
 
 def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
@@ -108,20 +112,31 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
     return np.asarray((flank_forces > last[where]).mean(axis=0))
 
 
-def _tables_of_flanks(machine: Machine) -> LoadDependentLaw:
-    """The tables of all flanks with their softening, each as its mesh passes through the cycle."""
-    assert machine.tables is not None
-    gears = [machine.tables[g] for _, g in machine.layout.meshes]
-    factors = machine.imperfections.stiffness.tolist()
-    lags = _lags(machine)
-    mirrored_backs = [tables.back.mirrored() for tables in machine.tables]
-    backs = [mirrored_backs[g] for _, g in machine.layout.meshes]
+@kept_by_content(4)
+def _linear_law(stiffness: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
+    return linear_law(_both(stiffness, phases))
+
+
+@kept_by_content(4)
+def _law_of_tables(
+    tables: tuple[FlankTables, ...],
+    gears: tuple[int, ...],
+    factors: Array,
+    softening: Array | None,
+    lags: tuple[float, ...],
+) -> LoadDependentLaw:
+    """The tables of all flanks with their softening, each as its mesh passes through the cycle.
+
+    gears (meshes,): the number of each mesh's gear; factors, softening (m/N), lags (mesh periods) of meshes.
+    """
+    mirrored_backs = [both.back.mirrored() for both in tables]
+    drives, backs = [tables[g].drive for g in gears], [mirrored_backs[g] for g in gears]
     flanks = [
         table if factor == 1.0 else table.scaled(factor)
-        for table, factor in zip([*(both.drive for both in gears), *backs], 2 * factors, strict=True)
+        for table, factor in zip([*drives, *backs], 2 * factors.tolist(), strict=True)
     ]
-    if machine.softening is not None:
-        soft = 2 * machine.softening.tolist()
+    if softening is not None:
+        soft = 2 * softening.tolist()
         flanks = [softened(table, compliance) for table, compliance in zip(flanks, soft, strict=True)]
     return load_dependent_law(lagging(flanks, 2 * lags))
 
@@ -136,10 +151,19 @@ def line_law(machine: Machine) -> MeshLaw:
     """The law of meshes whose two flanks share one line of action, as equation (13) is printed."""
     if machine.law is not None:
         return machine.law
-    lags = _lags(machine)
+    lags = tuple(_lags(machine))
     if machine.tables is None:
-        return linear_law([machine.stiffness.shifted(lag) for lag in lags])
-    drive = [machine.tables[g].drive for _, g in machine.layout.meshes]
+        return _line_linear_law(machine.stiffness, lags)
+    return _line_law_of_tables(tuple(machine.tables[g].drive for _, g in machine.layout.meshes), lags)
+
+
+@kept_by_content(4)
+def _line_linear_law(stiffness: Harmonics, lags: tuple[float, ...]) -> MeshLaw:
+    return linear_law([stiffness.shifted(lag) for lag in lags])
+
+
+@kept_by_content(4)
+def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) -> MeshLaw:
     return load_dependent_law(lagging(drive, lags))
 
 
@@ -147,7 +171,7 @@ def error_series(machine: Machine) -> list[Harmonics]:
     """e(t) of every flank over the reference's mesh cycle, m, without what is constant or slow."""
     own = machine.imperfections.series
     shapes = [own.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
-    return _both(shapes, machine.error_phases)
+    return list(_both(tuple(shapes), machine.error_phases))
 
 
 def constant_errors(machine: Machine) -> Array:
@@ -239,11 +263,12 @@ def mirrored(series: Harmonics) -> Harmonics:
     return Harmonics(-series.a, series.b)
 
 
-def _both(drive: list[Harmonics], phases: Array) -> list[Harmonics]:
+@kept_by_content(8)
+def _both(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
     """Drive flanks and their mirror images, each as its mesh passes through the cycle."""
     flanks = [*drive, *(mirrored(own) for own in drive)]
     lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
-    return [own.shifted(lag) for own, lag in zip(flanks, lags, strict=True)]
+    return tuple(own.shifted(lag) for own, lag in zip(flanks, lags, strict=True))
 
 
 def _flanks(tangential: Array, separating: Array) -> Array:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from facegear.arrays import Array, Mask
+from facegear.arrays import Array, Integers, Mask
+from facegear.by_content import kept_by_content
 from facegear.dynamics.integrator.system import System
 from facegear.harmonics.series import stacked_values
 from facegear.mesh_law.law import beyond_edges, past_levels
@@ -19,13 +20,18 @@ def each_deflection(system: System, coordinates: Array, per_period: int) -> Arra
     """Deflections G y - e of samples (K, n) that start with a mesh period, one column for each mesh or
     flank.
     """
-    cycles = np.arange(per_period) / per_period
     contacts = system.contacts
     # Period by period: one large product would start threads, which then wait at full speed.
     by_period = coordinates.reshape(-1, per_period, coordinates.shape[1])
     deflections = by_period @ system.mesh_jacobian[:contacts].T
-    deflections -= stacked_values(system.error, cycles)[:, system.error_kind[:contacts]]
+    deflections -= _errors(system.error, system.error_kind[:contacts], per_period)
     return deflections.reshape(len(coordinates), -1)
+
+
+@kept_by_content(2)
+def _errors(series: Array, kind: Integers, per_period: int) -> Array:
+    """Errors (per_period, contacts) of the kinds of contacts at the samples of a mesh period, m."""
+    return np.asarray(stacked_values(series, np.arange(per_period) / per_period)[:, kind])
 
 
 def by_mesh(system: System, each: Array) -> Array:

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from facegear.arrays import Array, ComplexArray
+from facegear.by_content import kept_by_content
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.reduction import Reduced, reduce
@@ -98,17 +99,21 @@ class SteadyState:
     @cached_property
     def forces(self) -> Array:
         """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
-        each = self.deflections
-        if self.system.two_flanks:
-            each = each_deflection(self.system, self.coordinates, self.per_period)
-        return mesh_forces(self.system, each, self.per_period)
+        return mesh_forces(self.system, self._each, self.per_period)
+
+    @cached_property
+    def _each(self) -> Array:
+        """Deflections of each mesh or flank."""
+        if not self.system.two_flanks:
+            return self.deflections
+        return each_deflection(self.system, self.coordinates, self.per_period)
 
     @property
     def past_law(self) -> Array:
         """Fraction of samples (meshes,) at which a mesh is pressed in past the last level of its law."""
         if self.system.law.straight:
             return np.zeros(self.deflections.shape[1])
-        return past_law(self.system, each_deflection(self.system, self.coordinates, self.per_period))
+        return past_law(self.system, self._each)
 
     @property
     def moments(self) -> Moments:
@@ -141,8 +146,14 @@ class Model:
 
 def build_model(machine: Machine) -> Model:
     """Reduce a machine once for all speeds."""
-    reduced = reduce(machine.linear, machine.layout.contacts, machine.pushes)
+    linear = machine.linear
+    any_clearance = replace(linear.rings, clearance=np.ones_like(linear.rings.clearance))
+    reduced = _reduced(replace(linear, rings=any_clearance), machine.layout.contacts, machine.pushes)
     return Model(machine, reduced, machine_system(machine, reduced))
+
+
+_reduced = kept_by_content(4)(reduce)
+"""What has the same masses, bearings and contacts is reduced once, whatever its errors and clearances."""
 
 
 def static_start(model: Model) -> State:

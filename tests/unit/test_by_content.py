@@ -1,0 +1,65 @@
+"""What machines of one study have in common is computed once, and nothing else counts as common."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from facegear.by_content import content, kept_by_content
+from facegear.dynamics.integrator.reduction import reduce
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.kinematics import GEOMETRIC
+from tests.helpers.lumped_machines import make_layout, make_machine
+
+
+def test_a_pure_function_is_evaluated_once_for_arguments_that_say_the_same():
+    calls = []
+
+    @kept_by_content(2)
+    def total(values, names):
+        calls.append(names)
+        return values.sum()
+
+    assert total(np.arange(3.0), ("a",)) == total(np.arange(3.0), ("a",)) == 3.0
+    assert len(calls) == 1
+    assert total(np.array([0.0, 1.0, 3.0]), ("a",)) == 4.0
+    total(np.arange(3.0), ("b",))
+    assert len(calls) == 3
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        Harmonics(np.array([0.0, 1.0]), np.array([2.0, np.nextafter(3.0, 4.0)])),
+        Harmonics(np.array([0.0, 1.0, 0.0]), np.array([2.0, 3.0, 0.0])),
+        (np.array([0.0, 1.0]), np.array([2.0, 3.0])),
+    ],
+)
+def test_a_number_a_shape_or_a_type_that_differs_makes_another_content(other):
+    series = Harmonics(np.array([0.0, 1.0]), np.array([2.0, 3.0]))
+    assert content(series) == content(Harmonics(series.a.copy(), series.b.copy()))
+    assert content(series) != content(other)
+
+
+def test_machines_that_differ_in_errors_and_clearances_share_reduction_and_law_and_nothing_that_differs():
+    layout = make_layout(kinematics=GEOMETRIC)
+    models = []
+    for clearance in (0.0, 10e-6, 20e-6):
+        flaws = replace(
+            perfect(layout),
+            bearing_clearance=np.full(len(layout.pinions), clearance),
+            position=np.full((len(layout.pinions), 2), 0.1 * clearance),
+        )
+        models.append(build_model(make_machine(layout, imperfections=flaws)))
+    tight, narrow, wide = models
+    assert narrow.reduced is wide.reduced and narrow.system.law is wide.system.law
+    assert tight.reduced is not wide.reduced
+    assert (wide.system.ring_clearance == 20e-6).all() and (narrow.system.ring_clearance == 10e-6).all()
+    assert (wide.system.upper != narrow.system.upper).any()
+    for model in models:
+        machine = model.machine
+        alone = reduce(machine.linear, layout.contacts, machine.pushes)
+        for name in ("basis", "mesh_jacobian", "omega_squared", "damping", "load"):
+            assert np.array_equal(getattr(alone, name), getattr(model.reduced, name)), name
