@@ -7,7 +7,9 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.bearing_forces import bearing_history
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.guide import Guide, guide_of
 from facegear.dynamics.steady_state.simulate import build_model
+from facegear.errors import NotConverged
 from facegear.load_sharing.bearings import bearing_mass
 from facegear.load_sharing.groups import load_groups
 from facegear.load_sharing.hardest_cycles import hardest_cycles
@@ -61,11 +63,18 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
 
 
 def dynamic_quantities(
-    machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions
+    machine: Machine,
+    speed_rpm: float,
+    settings: Settings,
+    options: SharingOptions,
+    guide: Guide | None = None,
 ) -> Found:
-    """Of the motion reached from static equilibrium. Raises NotConverged naming the speed."""
+    """Of the motion reached from static equilibrium; `guide`: an orbit of a like machine.
+
+    Raises NotConverged naming the speed.
+    """
     model = build_model(machine)
-    response = measured_motion(model, speed_rpm, settings, options)
+    response = measured_motion(model, speed_rpm, settings, options, guide)
     forces = carried(response.forces)
     flanks = np.concatenate([np.maximum(forces, 0.0), np.maximum(-forces, 0.0)], axis=1)
     cycles = np.arange(len(flanks)) / response.per_period
@@ -83,6 +92,15 @@ def dynamic_quantities(
     if machine.tables is not None:
         named[PAST_LAW] = float(response.past_law.max())
     return named, loads
+
+
+def orbit_of(machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions) -> Guide | None:
+    """The orbit that a machine comes to from static equilibrium as a guide for like ones, if it is one."""
+    try:
+        response = measured_motion(build_model(machine), speed_rpm, settings, options)
+    except NotConverged:
+        return None
+    return guide_of(response.system, response.orbit)
 
 
 def _named(layout: Layout, values: tuple[float, ...], dynamic: bool) -> dict[str, float]:

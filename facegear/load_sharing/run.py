@@ -6,6 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array, Mask
 from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.steady_state.guide import Guide, guide_of
 from facegear.dynamics.steady_state.simulate import Model, SteadyState, build_model, simulate, static_start
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import LoadGroup, load_groups
@@ -62,9 +63,9 @@ def load_sharing(
     states = starting_states(model, options, max(options.starts, start + 1))
     response = watched_motion(model, speed_rpm, settings, options, states[start])
     coarse = replace(settings, samples=min(SAMPLES, options.samples))
-    motions, means = [response.label], []
+    motions, means, known = [response.label], [], guide_of(response.system, response.orbit)
     for state in [state for number, state in enumerate(states[: options.starts]) if number != start]:
-        other = watched_motion(model, speed_rpm, coarse, options, state)
+        other = watched_motion(model, speed_rpm, coarse, options, state, known)
         motions.append(other.label)
         if not same_orbit(response, other):
             means.append(_means(densely_sampled(other), groups))
@@ -76,11 +77,15 @@ def load_sharing(
 
 
 def measured_motion(
-    model: Model, speed_rpm: float, settings: Settings, options: SharingOptions
+    model: Model, speed_rpm: float, settings: Settings, options: SharingOptions, guide: Guide | None = None
 ) -> SteadyState:
-    """The motion from static equilibrium, as load_sharing() measures it. Raises NotConverged."""
+    """The motion from static equilibrium, as load_sharing() measures it; `guide`: an orbit of a like machine.
+
+    Raises NotConverged.
+    """
     settings = replace(settings, window=options.cycles, samples=options.samples)
-    return densely_sampled(watched_motion(model, speed_rpm, settings, options, static_start(model)))
+    start = static_start(model)
+    return densely_sampled(watched_motion(model, speed_rpm, settings, options, start, guide))
 
 
 def starting_states(model: Model, options: SharingOptions, count: int) -> list[State]:
@@ -90,9 +95,16 @@ def starting_states(model: Model, options: SharingOptions, count: int) -> list[S
 
 
 def watched_motion(
-    model: Model, speed_rpm: float, settings: Settings, options: SharingOptions, start: State | None
+    model: Model,
+    speed_rpm: float,
+    settings: Settings,
+    options: SharingOptions,
+    start: State | None,
+    guide: Guide | None = None,
 ) -> SteadyState:
     """The motion from a start: what has not closed after a few times the cycles averaged is measured.
+
+    `guide`: an orbit that the run may come to, or one of a like machine.
 
     A body that is pushed through its backlash for long, or an orbit that is approached slowly, looks like a
     torus for a while: what seems to be one is watched on. A class that must hold for good, as that of the
@@ -100,7 +112,7 @@ def watched_motion(
     """
     max_periods = settings.settle
     state = simulate(
-        model, speed_rpm, replace(settings, settle=min(max_periods, WATCHED * options.cycles)), start
+        model, speed_rpm, replace(settings, settle=min(max_periods, WATCHED * options.cycles)), start, guide
     )
     if state.motion is not Motion.QUASI_PERIODIC:
         return state

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 import pandas as pd
@@ -17,14 +17,19 @@ from facegear.config.lubrication import LubricationSection, limits_of
 from facegear.config.lumped_model import ToothNumbers, machine
 from facegear.config.mesh_law import flank_tables
 from facegear.config.transmission import Transmission
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.jump_margin import jump_margin
 from facegear.dynamics.sweeps.plan import JumpRange
+from facegear.errors import FacegearError
 from facegear.geometry.bodies import BODIES
+from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.quantities import (
     FlankLoads,
     Found,
     dynamic_quantities,
+    orbit_of,
     quasi_static_quantities,
 )
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_names
@@ -125,9 +130,9 @@ class VariedMachine:
 
         return PoseSurface.of_arrays(self.poses)
 
-    def judge_of(self, question: Question, label: str) -> Judge:
-        """What each one is judged by; `label` names it in errors."""
-        return judge(question, self.meshes, label, self.varied_bodies, self.surface)
+    def judge_of(self, question: Question, label: str, nominal: Values | None = None) -> Judge:
+        """What each one is judged by; `label` names it in errors, `nominal`: the values that it is near."""
+        return judge(question, self.meshes, label, self.varied_bodies, self.surface, nominal)
 
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
         """Names of what a machine is judged by."""
@@ -189,9 +194,11 @@ def judge(
     label: str,
     bodies: "VariedBodies | None" = None,
     surface: "PoseSurface | None" = None,
+    nominal: Values | None = None,
 ) -> Judge:
     """`label` names the machine in errors; `bodies` of face gears that bend; `surface`: contact over pose,
-    where meshes stand as the forces of their own machine put them.
+    where meshes stand as the forces of their own machine put them. nominal: values that all are near, whose
+    orbit guides theirs.
     """
     ask = _ask(question)
     if surface is not None:
@@ -206,8 +213,7 @@ def judge(
         pair = teeth.pair(section, question.every_place)
         return friction_quantities(built, speed, loads, pair, limits_of(section))
 
-    @keys_named()
-    def judged(values: Mapping[str, Any]) -> dict[str, float]:
+    def assembled(values: Values) -> tuple[PairExcitation, Machine]:
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
         require_buildable(section, mesh.numbers)
@@ -219,8 +225,23 @@ def judge(
             built = bodies.joined(built, section, values["tooth_pair"])
         if surface is not None:
             built = posed_machine(built, surface)
+        return mesh, built
+
+    @cache
+    def guide() -> Guide | None:
+        if nominal is None or not question.dynamic:
+            return None
+        try:
+            _, built = assembled(nominal)
+        except FacegearError:
+            return None
+        return orbit_of(built, nominal["dynamics"]["speed_rpm"], *_precision(question))
+
+    @keys_named()
+    def judged(values: Mapping[str, Any]) -> dict[str, float]:
+        mesh, built = assembled(values)
         speed = values["dynamics"]["speed_rpm"]
-        quantities, loads = ask(built, speed)
+        quantities, loads = ask(built, speed, guide())
         quantities |= mesh.quantities(quantities[PEAK])
         if mesh.rubbed is not None:
             quantities |= rubbed(mesh.rubbed, values["lubrication"], built, speed, loads)
@@ -231,9 +252,13 @@ def judge(
     return judged
 
 
-def _ask(question: Question) -> Callable[[Any, float], Found]:
+def _ask(question: Question) -> Callable[[Machine, float, Guide | None], Found]:
     if not question.dynamic:
-        return lambda built, speed: quasi_static_quantities(at_rest(built), question.cycles)
+        return lambda built, speed, guide: quasi_static_quantities(at_rest(built), question.cycles)
+    precision = _precision(question)
+    return lambda built, speed, guide: dynamic_quantities(built, speed, *precision, guide)
+
+
+def _precision(question: Question) -> tuple[Settings, SharingOptions]:
     precise = settings(Accuracy.of_config(question.accuracy))
-    single_start = replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)
-    return lambda built, speed: dynamic_quantities(built, speed, precise, single_start)
+    return precise, replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)

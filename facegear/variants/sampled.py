@@ -116,7 +116,7 @@ class SampledMachine(VariedMachine):
     @cached_property
     def judge(self) -> Judge:
         """What a sample is judged by, given its values."""
-        return self.judge_of(self.question, "this sample")
+        return self.judge_of(self.question, "this sample", self.start)
 
     def sample(self, values: Sequence[float]) -> dict[str, Any]:
         """The variable part of the config of a sample with these values of its causes."""
@@ -130,7 +130,7 @@ class SampledMachine(VariedMachine):
     @cached_property
     def thorough_judge(self) -> Judge:
         """The same by every place of the contact."""
-        return self.judge_of(replace(self.question, every_place=True), "this sample")
+        return self.judge_of(replace(self.question, every_place=True), "this sample", self.start)
 
     @property
     def checks(self) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from facegear.dynamics.integrator.reduction import Reduced, reduce
 from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages, Moments
+from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.mesh_samples import (
     by_mesh,
     each_deflection,
@@ -22,6 +23,7 @@ from facegear.dynamics.steady_state.mesh_samples import (
     mesh_fractions,
     past_law,
 )
+from facegear.dynamics.steady_state.orbits import Orbit
 from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.second_look import disagreeing
 from facegear.dynamics.steady_state.watching import Watched, not_settled, watch
@@ -58,10 +60,8 @@ class SteadyState:
         Over the whole response.
     fractions : (3, meshes)
         Of time open, on the drive flank, on the back flank.
-    multipliers : (2 n,)
-        Of a refined periodic orbit.
-    liouville
-        As of its Orbit.
+    orbit
+        The periodic orbit where it was refined on its own.
     exponent
         Largest Lyapunov exponent per mesh period with its 95 % half-width, for motions that are not periodic.
     periods_run
@@ -84,8 +84,7 @@ class SteadyState:
     coordinates: Array
     averages: Averages
     fractions: Array
-    multipliers: ComplexArray | None
-    liouville: float | None
+    orbit: Orbit | None
     exponent: tuple[float, float] | None
     periods_run: int
     looks: tuple[int, int] | None
@@ -95,6 +94,16 @@ class SteadyState:
     def label(self) -> str:
         """`period-n` or the class of motion."""
         return f"period-{self.period}" if self.motion is Motion.PERIODIC else self.motion.value
+
+    @property
+    def multipliers(self) -> ComplexArray | None:
+        """Floquet multipliers (2 n,) of the orbit."""
+        return None if self.orbit is None else self.orbit.multipliers
+
+    @property
+    def liouville(self) -> float | None:
+        """As of the orbit."""
+        return None if self.orbit is None else self.orbit.liouville
 
     @cached_property
     def forces(self) -> Array:
@@ -164,17 +173,22 @@ def static_start(model: Model) -> State:
 
 
 def simulate(
-    model: Model | Machine, speed_rpm: float, settings: Settings | None = None, start: State | None = None
+    model: Model | Machine,
+    speed_rpm: float,
+    settings: Settings | None = None,
+    start: State | None = None,
+    guide: Guide | None = None,
 ) -> SteadyState:
     """Steady state at a pinion speed, from `start` or from static equilibrium.
 
+    A `guide`, an orbit of a like machine, is followed where it serves; then no multipliers are computed.
     Raises NotConverged if the integration itself fails; a motion that does not settle is a result, named so.
     """
     model = build_model(model) if isinstance(model, Machine) else model
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
     start = static_start(model) if start is None else start
     try:
-        return steady_state(model.system, frequency, settings or Settings(), start)
+        return steady_state(model.system, frequency, settings or Settings(), start, guide)
     except NotConverged as error:
         raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.tried) from None
 
@@ -191,7 +205,9 @@ def simulate_many(
         return list(pool.map(lambda job: simulate(job[0], job[1], settings), jobs))
 
 
-def steady_state(system: System, frequency: float, settings: Settings, start: State) -> SteadyState:
+def steady_state(
+    system: System, frequency: float, settings: Settings, start: State, guide: Guide | None = None
+) -> SteadyState:
     """Steady state of any system at an angular mesh frequency in rad/s.
 
     A class of motion that does not come out again from starts a little aside is taken back: then the motion
@@ -200,7 +216,8 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     prepare_for(system)
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
     state = integrator.by_phase(start)
-    seen = watch(integrator, state, settings)
+    serves = guide is not None and settings.refine and guide.serves(system)
+    seen = watch(integrator, state, settings, guide if serves else None)
     other = disagreeing(integrator, state, settings, seen.settled, seen.motion)
     looks = None
     if other is not None:
@@ -214,8 +231,7 @@ def _response(
 ) -> SteadyState:
     settled, window, exponent = seen.settled, seen.window, seen.exponent
     each = each_deflection(system, window.samples, window.per_period)
-    orbit, square = settled.orbit, integrator.frequency**2
-    averages = window.averages
+    averages, square = window.averages, integrator.frequency**2
     return SteadyState(
         system=system,
         motion=seen.motion,
@@ -228,8 +244,7 @@ def _response(
         coordinates=window.samples,
         averages=replace(averages, force=averages.force * square, pull=averages.pull * square),
         fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
-        multipliers=orbit.multipliers if orbit else None,
-        liouville=orbit.liouville if orbit else None,
+        orbit=settled.orbit,
         exponent=(exponent.value, exponent.half_width) if exponent else None,
         periods_run=seen.periods_run,
         looks=looks,

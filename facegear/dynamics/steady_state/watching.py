@@ -7,6 +7,7 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing, wanders
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
+from facegear.dynamics.steady_state.guide import Guide, guided
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
@@ -28,19 +29,22 @@ class Watched:
     periods_run: int
 
 
-def watch(integrator: Integrator, state: Array, settings: Settings) -> Watched:
+def watch(integrator: Integrator, state: Array, settings: Settings, guide: Guide | None = None) -> Watched:
     """Watch a run from a state (2, n) by phase until its class is known or patience ends.
+
+    A `guide` of a system with the same coordinates makes it short where it leads to an orbit like its own.
 
     A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
     measured on, which is also a second watch. Where the two do not agree it is watched for longer.
     """
+    if guide is not None and (led := guided(integrator, state, guide)) is not None:
+        return _periodic(integrator, led, settings, led.periods_run)
     ends, periods_run = None, 0
     for _ in range(settings.extensions + 1):
         settled = settle(integrator, state, settings, ends)
         periods_run += settled.periods_run
         if settled.period:
-            window = run_window(integrator, settled.state, settled.period, settings.samples)
-            return Watched(settled, Motion.PERIODIC, None, window, periods_run)
+            return _periodic(integrator, settled, settings, periods_run)
         exponent = largest_exponent(integrator, settled.state, settings)
         window = exponent.window
         motion = _class(integrator, settled, exponent, window, settings)
@@ -49,6 +53,11 @@ def watch(integrator: Integrator, state: Array, settings: Settings) -> Watched:
             break
         state, ends = window.ends[-1], exponent.ends
     return Watched(settled, motion, exponent, window, periods_run)
+
+
+def _periodic(integrator: Integrator, settled: Settled, settings: Settings, periods_run: int) -> Watched:
+    window = run_window(integrator, settled.state, settled.period, settings.samples)
+    return Watched(settled, Motion.PERIODIC, None, window, periods_run)
 
 
 def not_settled(integrator: Integrator, seen: Watched, other: Settled, settings: Settings) -> Watched:
