@@ -11,7 +11,7 @@ from facegear.dynamics.steady_state.simulate import build_model
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import GEOMETRIC
-from tests.helpers.lumped_machines import make_layout, make_machine
+from lumped_machines import make_layout, make_machine
 
 
 def test_a_pure_function_is_evaluated_once_for_arguments_that_say_the_same():

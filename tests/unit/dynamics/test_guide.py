@@ -1,0 +1,81 @@
+"""A run that the orbit of a like system leads comes to the motion that it would come to by itself."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+from lumped_machines import make_layout, make_machine
+from oscillators import backlash_oscillator
+
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.steady_state.guide import guide_of
+from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.kinematics import GEOMETRIC
+
+SPEED = 0.75
+SYSTEM = backlash_oscillator(SPEED)
+QUICK = Settings(tolerance=1e-10, periodic_residual=1e-9, longest_period=4)
+BOTH = [
+    steady_state(SYSTEM, SPEED, QUICK, State(np.array([place]), np.array([rate])))
+    for place, rate in ((1.16, 0.01), (0.83, 0.16))
+]
+"""The two orbits of the oscillator with backlash at this speed."""
+
+
+@given(st.sampled_from([0, 1]), st.floats(-2.0, 3.0), st.floats(-1.0, 1.0))
+@examples(max_examples=15)
+def test_of_two_orbits_a_run_comes_to_the_one_that_it_starts_towards_whichever_leads(leading, place, rate):
+    start = State(np.array([place]), np.array([rate]))
+    alone = steady_state(SYSTEM, SPEED, QUICK, start)
+    led = steady_state(SYSTEM, SPEED, QUICK, start, guide_of(SYSTEM, BOTH[leading].orbit))
+    assert led.label == alone.label == "period-1"
+    assert led.state.displacement == pytest.approx(alone.state.displacement, abs=1e-8)
+    assert led.state.velocity == pytest.approx(alone.state.velocity, abs=1e-8)
+
+
+def series_machine(shift):
+    """A machine that stands in contact, its pinions, teeth and clearances moved by micrometres."""
+    layout = make_layout(kinematics=GEOMETRIC)
+    random = np.random.default_rng(5)
+    pinions, meshes = len(layout.pinions), len(layout.meshes)
+    flaws = replace(
+        perfect(layout),
+        bearing_clearance=20e-6 + shift * random.uniform(-8e-6, 8e-6, pinions),
+        position=shift * random.uniform(-1e-5, 1e-5, (pinions, 2)),
+        error=shift * random.uniform(-9e-6, 9e-6, meshes),
+    )
+    return make_machine(layout, error=2e-6, imperfections=flaws)
+
+
+def test_a_machine_led_by_the_nominal_one_settles_on_its_own_orbit_within_a_quarter_of_the_periods():
+    precise = Settings(tolerance=1e-8)
+    nominal = simulate(series_machine(0.0), 3000.0, precise)
+    guide = guide_of(nominal.system, nominal.orbit)
+    model = build_model(series_machine(1.0))
+    alone, led = simulate(model, 3000.0, precise), simulate(model, 3000.0, precise, guide=guide)
+    assert led.label == alone.label == "period-1"
+    assert led.orbit is None and led.multipliers is None
+    assert 4 * led.periods_run <= alone.periods_run
+    moved = np.abs(alone.deflections - nominal.deflections).max()
+    assert np.abs(led.deflections - alone.deflections).max() < 1e-6 * moved
+
+
+def test_an_orbit_in_other_coordinates_leads_nothing():
+    nominal = simulate(series_machine(0.0), 3000.0)
+    tight = make_machine(make_layout(kinematics=GEOMETRIC), error=2e-6)
+    alone = simulate(tight, 3000.0)
+    beside = simulate(tight, 3000.0, guide=guide_of(nominal.system, nominal.orbit))
+    assert np.array_equal(alone.coordinates, beside.coordinates)
+    assert alone.periods_run == beside.periods_run and beside.orbit is not None
+
+
+def test_only_an_orbit_of_one_mesh_period_that_draws_in_makes_a_guide():
+    orbit = BOTH[0].orbit
+    assert guide_of(SYSTEM, orbit) is not None
+    assert guide_of(SYSTEM, None) is None
+    assert guide_of(SYSTEM, replace(orbit, period=2)) is None
+    assert guide_of(SYSTEM, replace(orbit, multipliers=orbit.multipliers / orbit.holding)) is None
