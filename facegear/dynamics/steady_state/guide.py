@@ -79,7 +79,7 @@ def _guided(integrator: Integrator, state: Array, guide: Guide) -> Settled | Non
         if found is None:
             return None
         orbit, residual = found
-        if _drawn_in(ends[-1 - RETURNS :] - orbit, guide):
+        if drawn_in(ends[-1 - RETURNS :] - orbit, guide):
             return Settled(orbit, 1, residual, None, len(ends) - 1, ends[1:])
     return None
 
@@ -99,7 +99,7 @@ def _orbit_near(integrator: Integrator, state: Array, guide: Guide) -> tuple[Arr
     return None
 
 
-def _drawn_in(off: Array, guide: Guide) -> bool:
+def drawn_in(off: Array, guide: Guide) -> bool:
     """Whether states (RETURNS + 1, 2, n) off the orbit come nearer as the guide's multipliers have it."""
     multipliers = guide.orbit.multipliers
     parts = off.reshape(len(off), -1) @ guide.inverse.T

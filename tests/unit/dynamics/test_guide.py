@@ -11,7 +11,7 @@ from lumped_machines import make_layout, make_machine
 from oscillators import backlash_oscillator
 
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.guide import guide_of
+from facegear.dynamics.steady_state.guide import RETURNS, drawn_in, guide_of
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import GEOMETRIC
@@ -35,6 +35,14 @@ def test_of_two_orbits_a_run_comes_to_the_one_that_it_starts_towards_whichever_l
     assert led.label == alone.label == "period-1"
     assert led.state.displacement == pytest.approx(alone.state.displacement, abs=1e-8)
     assert led.state.velocity == pytest.approx(alone.state.velocity, abs=1e-8)
+
+
+@pytest.mark.parametrize("change, followed", [(1.0, True), (1.01, True), (1.3, False), (1.6, False)])
+def test_returns_that_do_not_follow_the_multipliers_of_the_guide_are_no_sign_of_its_orbit(change, followed):
+    orbit = BOTH[0].orbit
+    powers = (change * orbit.multipliers) ** np.arange(RETURNS + 1)[:, None]
+    off = (powers * np.array([1e-3, 1e-3]) @ orbit.vectors.T).real
+    assert drawn_in(off.reshape(-1, 2, 1), guide_of(SYSTEM, orbit)) == followed
 
 
 def series_machine(shift):
