@@ -5,7 +5,7 @@ Many machines of one study differ in a few numbers: what does not depend on thos
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import lru_cache, wraps
+from functools import lru_cache, partial, wraps
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -16,14 +16,14 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class _Call:
-    """Arguments of a call, equal to those of another one whose content is the same."""
+    """A call, equal to another one whose arguments have the same content."""
 
     content: Any
-    arguments: tuple[Any, ...] = field(compare=False)
+    compute: Callable[[], Any] = field(compare=False)
 
 
 def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Decorator of a pure function of positional arguments: its last `size` results are kept and shared, so
+    """Decorator of a pure function: its last `size` results are kept and shared, so
     that callers only read them.
 
     Arguments count as the same where all fields of dataclasses, numbers, texts and entries of arrays are, to
@@ -31,11 +31,14 @@ def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
-        kept = lru_cache(maxsize=size)(lambda call: function(*call.arguments))
+        @lru_cache(maxsize=size)
+        def kept(call: _Call) -> Any:
+            return call.compute()
 
         @wraps(function)
-        def found(*arguments: P.args, **_: P.kwargs) -> R:
-            return kept(_Call(content(arguments), arguments))
+        def found(*arguments: P.args, **named: P.kwargs) -> R:
+            result: R = kept(_Call(content((arguments, named)), partial(function, *arguments, **named)))
+            return result
 
         return found
 
@@ -51,10 +54,5 @@ def content(value: Any) -> Any:
     if isinstance(value, Mapping):
         return type(value), tuple([(key, content(part)) for key, part in value.items()])
     if is_dataclass(value):
-        return type(value), tuple([content(getattr(value, name)) for name in _names(type(value))])
+        return type(value), tuple([content(getattr(value, part.name)) for part in fields(value)])
     return type(value), value
-
-
-@lru_cache(maxsize=64)
-def _names(kind: type) -> tuple[str, ...]:
-    return tuple(part.name for part in fields(kind))
