@@ -22,7 +22,7 @@ give way by the rest) and, above that, the gap of the others in it (the strip's 
 WIDER = 1.6
 """Factor on the second part where contact is missed beside the strip."""
 
-START_GAP, START_WIDTH = 0.6, 0.09
+START_GAP, START_WIDTH = 0.6, 0.055
 """The same parts for the first guess of what touches."""
 
 

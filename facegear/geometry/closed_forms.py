@@ -18,7 +18,13 @@ def flank_frame(
 ) -> tuple[Numbers, ...]:
     """Point x, y, z of the flank, and its derivatives with respect to roll and to psi."""
     turn = ratio * (psi - roll - space)
-    ct, st, cp, sp = np.cos(turn), np.sin(turn), np.cos(psi), np.sin(psi)
+    return turned_flank_frame(base, ratio, lift, roll, np.cos(turn), np.sin(turn), np.cos(psi), np.sin(psi))
+
+
+def turned_flank_frame(
+    base: float, ratio: float, lift: float, roll: Numbers, ct: Numbers, st: Numbers, cp: Numbers, sp: Numbers
+) -> tuple[Numbers, ...]:
+    """`flank_frame` by cosine and sine of the gear's turn, ratio (psi - roll - space), and of psi."""
     p, q = base * (sp - roll * cp), base / (ratio * cp)
     p_psi, q_psi = base * (cp + roll * sp), q * sp / cp
     x, y, z = p * ct - q * st, p * st + q * ct, lift - p_psi
@@ -56,6 +62,16 @@ def fillet_frame(
     x_psi, y_psi = p_psi * ct - ratio * chi_psi * y, p_psi * st + ratio * chi_psi * x
     x_q, y_q = p_q * ct - st - ratio * chi_q * y, p_q * st + ct + ratio * chi_q * x
     return x, y, z, x_psi, y_psi, z_psi, x_q, y_q, z_q
+
+
+def fillet_height(
+    centre: float, rounding: float, ratio: float, lift: float, psi: Numbers, q: Numbers
+) -> Numbers:
+    """z of `fillet_frame` alone."""
+    cp, sp = np.cos(psi), np.sin(psi)
+    k = ratio * q / centre
+    w = np.sqrt(1 - k * k * cp * cp)
+    return lift - centre * (k * cp * cp + sp * w) - rounding * sp
 
 
 def radius_at_roll(

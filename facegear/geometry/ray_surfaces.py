@@ -5,29 +5,52 @@ all lengths in m, for the right side of tooth 0 in the gear's body frame. `blank
 point and n a unit direction.
 """
 
-from math import atan2, hypot, inf, isfinite, isnan, nan, pi, sqrt
+from math import atan2, cos, inf, isnan, nan, pi, sin, sqrt
+from typing import Any
 
 from facegear.arrays import Array
 from facegear.geometry import closed_forms
 from facegear.geometry.ray_blank import Blank
 from facegear.machine_code.compiler import for_callers
 
-NEWTON_STEPS = 40
+NEWTON_STEPS = 16
 LARGEST_STEP = 0.2
-NEGLIGIBLE = 1e-10
+NEGLIGIBLE = 1e-9
 """Distance (m) of a ray from the point reached on the flank, whose square over the flank's radii of curvature
 is below rounding: Newton's next step is exact, and its end is known without looking."""
+NEGLIGIBLE_IN_FILLET = 1e-10
+"""The same on the fillet, whose radii are smaller."""
+SEEN = 1e-5
+"""Distance (m) of a ray from the point reached from which on the ray's length is known as well as that."""
+LAST, AGE = 16, 6
+"""Numbers kept of the ray before: roll, psi, cosine and sine of the gear's turn and of psi, their age in
+steps (negative: no flank was met), and the flank's frame there."""
+OLDEST = 16
+"""Steps after which cosines and sines are computed anew, so that rounding does not add up."""
+NEAR = 0.05
+"""Distance (rad) between points of neighbouring rays, in roll and psi together, up to which one starts at the
+other."""
+SMALL_TURN = 1e-4
+"""Square of an angle (rad) whose cosine and sine three terms give to rounding."""
 PSI_STEPS = 60
+CLOSE = 1e-8
+"""Step (rad) of Newton's method whose square is below rounding, so that it is the last."""
 BISECTIONS = 6
+
+Ray = tuple[float, float, float]
+"""A point, or a unit direction, as plain numbers."""
 
 FlankCut = tuple[float, float, float, float, bool]
 """Distance to the flank, and to the flank continued beyond its edges; roll and psi there; whether Newton's
 method converged."""
 
-inlined = for_callers()
+FAST_NUMBERS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy"}
+"""Products and sums may be fused, and a division by zero is not an error but infinite."""
 
-flank_frame = inlined(closed_forms.flank_frame)
-surface_normal = inlined(closed_forms.normal)
+inlined = for_callers(**FAST_NUMBERS)
+
+turned_flank_frame = inlined(closed_forms.turned_flank_frame)
+fillet_height = inlined(closed_forms.fillet_height)
 fillet_frame = inlined(closed_forms.fillet_frame)
 radius_at_roll = inlined(closed_forms.radius_at_roll)
 radius_at_height = inlined(closed_forms.radius_at_height)
@@ -36,32 +59,142 @@ first_psi = inlined(closed_forms.first_psi)
 
 
 @inlined
-def cut_flank(blank: Blank, p: Array, n: Array, inside: float) -> FlankCut:
-    """From the generating section that the point lies in."""
+def cut_flank(blank: Blank, p: Ray, n: Ray, inside: float, search_radius: float, last: Array) -> FlankCut:
+    """From where the ray before met the flank, kept in `last` (LAST,); else from the generating section that
+    the point lies in. Hits are written to `last`.
+    """
+    if last[AGE] >= 0.0:
+        cut = _from_last(blank, p, n, search_radius, last)
+        if last[AGE] >= 0.0:
+            return cut
     cosine = blank.base / (blank.ratio * inside)
     sine = sqrt(max(1 - cosine * cosine, 1e-12))
     roll = ((blank.lift - p[2]) / blank.base - cosine) / sine
     roll = min(max(roll, 0.0), 1.2 * blank.tip_roll)
-    return cut_flank_from(blank, p, n, roll, atan2(sine, cosine))
+    return cut_flank_from(blank, p, n, roll, atan2(sine, cosine), search_radius, last)
 
 
 @inlined
-def cut_flank_from(blank: Blank, p: Array, n: Array, roll: float, psi: float) -> FlankCut:
-    roll, psi, distance, x, y, z, done = _newton(blank, False, p, n, roll, psi)
-    nx, ny, nz = surface_normal(blank.ratio * (psi - roll - blank.space), psi)
-    facing = n[0] * nx + n[1] * ny + n[2] * nz
-    straight = distance if done and facing < 0 else inf
-    inside = blank.inner <= hypot(x, y) <= blank.outer and roll <= blank.tip_roll
-    distance = straight if inside and z <= blank.tip_plane + 1e-12 else inf
-    return distance, straight, roll, psi, done
+def cut_flank_from(
+    blank: Blank, p: Ray, n: Ray, roll: float, psi: float, search_radius: float, last: Array
+) -> FlankCut:
+    """From a point of the flank."""
+    turn = blank.ratio * (psi - roll - blank.space)
+    turned = cos(turn), sin(turn), cos(psi), sin(psi)
+    return _flank_newton(blank, p, n, roll, psi, turned, search_radius, 0.0, last)
 
 
 @inlined
-def cut_fillet(blank: Blank, p: Array, n: Array, radius: float) -> tuple[float, float, float]:
+def _from_last(blank: Blank, p: Ray, n: Ray, search_radius: float, last: Array) -> FlankCut:
+    """From the point that Newton's first step reaches at the point that `last` keeps; a miss clears it."""
+    frame = (last[7], last[8], last[9], last[10], last[11], last[12], last[13], last[14], last[15])
+    da, db, _, _, _, _ = _step(p, n, _across(n), frame)
+    age, roll, psi = last[AGE], last[0] - da, last[1] - db
+    if not abs(da) + abs(db) < NEAR:
+        last[AGE] = -1.0
+        return inf, inf, roll, psi, False
+    if age < OLDEST:
+        ct, st = _rotated(last[2], last[3], blank.ratio * (da - db))
+        cp, sp = _rotated(last[4], last[5], -db)
+    else:
+        turn = blank.ratio * (psi - roll - blank.space)
+        ct, st, cp, sp, age = cos(turn), sin(turn), cos(psi), sin(psi), 0.0
+    return _flank_newton(blank, p, n, roll, psi, (ct, st, cp, sp), search_radius, age, last)
+
+
+@inlined
+def _flank_newton(
+    blank: Blank,
+    p: Array,
+    n: Array,
+    roll: float,
+    psi: float,
+    turned: tuple[float, float, float, float],
+    search_radius: float,
+    age: float,
+    last: Array,
+) -> FlankCut:
+    """Newton's method from a point whose cosines and sines of turn and psi are `turned`, `age` steps old."""
+    across = _across(n)
+    ct, st, cp, sp = turned
+    last[AGE] = -1.0
+    for _ in range(NEWTON_STEPS):
+        frame = turned_flank_frame(blank.base, blank.ratio, blank.lift, roll, ct, st, cp, sp)
+        da, db, off, x, y, z = _step(p, n, across, frame)
+        if not abs(da) + abs(db) < inf:
+            break
+        if off < SEEN:
+            distance = x * n[0] + y * n[1] + z * n[2]
+            if off < NEGLIGIBLE:
+                straight = distance if cp * (n[0] * ct + n[1] * st) + n[2] * sp < 0 else inf
+                if abs(straight) < search_radius:
+                    last[0], last[1], last[2], last[3], last[4], last[5] = roll, psi, ct, st, cp, sp
+                    last[AGE] = age
+                    for i in range(9):
+                        last[AGE + 1 + i] = frame[i]
+                roll, psi, x, y, z = roll - da, psi - db, x + p[0], y + p[1], z + p[2]
+                inside = blank.inner <= sqrt(x * x + y * y) <= blank.outer and roll <= blank.tip_roll
+                distance = straight if inside and z <= blank.tip_plane + 1e-12 else inf
+                return distance, straight, roll, psi, True
+            if abs(distance) > search_radius + SEEN:
+                return inf, inf, roll, psi, True
+        scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))
+        da, db, age = scale * da, scale * db, age + 1.0
+        roll, psi = roll - da, psi - db
+        ct, st = _rotated(ct, st, blank.ratio * (da - db))
+        cp, sp = _rotated(cp, sp, -db)
+    return inf, inf, roll, psi, False
+
+
+@inlined
+def _rotated(cosine: float, sine: float, turn: float) -> tuple[float, float]:
+    """Cosine and sine of an angle that a turn (rad) is added to."""
+    square = turn * turn
+    if square < SMALL_TURN:
+        up, back = (
+            turn * (1 - square / 6 * (1 - square / 20)),
+            square / 2 * (1 - square / 12 * (1 - square / 30)),
+        )
+    else:
+        up, back = sin(turn), 1 - cos(turn)
+    return cosine - (cosine * back + sine * up), sine - (sine * back - cosine * up)
+
+
+@inlined
+def _across(n: Array) -> tuple[float, ...]:
+    """Two unit directions across a ray: x and z of the first, x, y and z of the second."""
+    length = sqrt(n[0] * n[0] + n[2] * n[2])
+    e0, e2 = n[2] / length, -n[0] / length
+    return e0, e2, n[1] * e2, n[2] * e0 - n[0] * e2, -n[1] * e0
+
+
+@inlined
+def _step(p: Ray, n: Ray, across: tuple[float, ...], frame: tuple[float, ...]) -> tuple[float, ...]:
+    """Newton's step from a frame of a surface towards a ray: what to take off both parameters, the distance
+    (m) of the frame's point from the ray, and where the step leads, x, y and z from p.
+    """
+    e0, e2, f0, f1, f2 = across
+    x, y, z, ax, ay, az, bx, by, bz = frame
+    x, y, z = x - p[0], y - p[1], z - p[2]
+    r1, r2 = x * e0 + z * e2, x * f0 + y * f1 + z * f2
+    a1, a2 = ax * e0 + az * e2, ax * f0 + ay * f1 + az * f2
+    b1, b2 = bx * e0 + bz * e2, bx * f0 + by * f1 + bz * f2
+    det = a1 * b2 - a2 * b1
+    if det == 0.0:
+        return inf, inf, inf, x, y, z
+    da, db = (r1 * b2 - r2 * b1) / det, (a1 * r2 - a2 * r1) / det
+    x, y, z = x - da * ax - db * bx, y - da * ay - db * by, z - da * az - db * bz
+    return da, db, sqrt(r1 * r1 + r2 * r2), x, y, z
+
+
+@inlined
+def cut_fillet(
+    blank: Blank, p: Ray, n: Ray, radius: float, search_radius: float
+) -> tuple[float, float, float]:
     """Distance, slope psi of the fillet's normal and gear radius where the ray meets it, inf beside it."""
     psi = _psi_at_height(blank, radius, p[2])
-    psi, _, distance, x, y, _, done = _newton(blank, True, p, n, psi, radius)
-    radius = hypot(x, y)
+    psi, distance, x, y, done = _fillet_newton(blank, p, n, psi, radius, search_radius)
+    radius = sqrt(x * x + y * y)
     if not (done and psi <= 0.5 * pi and blank.inner <= radius <= blank.outer):
         return inf, psi, radius
     start = _psi_at(blank, radius, blank.tip_roll)
@@ -76,7 +209,8 @@ def _psi_at_height(blank: Blank, q: float, z: float) -> float:
     low, high = blank.fillet_start, 0.5 * pi
     for _ in range(BISECTIONS):
         psi = 0.5 * (low + high)
-        if _fillet_frame(blank, psi, q)[2] > z:
+        height = fillet_height(blank.tip_centre, blank.tip_rounding, blank.ratio, blank.lift, psi, q)
+        if height > z:
             low = psi
         else:
             high = psi
@@ -84,13 +218,17 @@ def _psi_at_height(blank: Blank, q: float, z: float) -> float:
 
 
 @inlined
-def cut_land(blank: Blank, p: Array, n: Array, height: float) -> tuple[float, float, float]:
-    """Distance, gear angle and radius where the ray meets the plane, inf beside the blank."""
+def cut_land(blank: Blank, p: Ray, n: Ray, height: float, search_radius: float) -> tuple[float, float, float]:
+    """Distance, gear angle and radius where the ray meets the plane, inf beside the blank and farther than
+    `search_radius`.
+    """
     if not n[2] < -1e-9:
         return inf, nan, nan
     distance = (height - p[2]) / n[2]
+    if not abs(distance) < search_radius:
+        return inf, nan, nan
     x, y = p[0] + distance * n[0], p[1] + distance * n[1]
-    radius = hypot(x, y)
+    radius = sqrt(x * x + y * y)
     if not blank.inner <= radius <= blank.outer:
         distance = inf
     return distance, atan2(x, y), radius
@@ -105,9 +243,9 @@ def tip_angle(blank: Blank, radius: float) -> float:
         value, slope = radius_at_height(blank.base, blank.ratio, radius, height, psi)
         step = min(max(value / slope, -0.1), 0.1)
         psi -= step
-        if abs(step) < 1e-14:
+        if abs(step) < CLOSE:
             break
-    if not abs(step) < 1e-12:
+    if not abs(step) < CLOSE:
         return nan
     x, y, _, _, _, _, _, _, _ = _flank_frame(blank, roll_at_height(height, psi), psi)
     return atan2(x, y)
@@ -120,14 +258,16 @@ def _psi_at(blank: Blank, radius: float, roll: float) -> float:
         value, slope = radius_at_roll(blank.base, blank.ratio, radius, roll, psi)
         step = min(max(value / slope, -0.1), 0.1)
         psi -= step
-        if abs(step) < 1e-14:
+        if abs(step) < CLOSE:
             return psi
-    return psi if abs(step) < 1e-12 else nan
+    return nan
 
 
 @inlined
 def _flank_frame(blank: Blank, roll: float, psi: float) -> tuple[float, ...]:
-    return flank_frame(blank.base, blank.ratio, blank.space, blank.lift, roll, psi)
+    turn = blank.ratio * (psi - roll - blank.space)
+    ct, st, cp, sp = cos(turn), sin(turn), cos(psi), sin(psi)
+    return turned_flank_frame(blank.base, blank.ratio, blank.lift, roll, ct, st, cp, sp)
 
 
 @inlined
@@ -139,44 +279,24 @@ def _fillet_frame(blank: Blank, psi: float, q: float) -> tuple[float, ...]:
 
 
 @inlined
-def _newton(
-    blank: Blank, fillet: bool, p: Array, n: Array, a: float, b: float
-) -> tuple[float, float, float, float, float, float, bool]:
-    """Cut a ray with X(a, b): a, b, distance along the ray, the point hit, and whether it converged."""
-    length = hypot(n[0], n[2])
-    e0, e2 = n[2] / length, -n[0] / length
-    f0, f1, f2 = n[1] * e2, n[2] * e0 - n[0] * e2, -n[1] * e0
-    rounding = 1e-14 * max(abs(p[0]), abs(p[1]), abs(p[2]))
-    done = False
+def _fillet_newton(
+    blank: Blank, p: Ray, n: Ray, psi: float, q: float, search_radius: float
+) -> tuple[float, float, float, float, bool]:
+    """psi, distance along the ray, x and y of the point hit, and whether it converged, no farther than
+    `search_radius`.
+    """
+    across = _across(n)
     for _ in range(NEWTON_STEPS):
-        if fillet:
-            x, y, z, ax, ay, az, bx, by, bz = _fillet_frame(blank, a, b)
-        else:
-            x, y, z, ax, ay, az, bx, by, bz = _flank_frame(blank, a, b)
-        x, y, z = x - p[0], y - p[1], z - p[2]
-        r1, r2 = x * e0 + z * e2, x * f0 + y * f1 + z * f2
-        a1, a2 = ax * e0 + az * e2, ax * f0 + ay * f1 + az * f2
-        b1, b2 = bx * e0 + bz * e2, bx * f0 + by * f1 + bz * f2
-        det = a1 * b2 - a2 * b1
-        if det == 0.0:
-            break
-        da, db = (r1 * b2 - r2 * b1) / det, (a1 * r2 - a2 * r1) / det
-        if not (isfinite(da) and isfinite(db)):
+        da, db, off, x, y, z = _step(p, n, across, _fillet_frame(blank, psi, q))
+        if not abs(da) + abs(db) < inf:
             break
         scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))
-        a -= scale * da
-        b -= scale * db
-        if not fillet and hypot(r1, r2) < NEGLIGIBLE:
-            x, y, z = x - da * ax - db * bx, y - da * ay - db * by, z - da * az - db * bz
-            return a, b, x * n[0] + y * n[1] + z * n[2], x + p[0], y + p[1], z + p[2], True
-        if hypot(r1, r2) < rounding or hypot(da, db) < 2e-15:
-            done = True
-            break
-    if not done:
-        return a, b, inf, nan, nan, nan, False
-    if fillet:
-        x, y, z, _, _, _, _, _, _ = _fillet_frame(blank, a, b)
-    else:
-        x, y, z, _, _, _, _, _, _ = _flank_frame(blank, a, b)
-    distance = (x - p[0]) * n[0] + (y - p[1]) * n[1] + (z - p[2]) * n[2]
-    return a, b, distance, x, y, z, True
+        psi -= scale * da
+        q -= scale * db
+        if off < SEEN:
+            distance = x * n[0] + y * n[1] + z * n[2]
+            if abs(distance) > search_radius + SEEN:
+                break
+            if off < NEGLIGIBLE_IN_FILLET:
+                return psi, distance, x + p[0], y + p[1], abs(distance) < search_radius
+    return psi, inf, nan, nan, False

@@ -3,7 +3,7 @@
 All angles in rad, all lengths in m, for the right side of tooth 0 in the gear's body frame.
 """
 
-from math import hypot, inf, isnan, nan
+from math import inf, isnan, nan, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,10 @@ from numpy.typing import NDArray
 from facegear.arrays import Array, Mask
 from facegear.geometry.ray_blank import Blank
 from facegear.geometry.ray_surfaces import (
+    AGE,
+    FAST_NUMBERS,
+    LAST,
+    Ray,
     cut_fillet,
     cut_flank,
     cut_flank_from,
@@ -24,7 +28,7 @@ from facegear.machine_code.compiler import compiler
 NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 
 
-@compiler(Path(__file__).parent)
+@compiler(Path(__file__).parent, **FAST_NUMBERS)
 def cut(
     blank: Blank,
     position: Array,
@@ -48,10 +52,12 @@ def cut(
     gap, part = np.full(count, inf), np.zeros(count, np.int8)
     u, v, continued = np.full(count, nan), np.full(count, nan), np.full(count, inf)
     beside = max(search_radius, blank.aside / 3)
-    lost = 0
+    lost, last = 0, np.zeros(LAST)
+    last[AGE] = -1.0
     for ray in range(count):
-        p, n = position[ray], normal[ray]
-        radius = hypot(p[0], p[1])
+        p = position[ray, 0], position[ray, 1], position[ray, 2]
+        n = normal[ray, 0], normal[ray, 1], normal[ray, 2]
+        radius = sqrt(p[0] * p[0] + p[1] * p[1])
         if not (blank.inner - beside < radius < blank.outer + beside):
             continue
         rise = search_radius * abs(n[2])
@@ -59,29 +65,35 @@ def cut(
         if not (low < blank.tip_plane + 1e-12 and high > blank.root_plane and abs(p[0]) < blank.aside):
             continue
         inside = min(max(radius, blank.inner), blank.outer)
-        distance, straight, a, b, done = cut_flank(blank, p, n, inside)
+        distance, straight, a, b, done = cut_flank(blank, p, n, inside, search_radius, last)
         if not done:
             best = _nearest(p, n, search_radius, points, normals, spacing)
             if best >= 0:
-                distance, straight, a, b, done = cut_flank_from(blank, p, n, rolls[best], psis[best])
+                distance, straight, a, b, done = cut_flank_from(
+                    blank, p, n, rolls[best], psis[best], search_radius, last
+                )
                 if not done and inner[best]:
                     lost += 1
         if abs(straight) < search_radius:
             continued[ray] = straight
+        # no point of the ray is farther in or out than by this, in squares of the radius
+        aside = 2 * search_radius * abs(p[0] * n[0] + p[1] * n[1]) + search_radius * search_radius
+        if not (blank.inner**2 - aside < radius * radius < blank.outer**2 + aside):
+            continue
         surface = FLANK
         if not abs(distance) < search_radius and low < blank.fillet_top:
-            distance, a, b = cut_fillet(blank, p, n, radius)
+            distance, a, b = cut_fillet(blank, p, n, radius, search_radius)
             lost += isnan(distance)
             surface = FILLET
         if not abs(distance) < search_radius:
-            distance, a, b = cut_land(blank, p, n, blank.tip_plane)
+            distance, a, b = cut_land(blank, p, n, blank.tip_plane, search_radius)
             surface = TIP_LAND
             if abs(distance) < search_radius:
                 edge = tip_angle(blank, b)
                 lost += isnan(edge)
                 distance = distance if abs(a) <= edge else inf
         if not abs(distance) < search_radius:
-            distance, a, b = cut_land(blank, p, n, blank.root_plane)
+            distance, a, b = cut_land(blank, p, n, blank.root_plane, search_radius)
             surface = ROOT_LAND
             if not (blank.root_start <= a <= blank.pitch - blank.root_start):
                 distance = inf
@@ -91,7 +103,7 @@ def cut(
 
 
 @inlined
-def _nearest(p: Array, n: Array, search_radius: float, points: Array, normals: Array, spacing: float) -> int:
+def _nearest(p: Ray, n: Ray, search_radius: float, points: Array, normals: Array, spacing: float) -> int:
     """The sampled flank point that the ray passes closest, if it does so within `spacing`, else -1."""
     min_distance, best = spacing * spacing, -1
     for k in range(points.shape[0]):

@@ -117,7 +117,7 @@ def _cut(design: PairDesign, starts: Array, ways: Array, search_radius: float) -
     blank, sample = gear_rays(design)
     *hit, lost = cut(blank, starts, ways, search_radius, *sample)
     if lost:
-        raise NotConverged("separation", f"{lost} rays at the gear", "Newton from two starts, 40 steps each")
+        raise NotConverged("separation", f"{lost} rays at the gear", "Newton from two starts, 16 steps each")
     hit[0] = hit[0] + _opened(design, starts, ways, hit[0], hit[1] != ROOT_LAND)
     hit[4] = hit[4] + _opened(design, starts, ways, hit[4], True)
     return hit
