@@ -32,7 +32,7 @@ class NodalLoads:
 
     def only(self, keep: Mask) -> "NodalLoads":
         """Those of the rows marked (m,)."""
-        return replace(self, rows=_only(*self.rows, keep))
+        return replace(self, rows=rows_of(*self.rows, keep))
 
     def by(self, forces: Array) -> Array:
         """Forces (nodes,) N on the nodes by forces (m,) N."""
@@ -57,7 +57,8 @@ class HatPoints(NamedTuple):
 
 
 @compiled
-def _only(pointer: Integers, index: Integers, weight: Array, keep: Mask) -> Rows:
+def rows_of(pointer: Integers, index: Integers, weight: Array, keep: Mask) -> Rows:
+    """The rows marked (m,)."""
     chosen = np.zeros(np.count_nonzero(keep) + 1, np.int64)
     row = 0
     for i in range(keep.size):
@@ -165,16 +166,27 @@ def closing(
         node[i] = chosen[i] - first
         if not 0 <= node[i] < shape[0] * shape[1]:
             node[i] = _nearest_node(rows, i, points.pinion, shape[1])
-    kept = _only(pointer, index, weight, near)
+    kept = rows_of(pointer, index, weight, near)
     return kept, node[near], gap[near], lever_arm[near], fillet[near]
 
 
+class Faces(NamedTuple):
+    """Elements' faces on a lattice of a `shape`, whose nodes stand `steps` (a, 2) from their corner; lattice
+    coordinates are `scale` times finer.
+    """
+
+    scale: tuple[int, int]
+    shape: tuple[int, int]
+    steps: Integers
+
+
 @compiled
-def _spread(rows: Rows, at: Array, scale: tuple[int, int], shape: tuple[int, int], steps: Integers) -> Rows:
-    """Rows over points at lattice coordinates (q, 2), `scale` times finer, as rows over its nodes."""
+def _spread(rows: Rows, at: Array, faces: Faces) -> Rows:
+    """Rows over points at lattice coordinates (q, 2) as rows over the nodes of faces."""
+    shape, steps = faces.shape, faces.steps
     pointer, index, weight = rows
     width, columns = steps.shape[0], shape[1]
-    base, values = _functions(index, at, scale, shape, steps)
+    base, values = functions_at(index, at, faces)
     nodes, load = np.empty(width * index.size, np.int64), np.empty(width * index.size)
     ends, slot = np.zeros(pointer.size, np.int64), np.full(shape[0] * columns, -1)
     offset, filled = steps[:, 0] * columns + steps[:, 1], 0
@@ -195,10 +207,11 @@ def _spread(rows: Rows, at: Array, scale: tuple[int, int], shape: tuple[int, int
 
 
 @inlined
-def _functions(
-    index: Integers, at: Array, scale: tuple[int, int], shape: tuple[int, int], steps: Integers
-) -> tuple[Integers, Array]:
-    """First node (q,) of the face that each point in `index` lies on, and its functions (q, a) there."""
+def functions_at(index: Integers, at: Array, faces: Faces) -> tuple[Integers, Array]:
+    """First node (q,) of the face that each point in `index` lies on, -1 of other points, and the face's
+    functions (q, a) there.
+    """
+    scale, shape, steps = faces
     size = steps.max()
     base, values = np.full(at.shape[0], -1), np.empty((at.shape[0], steps.shape[0]))
     value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
@@ -246,15 +259,14 @@ class Lattice:
         """Which points at refined coordinates (q, 2) lie beyond the flank."""
         return np.asarray(at[:, 0] > self.flank_end)
 
-    def loads(self, rows: Rows, at: Array) -> tuple[NodalLoads, NodalLoads]:
-        """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2).
-
-        On the refined nodes and on the coarse ones.
-        """
+    def faces(self, refined: bool = True) -> Faces:
+        """The elements' faces on the refined nodes, or on the coarse ones."""
         steps = LINEAR_STEPS if self.linear else QUADRATIC_STEPS
-        scale = self.refinement.profile, self.refinement.width
-        both = ((1, 1), self.shape), (scale, self.coarse)
-        fine, coarse = (
-            NodalLoads(_spread(rows, at, finer, shape, steps), shape[0] * shape[1]) for finer, shape in both
-        )
-        return fine, coarse
+        if refined:
+            return Faces((1, 1), self.shape, steps)
+        return Faces((self.refinement.profile, self.refinement.width), self.coarse, steps)
+
+    def loads(self, rows: Rows, at: Array, refined: bool = True) -> NodalLoads:
+        """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2)."""
+        faces = self.faces(refined)
+        return NodalLoads(_spread(rows, at, faces), faces.shape[0] * faces.shape[1])

@@ -1,12 +1,12 @@
 """Loads of a pair of teeth that may act: their gaps, lever arms and nodal forces on both bodies."""
 
-from dataclasses import dataclass, fields, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.averages import HatPoints, Lattice, NodalLoads, closing
+from facegear.contact.averages import HatPoints, Lattice, NodalLoads, Rows, closing, rows_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,8 +15,10 @@ class Candidates:
     edge.
 
     hats (m,) lattice nodes and their `column` along the width; gap (m,) m and lever_arm (m,) m averaged over
-    the hat; whether it presses on a `fillet` (m,) of either gear; loads on the lattice nodes `pinion` and
-    `gear`, and on the unrefined ones `pinion_coarse`, `gear_coarse`, m rows each.
+    the hat; whether it presses on a `fillet` (m,) of either gear; `averages` over the points under each hat,
+    which stand at refined coordinates `at` (q, 2) on the `lattices` of pinion and gear. Loads on the lattice
+    nodes `pinion` and `gear`, and on the unrefined ones `pinion_coarse`, `gear_coarse`, m rows each, are made
+    when they are asked for.
     """
 
     tooth: int
@@ -25,10 +27,25 @@ class Candidates:
     gap: Array
     lever_arm: Array
     fillet: Mask
-    pinion: NodalLoads
-    gear: NodalLoads
-    pinion_coarse: NodalLoads
-    gear_coarse: NodalLoads
+    averages: Rows
+    at: tuple[Array, Array]
+    lattices: tuple[Lattice, Lattice]
+
+    @cached_property
+    def pinion(self) -> NodalLoads:
+        return self.lattices[0].loads(self.averages, self.at[0])
+
+    @cached_property
+    def gear(self) -> NodalLoads:
+        return self.lattices[1].loads(self.averages, self.at[1])
+
+    @cached_property
+    def pinion_coarse(self) -> NodalLoads:
+        return self.lattices[0].loads(self.averages, self.at[0], refined=False)
+
+    @cached_property
+    def gear_coarse(self) -> NodalLoads:
+        return self.lattices[1].loads(self.averages, self.at[1], refined=False)
 
     @property
     def overlap(self) -> float:
@@ -40,12 +57,15 @@ class Candidates:
         """Those marked (m,)."""
         if keep.all():
             return self
-        parts = {field.name: getattr(self, field.name) for field in fields(self)[1:]}
-        kept: dict[str, Any] = {
-            name: part.only(keep) if isinstance(part, NodalLoads) else part[keep]
-            for name, part in parts.items()
-        }
-        return replace(self, **kept)
+        return replace(
+            self,
+            hats=self.hats[keep],
+            column=self.column[keep],
+            gap=self.gap[keep],
+            lever_arm=self.lever_arm[keep],
+            fillet=self.fillet[keep],
+            averages=rows_of(*self.averages, keep),
+        )
 
 
 def candidates_of(
@@ -66,18 +86,6 @@ def candidates_of(
     rows, node, gap, lever_arm, fillet = closing(points, min_area, first, pinion.shape, ends, limit)
     if node.size == 0:
         return []
-    on_pinion, pinion_coarse = pinion.loads(rows, points.pinion)
-    on_gear, gear_coarse = gear.loads(rows, points.gear)
-    candidates = Candidates(
-        tooth=tooth,
-        hats=node,
-        column=node % pinion.shape[1],
-        gap=gap,
-        lever_arm=lever_arm,
-        fillet=fillet,
-        pinion=on_pinion,
-        gear=on_gear,
-        pinion_coarse=pinion_coarse,
-        gear_coarse=gear_coarse,
-    )
-    return [candidates]
+    column = node % pinion.shape[1]
+    at = points.pinion, points.gear
+    return [Candidates(tooth, node, column, gap, lever_arm, fillet, rows, at, (pinion, gear))]

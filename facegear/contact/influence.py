@@ -1,17 +1,22 @@
 """Compliance between candidate hats of a position: both bodies, own teeth and neighbours."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.averages import NodalLoads, Rows
+from facegear.contact import averages
+from facegear.contact.averages import Faces, NodalLoads, Rows, functions_at
+from facegear.contact.bodies import surface
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
 from facegear.machine_code.compiler import compiler, for_callers
 
 compiled, inlined = compiler(), for_callers()
-compiled_sums = compiler(fastmath={"contract", "reassoc"})
+compiled_sums = compiler(
+    Path(averages.__file__), Path(surface.__file__), fastmath={"contract", "reassoc"}, error_model="numpy"
+)
 """For sums of products, whose terms may be added in any order."""
 
 BLOCK = 128
@@ -69,55 +74,74 @@ def _approach(
     for pair, force in loads:
         teeth_apart = here.tooth - pair.tooth
         if teeth_apart == 0:
-            total += _response(here.pinion, pinion.own, pair.pinion, force)
-            total += _response(here.gear, gear.own, pair.gear, force)
+            given = ((pinion.own, pair.pinion), (gear.own, pair.gear))
         elif coupled:
-            total += _response(here.pinion_coarse, pinion.block(teeth_apart), pair.pinion_coarse, force)
-            total += _response(here.gear_coarse, gear.block(teeth_apart), pair.gear_coarse, force)
+            blocks = pinion.block(teeth_apart), gear.block(teeth_apart)
+            given = ((blocks[0], pair.pinion_coarse), (blocks[1], pair.gear_coarse))
+        else:
+            continue
+        pushed = np.ascontiguousarray(force.T)
+        for at, lattice, (compliance, nodal) in zip(here.at, here.lattices, given, strict=True):
+            if compliance is not None:
+                faces = lattice.faces(refined=teeth_apart == 0)
+                total += _moved(here.averages, at, faces, compliance, nodal.rows, pushed)
     return total
 
 
-def _response(seen: NodalLoads, compliance: Array | None, loads: NodalLoads, forces: Array) -> Array:
-    if compliance is None:
-        return np.zeros((len(seen.rows[0]) - 1, forces.shape[1]))
-    return _moved(seen.rows, compliance, loads.rows, np.ascontiguousarray(forces.T))
-
-
 @compiled_sums
-def _moved(seen: Rows, compliance: Array, loads: Rows, forces: Array) -> Array:
-    """Rows over the displacements by load cases (t, m) of rows of loads: (k, t)."""
+def _moved(seen: Rows, at: Array, faces: Faces, compliance: Array, loads: Rows, forces: Array) -> Array:
+    """Rows over points at lattice coordinates (q, 2) on faces, of the displacements by load cases (t, m) of
+    rows of nodal loads: (k, t).
+    """
     cases = forces.shape[0]
-    pushed = np.zeros(forces.shape[1], np.bool_)
-    for t in range(cases):
-        for i in range(pushed.size):
-            pushed[i] |= forces[t, i] != 0.0
-    pointer, index, weight = loads
-    mark = np.zeros(compliance.shape[1], np.bool_)
-    for i in range(pushed.size):
-        for k in range(pointer[i], pointer[i + 1] if pushed[i] else pointer[i]):
-            mark[index[k]] = True
-    loaded, slot = _listed(mark)
-    nodal = np.zeros((cases, loaded.size))
-    for i in range(pushed.size):
-        for k in range(pointer[i], pointer[i + 1] if pushed[i] else pointer[i]):
+    loaded, nodal = _nodal(loads, forces, compliance.shape[1])
+    base, values = functions_at(seen[1], at, faces)
+    width, columns = values.shape[1], faces.shape[1]
+    offset = faces.steps[:, 0] * columns + faces.steps[:, 1]
+    slot = np.full(compliance.shape[0], -1)
+    there, line = np.zeros((base.size, cases)), np.empty(loaded.size)
+    moved, count = np.empty((compliance.shape[0], cases)), 0
+    for point in range(base.size):
+        for a in range(width if base[point] >= 0 else 0):
+            node = base[point] + offset[a]
+            if slot[node] < 0:
+                row = compliance[node]
+                for b in range(loaded.size):
+                    line[b] = row[loaded[b]]
+                for t in range(cases):
+                    total = 0.0
+                    for b in range(loaded.size):
+                        total += line[b] * nodal[t, b]
+                    moved[count, t] = total
+                slot[node] = count
+                count += 1
             for t in range(cases):
-                nodal[t, slot[index[k]]] += weight[k] * forces[t, i]
-    used, slot = _used(seen[1], compliance.shape[0])
-    moved, line = np.empty((used.size, cases)), np.empty(loaded.size)
-    for a in range(used.size):
-        for b in range(loaded.size):
-            line[b] = compliance[used[a], loaded[b]]
-        for t in range(cases):
-            total = 0.0
-            for b in range(loaded.size):
-                total += line[b] * nodal[t, b]
-            moved[a, t] = total
-    result = np.zeros((seen[0].size - 1, cases))
+                there[point, t] += values[point, a] * moved[slot[node], t]
+    pointer, index, weight = seen
+    result = np.zeros((pointer.size - 1, cases))
     for i in range(result.shape[0]):
-        for k in range(seen[0][i], seen[0][i + 1]):
+        for k in range(pointer[i], pointer[i + 1]):
             for t in range(cases):
-                result[i, t] += seen[2][k] * moved[slot[seen[1][k]], t]
+                result[i, t] += weight[k] * there[index[k], t]
     return result
+
+
+@inlined
+def _nodal(loads: Rows, forces: Array, nodes: int) -> tuple[Integers, Array]:
+    """The nodes (l,) that load cases (t, m) of rows load, and the loads (t, l) on them."""
+    pointer, index, weight = loads
+    every = np.zeros((nodes, forces.shape[0]))
+    mark = np.zeros(nodes, np.bool_)
+    for i in range(forces.shape[1]):
+        pushes = False
+        for t in range(forces.shape[0]):
+            pushes |= forces[t, i] != 0.0
+        for k in range(pointer[i], pointer[i + 1] if pushes else pointer[i]):
+            mark[index[k]] = True
+            for t in range(forces.shape[0]):
+                every[index[k], t] += weight[k] * forces[t, i]
+    loaded = np.flatnonzero(mark)
+    return loaded, np.ascontiguousarray(every[loaded].T)
 
 
 def product(first: NodalLoads, compliance: Array | None, second: NodalLoads) -> Array:
@@ -142,21 +166,79 @@ def _product(first: Rows, compliance: Array, second: Rows) -> Array:
     return np.ascontiguousarray(result.T)
 
 
-@compiled
+@compiled_sums
 def _symmetric(rows: Rows, compliance: Array) -> Array:
-    """`_product` of rows with themselves."""
-    half, slot = _half(rows, compliance, rows[1])
+    """`_product` of rows with themselves by a symmetric compliance.
+
+    Rows are taken in the order of their first nodes, so that each meets those after it, and of the first
+    product only the columns from its own first node on.
+    """
     pointer, index, weight = rows
-    result = np.zeros((pointer.size - 1, pointer.size - 1))
-    for j in range(result.shape[0]):
-        for k in range(pointer[j], pointer[j + 1]):
-            row, w = slot[index[k]], weight[k]
-            for i in range(j + 1):
-                result[j, i] += w * half[row, i]
-    for j in range(result.shape[0]):
-        for i in range(j):
-            result[i, j] = result[j, i]
+    used, slot = _used(index, compliance.shape[0])
+    at, count = slot[index], pointer.size - 1
+    order, first, end = _by_first(pointer, at, used.size)
+    half, part = np.empty((used.size, count)), np.empty((used.size, BLOCK))
+    line = np.empty(max(BLOCK, count))
+    for start in range(0, used.size, BLOCK):
+        size = min(BLOCK, used.size - start)
+        begun = filled = 0
+        while begun < count and first[begun] < start + size:
+            for a in range(filled, end[begun]):
+                for b in range(size):
+                    part[a, b] = compliance[used[a], used[start + b]]
+            filled = max(filled, end[begun])
+            row = order[begun]
+            _sum_of_rows((pointer[row], pointer[row + 1]), at, weight, part, line, size)
+            for b in range(size):
+                half[start + b, begun] = line[b]
+            begun += 1
+    result = np.empty((count, count))
+    for j in range(count):
+        row = order[j]
+        _sum_of_rows((pointer[row], pointer[row + 1]), at, weight, half, line, j + 1)
+        for i in range(j + 1):
+            result[row, order[i]] = result[order[i], row] = line[i]
     return result
+
+
+@inlined
+def _sum_of_rows(
+    span: tuple[int, int], index: Integers, weight: Array, rows: Array, total: Array, size: int
+) -> None:
+    """Fill in the sum of rows numbered `index` by weight, over a span of both, as far as `size`."""
+    k, end = span
+    total[:size] = 0.0
+    while k + 3 < end:
+        a, b, c, d = index[k], index[k + 1], index[k + 2], index[k + 3]
+        u, v, w, x = weight[k], weight[k + 1], weight[k + 2], weight[k + 3]
+        for i in range(size):
+            total[i] += u * rows[a, i] + v * rows[b, i] + w * rows[c, i] + x * rows[d, i]
+        k += 4
+    while k < end:
+        a, u = index[k], weight[k]
+        for i in range(size):
+            total[i] += u * rows[a, i]
+        k += 1
+
+
+@inlined
+def _by_first(pointer: Integers, index: Integers, columns: int) -> tuple[Integers, Integers, Integers]:
+    """Numbers (m,) of rows in the order of their first column, and of each in that order its first column and
+    where its columns end.
+    """
+    count = pointer.size - 1
+    first, end = np.full(count, columns), np.zeros(count, np.int64)
+    begin = np.zeros(columns + 2, np.int64)
+    for i in range(count):
+        for k in range(pointer[i], pointer[i + 1]):
+            first[i], end[i] = min(first[i], index[k]), max(end[i], index[k] + 1)
+        begin[first[i] + 1] += 1
+    begin = np.cumsum(begin)
+    order = np.empty(count, np.int64)
+    for i in range(count):
+        order[begin[first[i]]] = i
+        begin[first[i]] += 1
+    return order, first[order], end[order]
 
 
 @inlined

@@ -9,7 +9,7 @@ import numpy as np
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.candidates import Candidates
 from facegear.contact.solver import ContactSolution
-from facegear.contact.strip import Bodies, solve_torques
+from facegear.contact.strip import Bodies, only, parts_of, solve_torques
 from facegear.errors import NotConverged
 from facegear.geometry.unloaded import PAIRS
 
@@ -135,27 +135,29 @@ def solve_position(
     else:
         tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
         raise NotConverged("contact", where(max(torques)), tried)
-    results = [_result(pair, candidates, contacts[i]) for i in np.argsort(order)]
+    loaded = np.any([contact.force > 0.0 for contact in contacts], axis=0)
+    overlap = pair.base_radius * max(loads.overlap for loads in candidates)
+    carrying = only(candidates, loaded)
+    results = [_result(pair, carrying, overlap, contacts[i], loaded) for i in np.argsort(order)]
     return results, contacts[0].rotation
 
 
 def _result(
     pair: PairAtPosition,
-    candidates: list[Candidates],
+    carrying: list[Candidates],
+    overlap: float,
     contact: ContactSolution,
+    loaded: Mask,
 ) -> LoadedPosition:
+    """Of the candidates that carry load at any torque, those marked among all (n,)."""
     base = pair.base_radius
     load_share = np.zeros(len(PAIRS))
-    in_fillets = overlap = 0.0
-    spots, start = [], 0
-    for loads in candidates:
-        rows = slice(start, start + len(loads.hats))
-        start = rows.stop
-        force = contact.force[rows]
+    in_fillets = 0.0
+    spots, forces = [], contact.force[loaded]
+    for loads, force in zip(carrying, parts_of(carrying, forces), strict=True):
         part = force * loads.lever_arm / contact.torque
         load_share[np.searchsorted(PAIRS, loads.tooth)] = part.sum()
         in_fillets += float(part[loads.fillet].sum())
-        overlap = max(overlap, base * loads.overlap)
         on = force > 0.0
         if on.any():
             spots.append(

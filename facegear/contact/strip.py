@@ -7,11 +7,12 @@ strip alone is many times cheaper, and one product shows whether the rest stays 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
 
-from facegear.arrays import Array, Mask
+from facegear.arrays import AnyArray, Array, Mask
 from facegear.contact.candidates import Candidates
 from facegear.contact.solver import TOLERANCE, ContactSolution, solve_contact
 
@@ -64,9 +65,14 @@ def _turns(pairs: list[Candidates]) -> _Turns:
 
 def only(pairs: list[Candidates], keep: Mask) -> list[Candidates]:
     """Those marked (n,), pairs without any left out."""
-    ends = np.cumsum([len(pair.hats) for pair in pairs])[:-1]
-    parts = zip(pairs, np.split(keep, ends), strict=True)
+    parts = zip(pairs, parts_of(pairs, keep), strict=True)
     return [pair.only(marked) for pair, marked in parts if marked.any()]
+
+
+def parts_of(pairs: list[Candidates], values: AnyArray) -> list[AnyArray]:
+    """Values of all candidates (n,), pair by pair."""
+    ends = np.cumsum([0, *(len(pair.hats) for pair in pairs)])
+    return [values[start:end] for start, end in pairwise(ends)]
 
 
 def solve_torques(

@@ -93,7 +93,7 @@ def test_loads_spread_in_one_pass_are_the_sparse_product(linear):
     shape, points = (9, 7), rng.uniform(0, 6, (40, 2))
     matrix = sp.random_array((12, 40), density=0.2, format="csr", rng=rng)
     rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
-    loads, _ = Lattice(shape, Refinement(), linear).loads(rows, points)
+    loads = Lattice(shape, Refinement(), linear).loads(rows, points)
     pointer, index, weight = loads.rows
     spread = sp.csr_matrix((weight, index, pointer), shape=(12, 63)).toarray()
     expected = (matrix @ interpolation(points, shape, linear)).toarray()
