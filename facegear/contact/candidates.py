@@ -1,7 +1,6 @@
 """Loads of a pair of teeth that may act: their gaps, lever arms and nodal forces on both bodies."""
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,9 +15,7 @@ class Candidates:
 
     hats (m,) lattice nodes and their `column` along the width; gap (m,) m and lever_arm (m,) m averaged over
     the hat; whether it presses on a `fillet` (m,) of either gear; `averages` over the points under each hat,
-    which stand at refined coordinates `at` (q, 2) on the `lattices` of pinion and gear. Loads on the lattice
-    nodes `pinion` and `gear`, and on the unrefined ones `pinion_coarse`, `gear_coarse`, m rows each, are made
-    when they are asked for.
+    which stand at refined coordinates `at` (q, 2) on the `lattices` of pinion and gear.
     """
 
     tooth: int
@@ -30,22 +27,13 @@ class Candidates:
     averages: Rows
     at: tuple[Array, Array]
     lattices: tuple[Lattice, Lattice]
+    _made: dict[tuple[int, bool], NodalLoads] = field(default_factory=dict, init=False)
 
-    @cached_property
-    def pinion(self) -> NodalLoads:
-        return self.lattices[0].loads(self.averages, self.at[0])
-
-    @cached_property
-    def gear(self) -> NodalLoads:
-        return self.lattices[1].loads(self.averages, self.at[1])
-
-    @cached_property
-    def pinion_coarse(self) -> NodalLoads:
-        return self.lattices[0].loads(self.averages, self.at[0], refined=False)
-
-    @cached_property
-    def gear_coarse(self) -> NodalLoads:
-        return self.lattices[1].loads(self.averages, self.at[1], refined=False)
+    def loads(self, side: int, refined: bool) -> NodalLoads:
+        """On the nodes of the pinion's (0) or the gear's (1) lattice, before refinement unless `refined`."""
+        if (side, refined) not in self._made:
+            self._made[side, refined] = self.lattices[side].loads(self.averages, self.at[side], refined)
+        return self._made[side, refined]
 
     @property
     def overlap(self) -> float:

@@ -37,13 +37,16 @@ def influence_matrix(
     matrix = np.zeros((ends[-1], ends[-1]))
     for i, first in enumerate(pairs):
         own = slice(ends[i], ends[i + 1])
-        matrix[own, own] = _symmetric(first.pinion.rows, pinion.own) + _symmetric(first.gear.rows, gear.own)
+        for side, body in enumerate((pinion, gear)):
+            matrix[own, own] += _symmetric(first.loads(side, True).rows, body.own)
         for j in range(i) if coupled else ():
             second = pairs[j]
             other = slice(ends[j], ends[j + 1])
             teeth_apart = first.tooth - second.tooth
-            block = product(first.pinion_coarse, pinion.block(teeth_apart), second.pinion_coarse)
-            block += product(first.gear_coarse, gear.block(teeth_apart), second.gear_coarse)
+            block = np.zeros((len(first.hats), len(second.hats)))
+            for side, body in enumerate((pinion, gear)):
+                seen, loads = first.loads(side, False), second.loads(side, False)
+                block += product(seen, body.block(teeth_apart), loads)
             matrix[own, other] = block
             matrix[other, own] = block.T
     return matrix
@@ -71,59 +74,70 @@ def _approach(
     coupled: bool,
 ) -> Array:
     total = np.zeros((len(here.hats), loads[0][1].shape[1]))
-    for pair, force in loads:
-        teeth_apart = here.tooth - pair.tooth
-        if teeth_apart == 0:
-            given = ((pinion.own, pair.pinion), (gear.own, pair.gear))
-        elif coupled:
-            blocks = pinion.block(teeth_apart), gear.block(teeth_apart)
-            given = ((blocks[0], pair.pinion_coarse), (blocks[1], pair.gear_coarse))
-        else:
-            continue
-        pushed = np.ascontiguousarray(force.T)
-        for at, lattice, (compliance, nodal) in zip(here.at, here.lattices, given, strict=True):
-            if compliance is not None:
-                faces = lattice.faces(refined=teeth_apart == 0)
-                total += _moved(here.averages, at, faces, compliance, nodal.rows, pushed)
+    for side, body in enumerate((pinion, gear)):
+        for refined in (True, False) if coupled and len(loads) > 1 else (True,):
+            faces = here.lattices[side].faces(refined)
+            base, values, used, slot = _functions(here.averages[1], here.at[side], faces)
+            moved = np.zeros((used.size, total.shape[1]))
+            for pair, force in loads:
+                teeth_apart = here.tooth - pair.tooth
+                compliance = body.own if refined else body.block(teeth_apart)
+                if (teeth_apart == 0) == refined and compliance is not None:
+                    pushed = np.ascontiguousarray(force.T)
+                    _move(moved, used, compliance, pair.loads(side, refined).rows, pushed)
+            _add_averages(total, here.averages, base, values, faces, slot, moved)
     return total
 
 
 @compiled_sums
-def _moved(seen: Rows, at: Array, faces: Faces, compliance: Array, loads: Rows, forces: Array) -> Array:
-    """Rows over points at lattice coordinates (q, 2) on faces, of the displacements by load cases (t, m) of
-    rows of nodal loads: (k, t).
+def _functions(index: Integers, at: Array, faces: Faces) -> tuple[Integers, Array, Integers, Integers]:
+    """`functions_at` points at coordinates (q, 2), the nodes (u,) of their faces, and the number of each node
+    of the lattice among those.
     """
-    cases = forces.shape[0]
+    base, values = functions_at(index, at, faces)
+    offset = faces.steps[:, 0] * faces.shape[1] + faces.steps[:, 1]
+    mark = np.zeros(faces.shape[0] * faces.shape[1], np.bool_)
+    for first in base:
+        for a in range(offset.size if first >= 0 else 0):
+            mark[first + offset[a]] = True
+    used, slot = _listed(mark)
+    return base, values, used, slot
+
+
+@compiled_sums
+def _move(moved: Array, used: Integers, compliance: Array, loads: Rows, forces: Array) -> None:
+    """Add to displacements (u, t) of nodes (u,) those by load cases (t, m) of rows of nodal loads."""
     loaded, nodal = _nodal(loads, forces, compliance.shape[1])
-    base, values = functions_at(seen[1], at, faces)
-    width, columns = values.shape[1], faces.shape[1]
-    offset = faces.steps[:, 0] * columns + faces.steps[:, 1]
-    slot = np.full(compliance.shape[0], -1)
-    there, line = np.zeros((base.size, cases)), np.empty(loaded.size)
-    moved, count = np.empty((compliance.shape[0], cases)), 0
+    line = np.empty(loaded.size)
+    for a in range(used.size):
+        row = compliance[used[a]]
+        for b in range(loaded.size):
+            line[b] = row[loaded[b]]
+        for t in range(forces.shape[0]):
+            total = 0.0
+            for b in range(loaded.size):
+                total += line[b] * nodal[t, b]
+            moved[a, t] += total
+
+
+@compiled_sums
+def _add_averages(
+    total: Array, rows: Rows, base: Integers, values: Array, faces: Faces, slot: Integers, moved: Array
+) -> None:
+    """Add to rows (k, t) over points the displacements (u, t) of the faces' nodes, numbered by `slot`."""
+    pointer, index, weight = rows
+    cases = total.shape[1]
+    offset = faces.steps[:, 0] * faces.shape[1] + faces.steps[:, 1]
+    there = np.zeros((base.size, cases))
     for point in range(base.size):
-        for a in range(width if base[point] >= 0 else 0):
-            node = base[point] + offset[a]
-            if slot[node] < 0:
-                row = compliance[node]
-                for b in range(loaded.size):
-                    line[b] = row[loaded[b]]
-                for t in range(cases):
-                    total = 0.0
-                    for b in range(loaded.size):
-                        total += line[b] * nodal[t, b]
-                    moved[count, t] = total
-                slot[node] = count
-                count += 1
+        for a in range(offset.size if base[point] >= 0 else 0):
+            node, value = slot[base[point] + offset[a]], values[point, a]
             for t in range(cases):
-                there[point, t] += values[point, a] * moved[slot[node], t]
-    pointer, index, weight = seen
-    result = np.zeros((pointer.size - 1, cases))
-    for i in range(result.shape[0]):
+                there[point, t] += value * moved[node, t]
+    for i in range(pointer.size - 1):
         for k in range(pointer[i], pointer[i + 1]):
             for t in range(cases):
-                result[i, t] += weight[k] * there[index[k], t]
-    return result
+                total[i, t] += weight[k] * there[index[k], t]
 
 
 @inlined

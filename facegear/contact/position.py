@@ -166,8 +166,8 @@ def _result(
                     hats=loads.hats[on],
                     force=force[on],
                     fillet=loads.fillet[on],
-                    on_pinion=loads.pinion_coarse.by(force),
-                    on_gear=loads.gear_coarse.by(force),
+                    on_pinion=loads.loads(0, False).by(force),
+                    on_gear=loads.loads(1, False).by(force),
                 )
             )
     approach = base * contact.rotation

@@ -137,8 +137,8 @@ def _approach(seen: list[Candidates], pairs: list[Candidates], pinion: Blocks, g
     return np.block(
         [
             [
-                product(first.pinion, pinion[first.tooth, second.tooth], second.pinion)
-                + product(first.gear, gear[first.tooth, second.tooth], second.gear)
+                product(first.loads(0, True), pinion[first.tooth, second.tooth], second.loads(0, True))
+                + product(first.loads(1, True), gear[first.tooth, second.tooth], second.loads(1, True))
                 for second in pairs
             ]
             for first in seen

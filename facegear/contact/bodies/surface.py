@@ -15,9 +15,9 @@ import scipy.sparse as sp
 from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, MeshQuad
 
 from facegear.arrays import Array, Integers
-from facegear.machine_code.compiler import compiler
+from facegear.machine_code.compiler import compiler, for_callers
 
-compiled = compiler()
+compiled, inlined = compiler(), for_callers(error_model="numpy")
 
 TWO_POINTS = 3
 """Degree that two Gauss points integrate exactly."""
@@ -59,7 +59,7 @@ def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tupl
     return nodes, values, gradients
 
 
-@compiled
+@inlined
 def locate(
     row: float, column: float, shape: tuple[int, int], size: int, corner: Integers, value: Array, slope: Array
 ) -> None:
@@ -73,7 +73,7 @@ def locate(
         _interval((at - corner[axis]) / size, size, value[axis], slope[axis])
 
 
-@compiled
+@inlined
 def _interval(x: float, degree: int, value: Array, slope: Array) -> None:
     """Fill in values and slopes of the Lagrange polynomials of an interval at x in 0..1."""
     if degree == 1:
