@@ -66,7 +66,7 @@ def answer(system, nodal):
 @pytest.mark.parametrize("body", [0, 1], ids=["pinion", "face gear"])
 def test_contact_forces_and_reactions_of_a_body_balance_in_all_six_components(pressed_teeth, body):
     systems, _, pair, contact = pressed_teeth
-    loads = (pair.pinion, pair.gear)[body]
+    loads = pair.loads(body, True)
     force, _, reaction = answer(systems[body], loads.by(contact.force))
     points = systems[body].points
     scale = np.linalg.norm(force.sum(axis=0))
@@ -84,7 +84,7 @@ def test_contact_forces_and_reactions_of_a_body_balance_in_all_six_components(pr
 )
 def test_bore_feels_the_torque_that_the_contact_was_solved_for(pressed_teeth):
     systems, _, pair, contact = pressed_teeth
-    _, _, reaction = answer(systems[0], pair.pinion.by(contact.force))
+    _, _, reaction = answer(systems[0], pair.loads(0, True).by(contact.force))
     moment = np.cross(systems[0].points, reaction)[:, 1].sum()
     agrees("torque at the bore, N m", abs(moment), TORQUE, relative=1e-3)
 
@@ -92,7 +92,7 @@ def test_bore_feels_the_torque_that_the_contact_was_solved_for(pressed_teeth):
 def test_flanks_displaced_by_the_finite_elements_just_touch_where_pressed(pressed_teeth):
     systems, bodies, pair, contact = pressed_teeth
     approach = np.zeros(len(contact.force))
-    for system, body, loads in zip(systems, bodies, (pair.pinion, pair.gear), strict=True):
+    for system, body, loads in zip(systems, bodies, (pair.loads(0, True), pair.loads(1, True)), strict=True):
         nodal = loads.by(contact.force)
         _, moved, _ = answer(system, nodal)
         normal = system.spread @ np.sum(moved[system.loaded] * system.loaded_normals, axis=1)
@@ -109,6 +109,6 @@ def test_both_gears_are_pressed_alike(pressed_teeth):
     systems, _, pair, contact = pressed_teeth
     forces = [
         np.linalg.norm(answer(system, loads.by(contact.force))[0].sum(axis=0))
-        for system, loads in zip(systems, (pair.pinion, pair.gear), strict=True)
+        for system, loads in zip(systems, (pair.loads(0, True), pair.loads(1, True)), strict=True)
     ]
     assert forces[0] == pytest.approx(forces[1], rel=1e-3)
