@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from facegear.io import arrays, documents, tables
+from facegear.io import arrays, documents
 from facegear.io.atomic import atomic_path
 
 
@@ -28,6 +28,9 @@ def read_part(
         return columnar.read(path, tuple(holds))
     if path.suffix == ".json":
         return documents.read(path, tuple(holds))
+    # Imported here: pandas takes half a second, which jobs without a table would pay as well.
+    from facegear.io import tables
+
     return tables.read(path, tuple(holds), may_be_empty, text)
 
 
@@ -38,6 +41,8 @@ def write_part(path: str | Path, part: Any) -> None:
         with atomic_path(path) as temporary:
             temporary.write_bytes(part)
     elif path.suffix == ".csv":
+        from facegear.io import tables
+
         tables.write(path, part)
     elif path.suffix == ".parquet":
         from facegear.io import columnar

@@ -4,6 +4,9 @@ scikit-fem's form assembly gives the same matrix to rounding and is the referenc
 27-node element it is about ten times slower, which would make it the longest part of a compliance job.
 """
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import scipy.sparse as sp
 from skfem import Basis, MeshHex2
@@ -35,7 +38,9 @@ def elements_of(
     elements = (elements + whole * np.arange(copies)[:, None]).ravel()
     nodes = finer.dofs.element_dofs[:, elements].T.astype(np.int64)
     kind, degree = KINDS[element]
-    shared = {"mapping": finer.mapping(), "dofs": Dofs(finer, kind()), "disable_doflocs": True}
+    mapping = finer.mapping()
+    mapping.invDF = _last_kept(mapping.invDF)
+    shared = {"mapping": mapping, "dofs": Dofs(finer, kind()), "disable_doflocs": True}
 
     def matrices(members: Integers) -> Array:
         basis = Basis(finer, kind(), intorder=degree, elements=elements[members], **shared)
@@ -43,3 +48,17 @@ def elements_of(
 
     rows = (3 * nodes[:, :, None] + np.arange(3)).reshape(len(nodes), -1)
     return Part(matrices, rows, moved, np.tile(cell, copies))
+
+
+def _last_kept(function: Callable[..., Array]) -> Callable[..., Array]:
+    """A function of a mapping that keeps its last result: a basis asks for it with each of its functions."""
+    asked: tuple[Any, ...] = ()
+    result = np.zeros(0)
+
+    def kept(*given: Any) -> Array:
+        nonlocal asked, result
+        if len(given) != len(asked) or any(a is not b for a, b in zip(given, asked, strict=True)):
+            asked, result = given, function(*given)
+        return result
+
+    return kept

@@ -16,10 +16,10 @@ def cholesky(matrix: Array) -> Array:
 
 
 def inverse(factor: Array) -> Array:
-    """Inverse (n, n) from a lower factor, at half the cost of solving for the unit matrix."""
+    """Inverse (n, n) from a lower factor, zeros above, at half the cost of solving for the unit matrix."""
     lower, _ = lapack.dpotri(factor, lower=1)
-    result = np.tril(lower)
-    result += np.tril(lower, -1).T
+    result = lower + lower.T
+    np.fill_diagonal(result, lower.diagonal())
     return result
 
 

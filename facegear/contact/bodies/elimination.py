@@ -62,7 +62,8 @@ def schur_complement(parts: Sequence[Part], kept: Integers, centres: Array) -> A
     """Dense A_kk - A_kr A_rr^-1 A_rk with k the `kept` dof and r the others, shape (k, k), ordered as `kept`.
 
     A, the sum of `parts`, is symmetric and positive definite on r; its cells lie around `centres` (m, 3).
-    Raises FacegearError if it is not positive definite: the body is not held or its mesh is broken.
+    It holds on to the memory that its making took. Raises FacegearError if A is not positive definite: the
+    body is not held or its mesh is broken.
     """
     cells = coupled(parts, len(centres))
     fronts = dissection(cells, centres, kept)
@@ -72,18 +73,17 @@ def schur_complement(parts: Sequence[Part], kept: Integers, centres: Array) -> A
     steps, size = _steps(cells, number, fronts, kept.size)
     del cells
     stack, row_of = np.empty(size), np.empty(order.size, dtype=np.int64)
-    complement = np.empty((kept.size, kept.size), order="F")
+    rest = stack[:0].reshape(0, 0)
     for step, added in zip(steps, _added(parts, number, fronts, len(centres)), strict=True):
-        pivot, below = step.columns(stack)
-        rest = complement if step is steps[-1] else step.rest(stack)
+        (pivot, below), rest = step.columns(stack), step.rest(stack)
         _sum_up(added, step, steps, stack, row_of, (pivot, below, rest))
         _eliminate(pivot, below, rest)
         if step is not steps[-1]:
             _move_down(rest.ravel(order="F"), step.remainder(stack).ravel(order="F"))
-    _mirror(complement)
-    if not np.isfinite(complement).all():
+    _mirror(rest)
+    if not np.isfinite(rest).all():
         raise FacegearError(SINGULAR)
-    return complement
+    return rest
 
 
 def _added(
@@ -102,7 +102,7 @@ def _added(
 def _steps(cells: sp.csr_matrix, number: Integers, fronts: list[Front], kept: int) -> tuple[list[Step], int]:
     """What each front is coupled to among the dof that are eliminated after it or kept, and its memory.
 
-    Also the size of the stack. The last front is coupled to all that is kept, which lies elsewhere.
+    Also the size of the stack. The last front is coupled to all that is kept.
     """
     steps: list[Step] = []
     top = size = 0
@@ -118,7 +118,7 @@ def _steps(cells: sp.csr_matrix, number: Integers, fronts: list[Front], kept: in
         outside = np.flatnonzero(touched)
         left = steps[front.before[0]].left if front.before else top
         steps.append(Step(own, outside, front.before, top, left))
-        size = max(size, top + own.size * (own.size + outside.size) + (0 if last else outside.size**2))
+        size = max(size, top + own.size * (own.size + outside.size) + outside.size**2)
         top = left + outside.size**2
     return steps, size
 

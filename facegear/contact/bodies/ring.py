@@ -12,6 +12,9 @@ from facegear.arrays import Array
 from facegear.contact.bodies.dense import cholesky, inverse, solved
 from facegear.contact.options import Ends
 
+APART = 1e-14
+"""Stiffness between the ends of a chain, over the largest of it, that is rounding."""
+
 
 def joined(first: Array, second: Array) -> Array:
     """Stiffness (2s, 2s) of two chains in series, right face of the first on the left face of the second."""
@@ -27,15 +30,26 @@ def joined(first: Array, second: Array) -> Array:
 
 
 def chain(faces: Array, teeth: int) -> Array:
-    """Stiffness (2s, 2s) of `teeth` >= 1 equal teeth in series, by binary powers."""
-    result, power = None, faces
-    while True:
-        if teeth & 1:
-            result = power if result is None else joined(result, power)
-        teeth >>= 1
-        if not teeth and result is not None:
-            return result
-        power = joined(power, power)
+    """Stiffness (2s, 2s) of `teeth` >= 1 equal teeth in series, by binary powers.
+
+    Once the ends of a power do not feel each other, those of all longer chains are its own to rounding.
+    """
+    powers = [faces]
+    while 2 ** len(powers) <= teeth:
+        if apart(powers[-1]):
+            return powers[-1]
+        powers.append(joined(powers[-1], powers[-1]))
+    result = powers[-1]
+    for doublings in range(len(powers) - 1):
+        if teeth >> doublings & 1:
+            result = joined(result, powers[doublings])
+    return result
+
+
+def apart(stiffness: Array) -> bool:
+    """Whether the two ends of a chain feel each other less than rounding, as those of a long one do."""
+    s = len(stiffness) // 2
+    return bool(np.abs(stiffness[:s, s:]).max(initial=0.0) <= APART * np.abs(stiffness.diagonal()).max())
 
 
 def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> list[tuple[Array, Array]]:
@@ -54,7 +68,7 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
         for k in range(neighbours, -1, -1):
             around = outside[np.ix_(swap, swap)]
             rests.append((around, around))
-            if k:
+            if k and not apart(outside):
                 outside = joined(faces, outside)
         return rests[::-1]
     before = (teeth - 1) // 2

@@ -48,7 +48,7 @@ def condense(system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superel
         parts, centres = _with_gauges(parts, centres, read, at)
     schur = schur_complement(parts, kept, centres)
     k, ends = flank.size, flank.size + faces.size
-    readings, schur = schur[ends:, :ends], schur[:ends, :ends]
+    readings, schur = schur[ends:, :ends].copy(), schur[:ends, :ends]
     lower = cholesky(schur[:k, :k])
     half = solve_triangular(lower, schur[:k, k:], lower=True, check_finite=False)
     outer = schur[k:, k:] - half.T @ half

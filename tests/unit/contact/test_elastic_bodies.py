@@ -18,6 +18,8 @@ from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.elements import mesh_of
 from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.layer import tied_system
+from facegear.contact.bodies.ring import apart, chain, joined
+from facegear.contact.bodies.substructure import condense
 from facegear.contact.gear_flank import GearFlank, from_arrays, to_arrays
 from facegear.contact.options import Refinement
 from facegear.contact.root_gauges import root_gauges
@@ -294,6 +296,17 @@ def test_sector_of_one_condensed_tooth_is_the_sector_meshed_whole():
     for seen in (-1, 1):
         expected = moved.reshape(-1, 3)[nodes[seen + 2, 1]] @ normals[seen + 2][1]
         assert blocks[seen, 1][13, 8] == pytest.approx(expected, rel=1e-8)
+
+
+@pytest.mark.parametrize("teeth", [3, 50, 51])
+def test_a_chain_of_teeth_is_the_one_joined_tooth_by_tooth(slab, teeth):
+    faces = condense(tied_system(slab[1], Refinement())).faces
+    joined_in_turn = faces
+    for _ in range(teeth - 1):
+        joined_in_turn = joined(joined_in_turn, faces)
+    long = chain(faces, teeth)
+    np.testing.assert_allclose(long, joined_in_turn, rtol=0.0, atol=1e-12 * np.abs(faces).max())
+    assert apart(long) == (teeth > 3)
 
 
 @against(
