@@ -6,7 +6,7 @@ TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
 IDLE := tests?|testing|fontTools|lexers|docutils|cuda|distutils
-.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers verification platforms mutation lock clean
+.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks ratios peers verification platforms mutation lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -80,6 +80,10 @@ notebooks: tools
 
 benchmarks: check tools
 	$(BIN)/snakemake --cores $(CORES) benchmarks
+
+# Processor time of the dear jobs against an earlier commit, both in turns: make ratios SINCE=COMMIT.
+ratios: check tools
+	$(BIN)/python -m validation.ratios.run $(SINCE)
 
 peers: check tools
 	$(BIN)/snakemake --cores $(CORES) peers

@@ -1,0 +1,41 @@
+"""Ratios of processor time against an earlier commit, and what they say of the answers."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from facegear.pipeline.table import STAGES
+from validation.ratios.points import POINTS, Point
+from validation.ratios.run import COLUMNS, changes, ratio
+
+MOTIONS = np.array(["period-1", "chaotic", "period-2", "period-1"])
+
+
+def test_code_is_measured_beside_itself_with_the_same_answers(tmp_path):
+    point = Point("config/harmonics_only.yaml", "modal", "s", "docs/theory.md", amount=2)
+    row = ratio("modal", point, (Path.cwd(), Path.cwd()), tmp_path, turns=1)
+    assert tuple(row) == COLUMNS
+    assert row["change"] == 0.0 and row["labels_changed"] == 0
+    assert row["before"] > 0.0 and row["ratio"] == pytest.approx(row["now"] / row["before"])
+
+
+def test_numbers_of_irregular_motions_and_of_changed_labels_do_not_count_as_changes():
+    value = np.array([[1.0], [2.0], [3.0], [4.0]])
+    moved = value * np.array([[1.0], [1.5], [1.0 + 1e-7], [2.0]])
+    now = np.where(np.arange(4) == 3, "irregular", MOTIONS)
+    change, labels_changed, labels = changes(
+        {"motion": MOTIONS, "rms": value}, {"motion": now, "rms": moved}
+    )
+    assert change == pytest.approx(1e-7, rel=1e-6)
+    assert (labels_changed, labels) == (1, 4)
+
+
+def test_arrays_of_another_shape_are_no_small_change():
+    assert changes({"k": np.ones(3)}, {"k": np.ones(4)})[0] == np.inf
+
+
+def test_every_point_is_a_job_of_the_workflow_and_says_where_its_error_stands():
+    for point in POINTS.values():
+        assert set(STAGES[point.stage].wildcards) == set(point.wildcards)
+        assert Path(point.error.partition(",")[0]).is_file()
