@@ -36,11 +36,11 @@ def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
             return call.compute()
 
         @wraps(function)
-        def found(*arguments: P.args, **named: P.kwargs) -> R:
+        def shared(*arguments: P.args, **named: P.kwargs) -> R:
             result: R = kept(_Call(content((arguments, named)), partial(function, *arguments, **named)))
             return result
 
-        return found
+        return shared
 
     return decorate
 

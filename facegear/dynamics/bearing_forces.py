@@ -77,7 +77,7 @@ def _ring_force(displacement: Array, speed: Array, stiffness: Array, clearance: 
     turned = (1.0 - fraction) * (x * u + y * v) / distance**2
     touching = lag * (distance > clearance)
     both = ((x, u), (y, v))
-    along = [fraction * place + (fraction * rate + turned * place) * touching for place, rate in both]
+    along = [fraction * shift + (fraction * rate + turned * shift) * touching for shift, rate in both]
     return stiffness[:, None] * np.stack(along, axis=-1)
 
 

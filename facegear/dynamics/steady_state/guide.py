@@ -75,10 +75,10 @@ def _guided(integrator: Integrator, state: Array, guide: Guide) -> Settled | Non
     for block in BLOCKS:
         run = integrator.run(ends[-1], block)
         ends = np.concatenate([ends, run.ends])
-        found = _orbit_near(integrator, ends[-1], guide)
-        if found is None:
+        nearest = _orbit_near(integrator, ends[-1], guide)
+        if nearest is None:
             return None
-        orbit, residual = found
+        orbit, residual = nearest
         if drawn_in(ends[-1 - RETURNS :] - orbit, guide):
             return Settled(orbit, 1, residual, None, len(ends) - 1, ends[1:])
     return None
