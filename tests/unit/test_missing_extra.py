@@ -1,9 +1,10 @@
 """Without an extra the core goes on working, and what needs it says which one in one line."""
 
-import subprocess
+import os
 import sys
 
 import pytest
+from forked_python import run_together
 
 import facegear
 import facegear.__main__ as command_line
@@ -13,7 +14,7 @@ MEAN = {"mesh_stiffness.mesh_law": "constant_load", "modal.stiffness": "average"
 
 
 def message(module, call):
-    """What a call in a fresh interpreter says in which `module` cannot be imported."""
+    """What a call says in a process without the package, in which `module` cannot be imported."""
     script = f"""
 import sys
 sys.modules[{module!r}] = None
@@ -25,7 +26,7 @@ try:
 except MissingExtra as error:
     print(error)
 """
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    (done,) = run_together([script], {"PYTHONPATH": os.pathsep.join(sys.path)})
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
 

@@ -17,7 +17,8 @@ from test_tolerance_jobs import FILE, project
 import facegear
 
 PROFILE = ("--workflow-profile", str(ROOT / "workflow" / "profiles" / "slurm"))
-CHUNKS = ("samples_0_1999", "samples_2000_3999")
+CHUNKS = ("samples_0_799", "samples_800_1599")
+HARMONICS = "results/tolerances/stiffness/harmonics.csv"
 
 
 def why_not():
@@ -55,7 +56,7 @@ def started(folder):
 
 
 def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothing_stale(tmp_path):
-    found, target = project(tmp_path / "run", 4000, 2000)  # still at work when the second run looks for it
+    found, target = project(tmp_path / "run", 1600, 800)  # still at work when the second run looks for it
     with cluster(tmp_path / "slurm"):
         running = subprocess.Popen(
             found.command(*PROFILE, *target),
@@ -74,18 +75,19 @@ def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothi
         message = found.run(*PROFILE, *target).stderr
         every = jobs()
     assert "ending jobs that a killed run has left working" in message
-    assert "tolerances_chunk tolerances samples 2000 3999: 2000 samples, 0 of them" in message
+    assert "tolerances_chunk tolerances samples 800 1599: 800 samples, 0 of them" in message
     for name in {job[0] for job in every}:
         times = sorted(job[2:4] for job in every if job[0] == name)
         assert all(one[1] <= other[0] for one, other in pairwise(times)), name
     assert sorted(node for _, node, *_, state in every if state == "COMPLETED") == ["n0", "n1"]
-    whole = facegear.load(own, results=None).tolerances(4000).samples()
+    whole = facegear.load(own, results=None).tolerances(1600).samples()
     pd.testing.assert_frame_equal(pd.read_parquet(found.folder / FILE), whole, check_exact=True)
 
 
 @pytest.mark.parametrize("nodes", [1, 4])
 def test_nodes_share_the_chunks_evenly_and_give_the_same_table(tmp_path, nodes):
     found, target = project(tmp_path / "run", 160, 40)
+    found.run(*target[:-1], HARMONICS)
     with cluster(tmp_path / "slurm", nodes):
         found.run(*PROFILE, "--default-resources", "mem_mb=900", "runtime=10", *target)
         chunks = [job for job in jobs() if job[0].startswith("rule_tolerances_chunk")]
@@ -97,9 +99,8 @@ def test_nodes_share_the_chunks_evenly_and_give_the_same_table(tmp_path, nodes):
 
 def test_a_job_that_fails_on_a_node_tells_its_own_line_in_the_terminal(tmp_path):
     found, target = project(tmp_path / "run", 40, 40)
-    harmonics = "results/tolerances/stiffness/harmonics.csv"
-    found.run(*target[:-1], harmonics)
-    path = found.folder / harmonics
+    found.run(*target[:-1], HARMONICS)
+    path = found.folder / HARMONICS
     path.write_text(path.read_text().replace("410000000", "420000000"))
     with cluster(tmp_path / "slurm", 1):
         message = found.run(*PROFILE, *target, check=False)

@@ -142,10 +142,7 @@ def test_rules_are_formatted():
 
 
 def test_snakemake_lint_is_clean(tmp_path):
-    command = [sys.executable, "-m", "snakemake", "--lint", "--snakefile", str(ROOT / "Snakefile")]
-    done = subprocess.run(
-        [*command, "--directory", str(tmp_path)], capture_output=True, text=True, check=False
-    )
+    done = Project(tmp_path).run("--lint", check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Congratulations" in done.stdout + done.stderr
 

@@ -12,6 +12,7 @@ import numba
 import numpy as np
 import pytest
 from force_tables import power_table
+from forked_python import run_together
 from lumped_machines import PLACES
 from oscillators import backlash_oscillator
 from references import against, agrees
@@ -52,17 +53,13 @@ PRINT = "from caller import caller; print(caller({of}), sum(caller.stats.cache_h
 def environment(tmp_path, sources):
     """Of a process that finds the kernels' sources in a folder, with a cache of the test's own."""
     path = os.pathsep.join([str(sources), *sys.path])
-    return {**os.environ, "PYTHONPATH": path, kept.VARIABLE: str(tmp_path / "cache")}
+    return {"PYTHONPATH": path, kept.VARIABLE: str(tmp_path / "cache")}
 
 
 def printed(tmp_path, sources, of="1.0", before=""):
     """The kernel's value, and how many kernels were not compiled; `before` is run first."""
-    command = [sys.executable, "-c", before + PRINT.format(of=of)]
-    done = subprocess.run(
-        command, env=environment(tmp_path, sources), capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout.split()
+    (words,) = printed_together(tmp_path, sources, of, before=before)
+    return words
 
 
 @pytest.fixture
@@ -162,14 +159,12 @@ def test_a_law_without_an_implementation_is_named_in_one_line_with_the_function_
         held_force(Rubber(1.0), 0, 0, 1e-6)
 
 
-def printed_together(tmp_path, sources, *arguments):
+def printed_together(tmp_path, sources, *arguments, before=""):
     """What processes print that start together, each with an argument of its own."""
-    commands = [[sys.executable, "-c", PRINT.format(of=argument)] for argument in arguments]
-    started = [
-        subprocess.Popen(command, env=environment(tmp_path, sources), stdout=subprocess.PIPE, text=True)
-        for command in commands
-    ]
-    return [one.communicate(timeout=60)[0].split() for one in started]
+    programs = [before + PRINT.format(of=argument) for argument in arguments]
+    ended = run_together(programs, environment(tmp_path, sources))
+    assert not any(one.returncode for one in ended), [one.stderr for one in ended]
+    return [one.stdout.split() for one in ended]
 
 
 def test_of_two_processes_that_start_together_one_compiles(tmp_path, clone):

@@ -110,10 +110,11 @@ def test_inp_surfaces_name_the_right_sides(written):
 
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
 def test_calculix_reads_the_deck(written, tmp_path):
+    """It makes the matrix of every element, and solves for displacements along the axis alone."""
     _, (_, _, inp), _ = written
     deck = inp.read_text() + (
         "*MATERIAL, NAME=STEEL\n*ELASTIC\n2.06E11, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL\n"
-        "*BOUNDARY\nCUT_LEFT, 1, 3\n*STEP\n*STATIC\n*CLOAD\n1, 1, 1.\n*END STEP\n"
+        "*BOUNDARY\nALL_NODES, 1, 2\nCUT_LEFT, 3, 3\n*STEP\n*STATIC\n*CLOAD\n1, 3, 1.\n*END STEP\n"
     )
     (tmp_path / "deck.inp").write_text(deck)
     run = subprocess.run(["ccx", "deck"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
