@@ -27,16 +27,10 @@
   const ROUND = 180, SECONDS = 2.5, CODE = 32767;
 
   async function start(root) {
-    const canvas = root.querySelector("canvas");
-    const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
-    if (!gl || !window.DecompressionStream) { root.querySelector("p.missing").hidden = false; return; }
-    const data = JSON.parse(await unpacked(root.querySelector("script")));
-    const find = (name) => root.querySelector(`[name=${name}]`);
-    const program = linked(gl, VERTEX, FRAGMENT, ["point", "shape"]);
-    gl.useProgram(program);
-    const names = ["camera", "order", "phase", "swing", "standing", "scale", "eye"];
-    const places = Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(program, name)]));
-    gl.uniform3fv(places.scale, parsed(data.colours));
+    const uniforms = ["camera", "order", "phase", "swing", "standing", "scale", "eye"];
+    const viewer = await opened(root, VERTEX, FRAGMENT, ["point", "shape"], uniforms);
+    if (!viewer) return;
+    const { canvas, gl, data, find, places } = viewer;
 
     // the outline of the section, turned about the axis
     for (const gear of Object.values(data.gears)) {
@@ -48,18 +42,7 @@
           const a = k * count + i, b = k * count + ((i + 1) % count), next = (((k + 1) % ROUND) - k) * count;
           indices.push(a, b, b + next, a, b + next, a + next);
         }
-      Object.assign(gear, { count, array: gl.createVertexArray(), drawn: indices.length, shapes: gl.createBuffer(), held: null });
-      gl.bindVertexArray(gear.array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, points, gl.STATIC_DRAW);
-      gl.enableVertexAttribArray(0);
-      gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(indices), gl.STATIC_DRAW);
-      gl.bindBuffer(gl.ARRAY_BUFFER, gear.shapes);
-      gl.bufferData(gl.ARRAY_BUFFER, 12 * ROUND * count, gl.DYNAMIC_DRAW);
-      gl.enableVertexAttribArray(1);
-      gl.vertexAttribPointer(1, 3, gl.FLOAT, false, 0, 0);
+      Object.assign(gear, surface(gl, points, indices), { shapes: changing(gl, ROUND * count), held: null });
     }
 
     const home = { azimuth: -2.1, height: 0.72, zoom: 0.62 };
@@ -82,23 +65,17 @@
     function draw(time) {
       pending = false;
       if (moving) { phase += ((time - last) / 1000) * ((2 * Math.PI) / SECONDS); last = time; }
-      const dense = Math.min(window.devicePixelRatio || 1, 2);
-      canvas.width = Math.round(canvas.clientWidth * dense);
-      canvas.height = Math.round(canvas.clientHeight * dense);
+      cleared(gl, canvas);
       const mode = data.modes[+find("mode").value], gear = loaded(mode);
       const swing = (data.swing * data.factor * +find("swing").value) / 100;
       const { matrix, back } = cameraMatrix(view, [0, 0, 0], data.size, canvas.width / canvas.height);
-      gl.viewport(0, 0, canvas.width, canvas.height);
-      gl.clearColor(...(matchMedia("(prefers-color-scheme: dark)").matches ? [0.08, 0.1, 0.12] : [1, 1, 1]), 1);
-      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-      gl.enable(gl.DEPTH_TEST);
       gl.uniformMatrix4fv(places.camera, false, matrix);
       gl.uniform3f(places.eye, ...back);
       gl.uniform1f(places.order, mode.order);
       gl.uniform1f(places.phase, phase);
       gl.uniform1f(places.swing, swing);
       gl.uniform1i(places.standing, mode.order > 0 && find("wave").value === "standing" ? 1 : 0);
-      gl.drawElements(gl.TRIANGLES, gear.drawn, gl.UNSIGNED_INT, 0);
+      gl.drawElements(gl.TRIANGLES, gear.count, gl.UNSIGNED_INT, 0);
       const words = mode.order === 1 ? "nodal diameter" : "nodal diameters";
       root.querySelector("output").textContent =
         `${mode.gear} face gear, hub held: ${mode.order} ${words}, mode ${mode.number}, ${mode.frequency_hz} Hz at rest. ` +

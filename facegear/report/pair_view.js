@@ -39,28 +39,10 @@
   }
 
   async function start(root) {
-    const canvas = root.querySelector("canvas");
-    const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
-    if (!gl || !window.DecompressionStream) { root.querySelector("p.missing").hidden = false; return; }
-    const data = JSON.parse(await unpacked(root.querySelector("script")));
-    const find = (name) => root.querySelector(`[name=${name}]`);
-    const program = linked(gl, VERTEX, FRAGMENT, ["point", "load"]);
-    gl.useProgram(program);
-    const uniform = (name) => gl.getUniformLocation(program, name);
-    const places = Object.fromEntries(["camera", "turn", "colour", "painted", "scale", "eye"].map((n) => [n, uniform(n)]));
-    gl.uniform3fv(places.scale, parsed(data.colours));
-
-    function shape(points, indices) {
-      const array = gl.createVertexArray();
-      gl.bindVertexArray(array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, points, gl.STATIC_DRAW);
-      gl.enableVertexAttribArray(0);
-      gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(indices), gl.STATIC_DRAW);
-      return { array, count: indices.length };
-    }
+    const uniforms = ["camera", "turn", "colour", "painted", "scale", "eye"];
+    const viewer = await opened(root, VERTEX, FRAGMENT, ["point", "load"], uniforms);
+    if (!viewer) return;
+    const { canvas, gl, data, find, places } = viewer;
 
     for (const body of data.bodies) {
       const points = [], indices = [];
@@ -68,17 +50,12 @@
         indices.push(...cells(patch.shape, points.length / 3));
         points.push(...decoded(patch.points, "f"));
       }
-      body.tooth = shape(new Float32Array(points), indices);
+      body.tooth = surface(gl, new Float32Array(points), indices);
     }
     // values that change from picture to picture: of every point its value, whether it carries, whether one is known
     function painted(points, indices) {
-      const found = shape(points, indices);
-      Object.assign(found, { values: new Float32Array(points.length), buffer: gl.createBuffer() });
-      gl.bindBuffer(gl.ARRAY_BUFFER, found.buffer);
-      gl.bufferData(gl.ARRAY_BUFFER, found.values, gl.DYNAMIC_DRAW);
-      gl.enableVertexAttribArray(1);
-      gl.vertexAttribPointer(1, 3, gl.FLOAT, false, 0, 0);
-      return found;
+      const found = surface(gl, points, indices);
+      return Object.assign(found, { values: new Float32Array(points.length), buffer: changing(gl, points.length / 3) });
     }
     const flank = painted(decoded(data.lattice.points, "f"), cells(data.lattice.shape));
     const [rows, columns] = data.lattice.shape, nodes = rows * columns;
@@ -119,12 +96,12 @@
       gl.disable(gl.BLEND);
     }
 
-    function paint(surface, turn) {
-      gl.bindVertexArray(surface.array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, surface.buffer);
-      gl.bufferSubData(gl.ARRAY_BUFFER, 0, surface.values);
+    function paint(drawn, turn) {
+      gl.bindVertexArray(drawn.array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, drawn.buffer);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, drawn.values);
       gl.uniformMatrix3fv(places.turn, false, turn);
-      gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
+      gl.drawElements(gl.TRIANGLES, drawn.count, gl.UNSIGNED_INT, 0);
     }
 
     function drawLoads(found, index, angle) {
@@ -160,18 +137,11 @@
 
     function draw() {
       pending = false;
-      const dense = Math.min(window.devicePixelRatio || 1, 2);
-      canvas.width = Math.round(canvas.clientWidth * dense);
-      canvas.height = Math.round(canvas.clientHeight * dense);
+      cleared(gl, canvas);
       const index = +find("position").value, found = data.torques[+find("torque").value];
       const position = data.positions[index], clear = find("clear").value;
       const phi1 = ((position - 0.5) * 2 * Math.PI) / pinion.teeth, phi2 = (phi1 * pinion.teeth) / gear.teeth;
       const { matrix, back } = cameraMatrix(view, data.centre, data.size, canvas.width / canvas.height);
-      gl.viewport(0, 0, canvas.width, canvas.height);
-      gl.clearColor(...(matchMedia("(prefers-color-scheme: dark)").matches ? [0.08, 0.1, 0.12] : [1, 1, 1]), 1);
-      gl.depthMask(true);
-      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-      gl.enable(gl.DEPTH_TEST);
       gl.depthFunc(gl.LEQUAL);
       gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
       gl.uniformMatrix4fv(places.camera, false, matrix);

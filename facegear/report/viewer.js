@@ -1,4 +1,4 @@
-// What the viewers of the report share: packed arrays, a camera, steering by pointer and buttons.
+// What the viewers of the report share: their start, packed arrays, surfaces, a camera, steering by pointer and buttons.
 "use strict";
 const KINDS = { f: Float32Array, h: Int16Array, H: Uint16Array, b: Int8Array, B: Uint8Array };
 
@@ -40,6 +40,54 @@ function linked(gl, vertex, fragment, attributes) {
 }
 
 const parsed = (colours) => colours.flatMap((colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16) / 255));
+
+// context, data, elements by name and uniforms of a viewer; null where the browser cannot draw it, which the page then says
+async function opened(root, vertex, fragment, attributes, uniforms) {
+  const canvas = root.querySelector("canvas");
+  const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+  if (!gl || !window.DecompressionStream) { root.querySelector("p.missing").hidden = false; return null; }
+  const data = JSON.parse(await unpacked(root.querySelector("script")));
+  const find = (name) => root.querySelector(`[name=${name}]`);
+  const program = linked(gl, vertex, fragment, attributes);
+  gl.useProgram(program);
+  const places = Object.fromEntries(uniforms.map((name) => [name, gl.getUniformLocation(program, name)]));
+  gl.uniform3fv(places.scale, parsed(data.colours));
+  return { canvas, gl, data, find, places };
+}
+
+// triangles between points, three numbers each; they stay bound
+function surface(gl, points, indices) {
+  const array = gl.createVertexArray();
+  gl.bindVertexArray(array);
+  gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+  gl.bufferData(gl.ARRAY_BUFFER, points, gl.STATIC_DRAW);
+  gl.enableVertexAttribArray(0);
+  gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+  gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+  gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(indices), gl.STATIC_DRAW);
+  return { array, count: indices.length };
+}
+
+// buffer of three numbers a point of the bound surface, zero at first, that change from picture to picture
+function changing(gl, count) {
+  const buffer = gl.createBuffer();
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  gl.bufferData(gl.ARRAY_BUFFER, 12 * count, gl.DYNAMIC_DRAW);
+  gl.enableVertexAttribArray(1);
+  gl.vertexAttribPointer(1, 3, gl.FLOAT, false, 0, 0);
+  return buffer;
+}
+
+// an empty picture as fine as the screen, up to twice the page's pixels
+function cleared(gl, canvas) {
+  const dense = Math.min(window.devicePixelRatio || 1, 2);
+  canvas.width = Math.round(canvas.clientWidth * dense);
+  canvas.height = Math.round(canvas.clientHeight * dense);
+  gl.viewport(0, 0, canvas.width, canvas.height);
+  gl.clearColor(...(matchMedia("(prefers-color-scheme: dark)").matches ? [0.08, 0.1, 0.12] : [1, 1, 1]), 1);
+  gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  gl.enable(gl.DEPTH_TEST);
+}
 
 // a drag turns the view, buttons bring it nearer, further and home
 function steered(canvas, find, view, home, redraw) {
