@@ -43,21 +43,30 @@ def run_many(
     kept = periods if kept is None else min(kept, periods)
     runs: dict[int, ManyRun] = {}
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
-    rows: dict[int, Row] = {}
+    rows = {id(each): _row_of(each) for each in set(integrators)}
     for number, integrator in enumerate(integrators):
-        if NUMBA_IS_KNOWN and may_run_abreast(integrator.packed):
-            rows[number] = row_of(integrator.packed, integrator.tolerance)
-            groups[(integrator.order, *rows[number].key)].append(number)
+        row = rows[id(integrator)]
+        if row is not None:
+            groups[(integrator.order, *row.key)].append(number)
     for numbers in groups.values():
         if len(numbers) >= fewest:
             order = integrators[numbers[0]].order
-            of_group = [rows[number] for number in numbers], [starts[number] for number in numbers]
-            runs |= zip(numbers, _side_by_side(*of_group, order, periods, kept, samples), strict=True)
+            of_group = [row for number in numbers if (row := rows[id(integrators[number])])]
+            from_starts = [starts[number] for number in numbers]
+            done = _side_by_side(of_group, from_starts, order, periods, kept, samples)
+            runs |= zip(numbers, done, strict=True)
     for number, integrator in enumerate(integrators):
         if number not in runs:
             run = integrator.run(starts[number], periods, samples=samples)
             runs[number] = ManyRun(run.ends[periods - kept :], run.samples, run.steps)
     return [runs[number] for number in range(len(integrators))]
+
+
+def _row_of(integrator: Integrator) -> Row | None:
+    """The row of a machine, None where the lanes have not its physics."""
+    if not (NUMBA_IS_KNOWN and may_run_abreast(integrator.packed)):
+        return None
+    return row_of(integrator.packed, integrator.tolerance)
 
 
 def _side_by_side(
