@@ -28,9 +28,9 @@ def normal_backlash(design: PairDesign) -> float:
 
 def _searched(design: PairDesign) -> float:
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
-    from facegear.geometry.unloaded import unloaded_contact
+    from facegear.geometry.unloaded import unloaded_motion
 
     phi1 = pinion_angle(design, (np.arange(POSITIONS) + 0.5) / POSITIONS)
-    drive = unloaded_contact(design, phi1)
-    back = drive if design == mirrored(design) else unloaded_contact(mirrored(design), phi1)
-    return float(((-back.phi2[::-1] - drive.phi2) * design.gear_base_radius).min())
+    drive, _ = unloaded_motion(design, phi1)
+    back = drive if design == mirrored(design) else unloaded_motion(mirrored(design), phi1)[0]
+    return float(((-back[::-1] - drive) * design.gear_base_radius).min())

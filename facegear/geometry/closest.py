@@ -4,18 +4,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Mask
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.curvature import relative_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.separation import separation
+from facegear.geometry.placement import RigidMotion, to_left_flank
+from facegear.geometry.separation import separation_in
 
 PAIRS = np.arange(-2, 3)
 """Tooth numbers looked at: at phi1 within half a pitch of zero no other pair can touch."""
 
 _GRID = np.array([(a, b) for a in np.linspace(-1, 1, 5) for b in np.linspace(-1, 1, 5)])
 _SHRINK, _MAX_STEPS = 0.55, 60
+_STENCIL = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)])
+_STEP = np.array([2e-4, 1e-4])
+"""Distance of the stencil's points, in roll (rad) and y (m)."""
+_FIRST, _LEVELS = 5, 10
+"""Levels of grids from a coarse one, before Newton's method and in all."""
+_WARM, _WARM_LEVELS = np.array([1e-3, 1e-4]), 16
+"""First grid around a place that is known, in roll (rad) and y (m), and levels of grids."""
+_FARTHEST = 20.0
+"""Stencils that a step of Newton's method may go."""
+_NEWTON_STEPS, _NEAR, _FINER, _SMOOTH = 6, 0.05, 0.125, 0.1
+"""Newton's method ends with a stencil FINER times the first, once its step is below NEAR of a stencil. A gap
+is smooth where both have the same curvatures to SMOOTH, and minima within half a fine stencil."""
 
 
 @dataclass(frozen=True)
@@ -35,26 +48,25 @@ def closest(
 ) -> Closest:
     """Search the flanks of all pairs at p placements (rad), from a coarse grid or around a `near` result.
 
-    Pairs whose `near` gap exceeds the smallest by more than `margin` (m) keep their `near` values.
+    Pairs whose gap, `near` or after the first grids, exceeds the smallest by more than `margin` (m) keep it.
     """
-    size, levels = np.array([1e-3, 1e-4]), 16
+    size, levels = _WARM, _WARM_LEVELS
     if near is None:
-        (near, size), levels = _coarse(design, phi1, phi2), 10
+        near, size = _coarse(design, phi1, phi2)
+        size, levels = size * _SHRINK**_FIRST, _LEVELS - _FIRST
     chosen = (near.gap <= near.gap.min(axis=1, keepdims=True) + margin).ravel()
-    turns = np.repeat(phi1, len(PAIRS))[chosen], np.repeat(phi2, len(PAIRS))[chosen]
-    rows = _Rows(*turns, np.tile(PAIRS, len(phi1))[chosen].astype(float))
+    motion = _motions(design, phi1, phi2).only(chosen)
     parts = [part.ravel().copy() for part in (near.gap, near.roll, near.y)]
-    refined = _search(design, rows, parts[1][chosen], parts[2][chosen], size, levels)
+    refined = _refined(design, motion, parts[1][chosen], parts[2][chosen], size, levels)
     for part, values in zip(parts, refined, strict=True):
         part[chosen] = values
     return Closest(*(part.reshape(near.roll.shape) for part in parts))
 
 
-@dataclass(frozen=True)
-class _Rows:
-    phi1: Array
-    phi2: Array
-    tooth: Array
+def _motions(design: PairDesign, phi1: Array, phi2: Array) -> RigidMotion:
+    """Of all pairs at p placements, (5 p,)."""
+    turns = np.repeat(phi1, len(PAIRS)), np.repeat(phi2, len(PAIRS))
+    return to_left_flank(design, *turns, np.tile(PAIRS, len(phi1)).astype(float))
 
 
 def bounds(design: PairDesign) -> tuple[Array, Array]:
@@ -70,34 +82,46 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array) -> tuple[Closest, Arra
     first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)
     rolls, ys = np.linspace(low[0], high[0], 15), np.linspace(first, last, 15)
     roll, y = (part.ravel() for part in np.meshgrid(rolls, ys, indexing="ij"))
-    tooth = np.tile(PAIRS, len(phi1))
-    turns = np.repeat(phi1, len(PAIRS)), np.repeat(phi2, len(PAIRS))
-    gap = separation(design, flank_points(design, roll, y), *turns, tooth).gap
-    best = np.argmin(gap, axis=1)
+    motion = _motions(design, phi1, phi2)
+    gap = separation_in(design, flank_points(design, roll, y), motion).gap
+    best, size = np.argmin(gap, axis=1), np.array([rolls[1] - rolls[0], ys[1] - ys[0]])
     shape = (len(phi1), len(PAIRS))
-    near = Closest(gap.min(axis=1).reshape(shape), roll[best].reshape(shape), y[best].reshape(shape))
-    return near, np.array([rolls[1] - rolls[0], ys[1] - ys[0]])
+    walked = _walked(design, motion, roll[best], y[best], size, _FIRST)
+    return Closest(*(part.reshape(shape) for part in walked)), size
 
 
-def _search(
-    design: PairDesign, rows: _Rows, roll: Array, y: Array, size: Array, levels: int
+def _refined(
+    design: PairDesign, motion: RigidMotion, roll: Array, y: Array, size: Array, levels: int
+) -> tuple[Array, Array, Array]:
+    """Minima near roll and y (n,): by Newton's method where the gap is smooth, else by grids."""
+    *found, smooth = _smooth_minimum(design, motion, roll, y)
+    rest = np.flatnonzero(~smooth)
+    if rest.size:
+        here = motion.only(rest)
+        walked = _walked(design, here, roll[rest], y[rest], size, levels)
+        for part, values in zip(found, _polished(design, here, *walked), strict=True):
+            part[rest] = values
+    return found[0], found[1], found[2]
+
+
+def _walked(
+    design: PairDesign, motion: RigidMotion, roll: Array, y: Array, size: Array, levels: int
 ) -> tuple[Array, Array, Array]:
     """Walk 5 x 5 grids to the minimum, shrinking them when their middle part holds it.
 
-    The grids lean along the contact line, as the gap is a narrow and flat valley in its direction.
+    The grids lean along the contact line where the walk begins, as the gap is a narrow and flat valley in its
+    direction.
     """
     low, high = bounds(design)
     width = np.tile(size, (len(roll), 1))
     gap, roll, y = np.full(len(roll), np.inf), roll.copy(), y.copy()
-    active = np.arange(len(roll))
+    lean, active = _contact_line(design, roll, y), np.arange(len(roll))
     for _ in range(_MAX_STEPS):
         w = width[active]
-        lean = _contact_line(design, roll[active], y[active])
         across, along = _GRID[:, 0] * w[:, :1], _GRID[:, 1] * w[:, 1:]
-        rolls = np.clip(roll[active, None] + across + lean[:, None] * along, low[0], high[0])
+        rolls = np.clip(roll[active, None] + across + lean[active, None] * along, low[0], high[0])
         ys = np.clip(y[active, None] + along, low[1], high[1])
-        turns = rows.phi1[active], rows.phi2[active], rows.tooth[active]
-        gaps = separation(design, flank_points(design, rolls, ys), *turns).gap
+        gaps = separation_in(design, flank_points(design, rolls, ys), motion.only(active)).gap
         at, best = np.arange(len(active)), np.argmin(gaps, axis=1)
         min_gap = gaps[at, best]
         gained = min_gap < gap[active] - 1e-13
@@ -108,16 +132,77 @@ def _search(
         active = active[np.any(width[active] > size * _SHRINK**levels, axis=1)]
         if len(active) == 0:
             break
-    return _polish(design, rows, gap, roll, y)
+    return gap, roll, y
 
 
-def _polish(design: PairDesign, rows: _Rows, gap: Array, roll: Array, y: Array) -> tuple[Array, Array, Array]:
+def _smooth_minimum(
+    design: PairDesign, motion: RigidMotion, roll: Array, y: Array
+) -> tuple[Array, Array, Array, Mask]:
+    """Newton's method from 3 x 3 stencils: gap, roll, y, and whether it is a minimum of a smooth gap.
+
+    Where a modification begins within a stencil, or the flank ends, a finer one has its minimum elsewhere.
+    """
+    low, high = bounds(design)
+    found, smooth = (np.full(len(roll), np.inf), roll.copy(), y.copy()), np.zeros(len(roll), bool)
+    here, fine, bends = np.arange(len(roll)), np.zeros(len(roll), bool), np.zeros((len(roll), 2))
+    for _ in range(_NEWTON_STEPS):
+        part = np.where(fine, _FINER, 1.0)
+        last = found[1][here], found[2][here]
+        bowl = _bowl(design, motion.only(here), *last, part[:, None] * _STEP)
+        new = last[0] + part * bowl.across * _STEP[0], last[1] + part * bowl.along * _STEP[1]
+        size, bend = np.hypot(bowl.across, bowl.along), bowl.bend / part[:, None] ** 2
+        inside = (new[0] > low[0]) & (new[0] < high[0]) & (new[1] > low[1]) & (new[1] < high[1])
+        same = (np.abs(bend - bends[here]) < _SMOOTH * bend).all(axis=1)
+        going = bowl.convex & inside & np.where(fine, same & (size < 0.5), size < _FARTHEST)
+        for target, values in zip(found, (bowl.value, *new), strict=True):
+            target[here[going]] = values[going]
+        smooth[here[going & fine]], bends[here] = True, bend
+        going &= ~fine
+        here, fine = here[going], size[going] < _NEAR
+        if here.size == 0:
+            break
+    return *found, smooth
+
+
+@dataclass(frozen=True)
+class _Bowl:
+    """Paraboloids through stencils (n,): the smallest value and how far it lies from the middle, in steps
+    `across` the roll and `along` y; second differences (n, 2) both ways; whether it is a minimum.
+    """
+
+    value: Array
+    across: Array
+    along: Array
+    bend: Array
+    convex: Mask
+
+
+def _polished(
+    design: PairDesign, motion: RigidMotion, gap: Array, roll: Array, y: Array
+) -> tuple[Array, Array, Array]:
     """One Newton step from a 3 x 3 stencil where the minimum lies inside the flank."""
-    step = np.array([2e-4, 1e-4])
-    a, b = (part.ravel() for part in np.meshgrid([-1, 0, 1], [-1, 0, 1], indexing="ij"))
-    turns = rows.phi1, rows.phi2, rows.tooth
-    rolls, ys = roll[:, None] + a * step[0], y[:, None] + b * step[1]
-    g = separation(design, flank_points(design, rolls, ys), *turns).gap.reshape(-1, 3, 3)
+    bowl = _bowl(design, motion, roll, y, np.tile(_STEP, (len(roll), 1)))
+    low, high = bounds(design)
+    new_roll, new_y = roll + bowl.across * _STEP[0], y + bowl.along * _STEP[1]
+    good = (
+        bowl.convex
+        & (np.hypot(bowl.across, bowl.along) < _FARTHEST)
+        & (new_roll > low[0])
+        & (new_roll < high[0])
+    )
+    good &= (new_y > low[1]) & (new_y < high[1])
+    new_roll, new_y = np.where(good, new_roll, roll), np.where(good, new_y, y)
+    new = separation_in(design, flank_points(design, new_roll[:, None], new_y[:, None]), motion).gap[:, 0]
+    better = good & (new < gap)
+    return np.where(better, new, gap), np.where(better, new_roll, roll), np.where(better, new_y, y)
+
+
+def _bowl(design: PairDesign, motion: RigidMotion, roll: Array, y: Array, step: Array) -> _Bowl:
+    """The paraboloid through 3 x 3 stencils of steps (n, 2) about roll and y (n,)."""
+    rolls, ys = (
+        at[:, None] + _STENCIL[:, axis] * step[:, axis : axis + 1] for axis, at in ((0, roll), (1, y))
+    )
+    g = separation_in(design, flank_points(design, rolls, ys), motion).gap.reshape(-1, 3, 3)
     with np.errstate(invalid="ignore", divide="ignore"):
         slope = (g[:, 2, 1] - g[:, 0, 1]) / 2, (g[:, 1, 2] - g[:, 1, 0]) / 2
         bend = g[:, 2, 1] - 2 * g[:, 1, 1] + g[:, 0, 1], g[:, 1, 2] - 2 * g[:, 1, 1] + g[:, 1, 0]
@@ -125,14 +210,8 @@ def _polish(design: PairDesign, rows: _Rows, gap: Array, roll: Array, y: Array) 
         det = bend[0] * bend[1] - twist**2
         across = (twist * slope[1] - bend[1] * slope[0]) / det
         along = (twist * slope[0] - bend[0] * slope[1]) / det
-    low, high = bounds(design)
-    new_roll, new_y = roll + across * step[0], y + along * step[1]
-    good = (det > 0) & (np.hypot(across, along) < 20) & (new_roll > low[0]) & (new_roll < high[0])
-    good &= (new_y > low[1]) & (new_y < high[1])
-    new_roll, new_y = np.where(good, new_roll, roll), np.where(good, new_y, y)
-    new = separation(design, flank_points(design, new_roll[:, None], new_y[:, None]), *turns).gap[:, 0]
-    better = good & (new < gap)
-    return np.where(better, new, gap), np.where(better, new_roll, roll), np.where(better, new_y, y)
+        value = g[:, 1, 1] + 0.5 * (slope[0] * across + slope[1] * along)
+        return _Bowl(value, across, along, np.stack(bend, axis=-1), (det > 0) & (bend[0] > 0))
 
 
 def _contact_line(design: PairDesign, roll: Array, y: Array) -> Array:

@@ -1,12 +1,13 @@
 """Where the pinion stands against the gear: rotations, tooth numbers and assembly errors."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.arrays import Array
+from facegear.arrays import AnyArray, Array
 from facegear.geometry.design import PairDesign
 
 AXIS = {"pinion": np.array([0.0, -1.0, 0.0]), "face_gear": np.array([0.0, 0.0, -1.0])}
@@ -24,9 +25,15 @@ def rotation(axis: Array, angle: ArrayLike) -> Array:
     Every start of the workflow places gears, and SciPy's rotations take 0.3 s of CPU time to import.
     """
     angle = np.asarray(angle, float)[..., None, None]
-    across = np.cross(axis, np.eye(3)).T
+    still, across, along = _turned(tuple(axis.tolist()))
+    return np.cos(angle) * still + np.sin(angle) * across + along
+
+
+@lru_cache(maxsize=16)
+def _turned(axis: tuple[float, ...]) -> tuple[Array, Array, Array]:
+    """What cosine, sine and 1 stand before in a turn about an axis: shared, only read."""
     along = np.outer(axis, axis)
-    return np.cos(angle) * (np.eye(3) - along) + np.sin(angle) * across + along
+    return np.eye(3) - along, np.cross(axis, np.eye(3)).T, along
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +50,10 @@ class RigidMotion:
     def directions(self, vectors: Array) -> Array:
         """The same for directions, which are turned only."""
         return vectors @ np.swapaxes(self.matrix, -1, -2)
+
+    def only(self, rows: AnyArray | slice) -> "RigidMotion":
+        """Some of many motions (n,)."""
+        return RigidMotion(self.matrix[rows], self.shift[rows])
 
     def inverse(self) -> "RigidMotion":
         matrix = np.swapaxes(self.matrix, -1, -2)

@@ -17,7 +17,7 @@ from facegear.errors import NotConverged
 from facegear.geometry.design import PairDesign
 from facegear.geometry.gear_modifications import as_generated, opened
 from facegear.geometry.pinion_surface import SurfacePoints
-from facegear.geometry.placement import to_left_flank
+from facegear.geometry.placement import RigidMotion, to_left_flank
 from facegear.geometry.ray_blank import gear_rays
 from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
 
@@ -34,6 +34,7 @@ __all__ = [
     "Separation",
     "separation",
     "separation_each",
+    "separation_in",
 ]
 
 RAYS_AT_ONCE = 60_000
@@ -76,19 +77,26 @@ def separation(
     phi1, phi2, tooth = (
         np.atleast_1d(part).ravel() for part in np.broadcast_arrays(phi1, phi2, np.asarray(tooth, float))
     )
+    return separation_in(design, points, to_left_flank(design, phi1, phi2, tooth), search_radius)
+
+
+def separation_in(
+    design: PairDesign, points: SurfacePoints, motion: RigidMotion, search_radius: float | None = None
+) -> Separation:
+    """The same in p placements given as `placement.to_left_flank` of the design: motions (p,)."""
     search_radius = design.module if search_radius is None else search_radius
-    count = points.position.shape[-2]
-    gap = np.full((len(phi1), count), np.inf)
+    placements, count = len(motion.shift), points.position.shape[-2]
+    gap = np.full((placements, count), np.inf)
     part = np.zeros(gap.shape, np.int8)
     u, v, continued = (np.full(gap.shape, value) for value in (np.nan, np.nan, np.inf))
     block = max(1, RAYS_AT_ONCE // max(count, 1))
-    for first in range(0, len(phi1), block):
+    for first in range(0, placements, block):
         rows = slice(first, first + block)
-        motion = to_left_flank(design, phi1[rows], phi2[rows], tooth[rows])
+        here = motion.only(rows)
         position, normal = (
             vectors[rows] if vectors.ndim == 3 else vectors for vectors in (points.position, points.normal)
         )
-        starts, ways = motion.points(position).reshape(-1, 3), motion.directions(normal).reshape(-1, 3)
+        starts, ways = here.points(position).reshape(-1, 3), here.directions(normal).reshape(-1, 3)
         hit = _cut(design, starts, ways, float(search_radius))
         for target, values in zip((gap, part, u, v, continued), hit, strict=True):
             target[rows] = values.reshape(-1, count)

@@ -14,6 +14,8 @@ from facegear.geometry.placement import conjugate_angle
 
 TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
+ROUGH = 20e-6
+"""By how much (m) gaps may be off after the first grids."""
 MAX_TURNS = 100
 """Turns of the gear; where an edge touches each may leave half of the gap."""
 
@@ -78,21 +80,24 @@ def unloaded_motion(design: PairDesign, phi1: ArrayLike) -> tuple[Array, Array]:
     """
     exact = exact_contact(design)
     if exact is None:
-        contact = searched_contact(design, phi1)
+        contact = searched_contact(design, phi1, every_pair=False)
         return contact.phi2, contact.transmission_error
     conjugate = np.atleast_1d(conjugate_angle(design, phi1))
     error = np.full(conjugate.size, exact.transmission_error)
     return conjugate + error / design.gear_base_radius, error
 
 
-def searched_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
-    """`unloaded_contact` by search, for flanks of any kind and edges; raises NotConverged as it does."""
+def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = True) -> UnloadedContact:
+    """`unloaded_contact` by search, for flanks of any kind and edges; raises NotConverged as it does.
+
+    Without `every_pair` gaps of pairs that cannot touch are rough.
+    """
     phi1 = np.atleast_1d(np.asarray(phi1, float))
     conjugate = conjugate_angle(design, phi1)
     errors, angle = design.assembly, design.pressure_angle
     moved = errors.offset * np.cos(angle) - errors.axial_shift * np.sin(angle) - design.pinion.thinning / 2
     phi2 = conjugate + moved / design.gear_base_radius
-    nearest = closest(design, phi1, phi2)
+    nearest = closest(design, phi1, phi2, margin=np.inf if every_pair else ROUGH)
     unseen = np.zeros(len(phi1))
     for _ in range(MAX_TURNS):
         smallest = nearest.gap.min(axis=1)
@@ -101,16 +106,18 @@ def searched_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
             raise NotConverged("unloaded contact", where, "tooth pairs -2..2: no flanks face each other")
         if np.max(np.abs(smallest)) < TOLERANCE and np.max(np.abs(unseen)) > 1e-6:
             # only pairs about to touch were followed: look at all of them where the gear stands now
-            nearest, unseen = closest(design, phi1, phi2, nearest), np.zeros(len(phi1))
+            margin = np.inf if every_pair else ROUGH + 2.0 * float(np.max(np.abs(unseen)))
+            nearest, unseen = closest(design, phi1, phi2, nearest, margin), np.zeros(len(phi1))
             smallest = nearest.gap.min(axis=1)
         if np.max(np.abs(smallest)) < TOLERANCE:
             facing = np.isfinite(nearest.gap)
+            phi2 = phi2 - smallest / design.gear_base_radius
             return UnloadedContact(
                 phi1=phi1,
                 phi2=phi2,
                 transmission_error=(phi2 - conjugate) * design.gear_base_radius,
                 tooth=PAIRS[np.argmin(nearest.gap, axis=1)],
-                gap=nearest.gap,
+                gap=nearest.gap - smallest[:, None],
                 roll=np.where(facing, nearest.roll, np.nan),
                 y=np.where(facing, nearest.y, np.nan),
             )
