@@ -24,6 +24,8 @@ _FIRST, _LEVELS = 5, 10
 """Levels of grids from a coarse one, before Newton's method and in all."""
 _WARM, _WARM_LEVELS = np.array([1e-3, 1e-4]), 16
 """First grid around a place that is known, in roll (rad) and y (m), and levels of grids."""
+_COARSE = 0.02
+"""By how many modules a gap on the coarse grid may be above the smallest."""
 _FARTHEST = 20.0
 """Stencils that a step of Newton's method may go."""
 _NEWTON_STEPS, _NEAR, _FINER, _SMOOTH = 6, 0.05, 0.125, 0.1
@@ -52,7 +54,7 @@ def closest(
     """
     size, levels = _WARM, _WARM_LEVELS
     if near is None:
-        near, size = _coarse(design, phi1, phi2)
+        near, size = _coarse(design, phi1, phi2, margin)
         size, levels = size * _SHRINK**_FIRST, _LEVELS - _FIRST
     chosen = (near.gap <= near.gap.min(axis=1, keepdims=True) + margin).ravel()
     motion = _motions(design, phi1, phi2).only(chosen)
@@ -76,7 +78,7 @@ def bounds(design: PairDesign) -> tuple[Array, Array]:
     return low, np.array([design.pinion_tip_roll, design.mean_radius + half])
 
 
-def _coarse(design: PairDesign, phi1: Array, phi2: Array) -> tuple[Closest, Array]:
+def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tuple[Closest, Array]:
     low, high = bounds(design)
     face = design.face_gear
     first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)
@@ -85,23 +87,28 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array) -> tuple[Closest, Arra
     motion = _motions(design, phi1, phi2)
     gap = separation_in(design, flank_points(design, roll, y), motion).gap
     best, size = np.argmin(gap, axis=1), np.array([rolls[1] - rolls[0], ys[1] - ys[0]])
-    shape = (len(phi1), len(PAIRS))
-    walked = _walked(design, motion, roll[best], y[best], size, _FIRST)
-    return Closest(*(part.reshape(shape) for part in walked)), size
+    near = [part.reshape(len(phi1), len(PAIRS)) for part in (gap.min(axis=1), roll[best], y[best])]
+    beside = margin + _COARSE * design.module
+    walking = near[0] <= near[0].min(axis=1, keepdims=True) + beside
+    here = motion.only(walking.ravel())
+    walked = _walked(design, here, near[1][walking], near[2][walking], size, _FIRST)
+    for part, values in zip(near, walked, strict=True):
+        part[walking] = values
+    return Closest(*near), size
 
 
 def _refined(
     design: PairDesign, motion: RigidMotion, roll: Array, y: Array, size: Array, levels: int
 ) -> tuple[Array, Array, Array]:
     """Minima near roll and y (n,): by Newton's method where the gap is smooth, else by grids."""
-    *found, smooth = _smooth_minimum(design, motion, roll, y)
+    *minimum, smooth = _smooth_minimum(design, motion, roll, y)
     rest = np.flatnonzero(~smooth)
     if rest.size:
         here = motion.only(rest)
         walked = _walked(design, here, roll[rest], y[rest], size, levels)
-        for part, values in zip(found, _polished(design, here, *walked), strict=True):
+        for part, values in zip(minimum, _polished(design, here, *walked), strict=True):
             part[rest] = values
-    return found[0], found[1], found[2]
+    return minimum[0], minimum[1], minimum[2]
 
 
 def _walked(
@@ -143,25 +150,25 @@ def _smooth_minimum(
     Where a modification begins within a stencil, or the flank ends, a finer one has its minimum elsewhere.
     """
     low, high = bounds(design)
-    found, smooth = (np.full(len(roll), np.inf), roll.copy(), y.copy()), np.zeros(len(roll), bool)
+    minimum, smooth = (np.full(len(roll), np.inf), roll.copy(), y.copy()), np.zeros(len(roll), bool)
     here, fine, bends = np.arange(len(roll)), np.zeros(len(roll), bool), np.zeros((len(roll), 2))
     for _ in range(_NEWTON_STEPS):
         part = np.where(fine, _FINER, 1.0)
-        last = found[1][here], found[2][here]
+        last = minimum[1][here], minimum[2][here]
         bowl = _bowl(design, motion.only(here), *last, part[:, None] * _STEP)
         new = last[0] + part * bowl.across * _STEP[0], last[1] + part * bowl.along * _STEP[1]
         size, bend = np.hypot(bowl.across, bowl.along), bowl.bend / part[:, None] ** 2
         inside = (new[0] > low[0]) & (new[0] < high[0]) & (new[1] > low[1]) & (new[1] < high[1])
         same = (np.abs(bend - bends[here]) < _SMOOTH * bend).all(axis=1)
         going = bowl.convex & inside & np.where(fine, same & (size < 0.5), size < _FARTHEST)
-        for target, values in zip(found, (bowl.value, *new), strict=True):
+        for target, values in zip(minimum, (bowl.value, *new), strict=True):
             target[here[going]] = values[going]
         smooth[here[going & fine]], bends[here] = True, bend
         going &= ~fine
         here, fine = here[going], size[going] < _NEAR
         if here.size == 0:
             break
-    return *found, smooth
+    return *minimum, smooth
 
 
 @dataclass(frozen=True)

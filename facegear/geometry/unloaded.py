@@ -14,8 +14,12 @@ from facegear.geometry.placement import conjugate_angle
 
 TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
-ROUGH = 20e-6
-"""By how much (m) gaps may be off after the first grids."""
+FOLLOWED = 5e-6
+"""By how much (m) more than the smallest the gap of a pair may be that a turn may bring to touch."""
+ROUGH, UNEVEN = 1e-7, 0.2
+"""By how much (m) gaps may be off after the first grids, and by what part of a turn it may close pairs
+differently.
+"""
 MAX_TURNS = 100
 """Turns of the gear; where an edge touches each may leave half of the gap."""
 
@@ -97,7 +101,7 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
     errors, angle = design.assembly, design.pressure_angle
     moved = errors.offset * np.cos(angle) - errors.axial_shift * np.sin(angle) - design.pinion.thinning / 2
     phi2 = conjugate + moved / design.gear_base_radius
-    nearest = closest(design, phi1, phi2, margin=np.inf if every_pair else ROUGH)
+    nearest = closest(design, phi1, phi2, margin=np.inf if every_pair else FOLLOWED)
     unseen = np.zeros(len(phi1))
     for _ in range(MAX_TURNS):
         smallest = nearest.gap.min(axis=1)
@@ -106,7 +110,7 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
             raise NotConverged("unloaded contact", where, "tooth pairs -2..2: no flanks face each other")
         if np.max(np.abs(smallest)) < TOLERANCE and np.max(np.abs(unseen)) > 1e-6:
             # only pairs about to touch were followed: look at all of them where the gear stands now
-            margin = np.inf if every_pair else ROUGH + 2.0 * float(np.max(np.abs(unseen)))
+            margin = np.inf if every_pair else FOLLOWED + float(np.max(np.abs(unseen)))
             nearest, unseen = closest(design, phi1, phi2, nearest, margin), np.zeros(len(phi1))
             smallest = nearest.gap.min(axis=1)
         if np.max(np.abs(smallest)) < TOLERANCE:
@@ -124,6 +128,7 @@ def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = Tru
         phi2 = phi2 - smallest / design.gear_base_radius
         # the turn opens or closes all pairs alike, those not followed too
         turned = replace(nearest, gap=nearest.gap - smallest[:, None])
-        nearest, unseen = closest(design, phi1, phi2, turned, margin=5e-6), unseen + smallest
+        margin = FOLLOWED if every_pair else ROUGH + UNEVEN * float(np.max(np.abs(smallest)))
+        nearest, unseen = closest(design, phi1, phi2, turned, margin), unseen + smallest
     residual = np.max(np.abs(nearest.gap.min(axis=1)))
     raise NotConverged("unloaded contact", f"residual gap {residual:.1e} m", f"{MAX_TURNS} turns of the gear")

@@ -1,7 +1,12 @@
-import numpy as np
+from dataclasses import replace
 
-from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.geometry.unloaded import unloaded_contact
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.geometry.unloaded import unloaded_contact, unloaded_motion
 
 
 def test_a_touch_of_edges_where_each_turn_leaves_half_of_the_gap_is_found():
@@ -14,3 +19,18 @@ def test_a_touch_of_edges_where_each_turn_leaves_half_of_the_gap_is_found():
     design = PairDesign(3e-3, np.radians(30.0), pinion, gear, Shaper(19, 3.1875e-3, 0.3e-3))
     contact = unloaded_contact(design, np.linspace(-0.5, 0.5, 9) * 2 * np.pi / 19)
     assert np.abs(contact.gap.min(axis=1)).max() < 1e-11
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.floats(0, 40), st.floats(0, 30), st.floats(-100, 100), st.floats(-0.05, 0.05))
+def test_the_motion_is_that_of_all_pairs_though_only_those_that_can_touch_are_followed(
+    pair, relief, crowning, offset, angle
+):
+    made = {"tip_relief": Relief(1e-6 * relief, length=2e-3), "offset": 1e-6 * offset}
+    flat = pair(shaft_angle_error=np.radians(angle), **made)
+    design = replace(flat, pinion=replace(flat.pinion, lead_crowning=Relief(1e-6 * crowning, length=12e-3)))
+    phi1 = np.linspace(-0.13, 0.13, 9)
+    phi2, error = unloaded_motion(design, phi1)
+    contact = unloaded_contact(design, phi1)
+    assert error == pytest.approx(contact.transmission_error, abs=2e-12)
+    assert phi2 == pytest.approx(contact.phi2, abs=1e-11)
