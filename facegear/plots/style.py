@@ -48,16 +48,24 @@ def save(figure: Figure, *paths: str | Path) -> None:
     laid out once for all formats; matplotlib would do so, and draw the whole figure, before each of them.
     """
     with styled(), plt.rc_context({"figure.constrained_layout.use": False}):
-        figure.draw_without_rendering()
-        figure.set_layout_engine(None)
+        lay_out(figure)
+        drawn = False
         for path in paths:
             with atomic_path(path) as temporary:
                 if str(path).endswith(".json"):
-                    interactive.write(figure, temporary)
+                    interactive.write(figure, temporary, drawn)
                 else:
                     dates = {"Date": None} if str(path).endswith(".svg") else None
                     figure.savefig(temporary, metadata=dates)
+                    drawn = True
     plt.close(figure)
+
+
+def lay_out(figure: Figure) -> None:
+    """Give all parts of a figure their places, which it keeps from then on."""
+    if (engine := figure.get_layout_engine()) is not None:
+        engine.execute(figure)
+        figure.set_layout_engine(None)
 
 
 def mesh_looks(meshes: Iterable[str]) -> dict[str, dict[str, str]]:
