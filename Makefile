@@ -5,7 +5,7 @@ READY := $(VENV)/.locked
 TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
-IDLE := tests?|testing|fontTools|lexers|docutils|cuda|distutils
+IDLE := tests?|testing|fontTools|lexers|docutils|cuda|distutils|pip
 .PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks ratios peers verification platforms mutation lock clean
 
 all: check

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
+import scipy
 
 from facegear.arrays import Array, Mask
 
@@ -40,8 +40,12 @@ def percentile(values: Array, probability: float, confidence: float = 0.95) -> E
 def fraction_of(hits: Mask, confidence: float = 0.95) -> Estimate:
     """Share of samples for which something holds, with its interval (Wilson 1927)."""
     count, counts = hits.size, int(hits.sum())
-    interval = scipy.stats.binomtest(counts, count).proportion_ci(confidence, method="wilson")
-    return Estimate(counts / count, float(interval.low), float(interval.high))
+    part, z = counts / count, float(scipy.special.ndtri(0.5 + 0.5 * confidence))
+    whole = 2.0 * (count + z**2)
+    centre = (2.0 * count * part + z**2) / whole
+    reach = z / whole * float(np.sqrt(4.0 * count * part * (1.0 - part) + z**2))
+    low = centre - reach if counts > 0 else 0.0
+    return Estimate(part, low, centre + reach if counts < count else 1.0)
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ so that none of them dominates. It is judged on the upward sweep unless said oth
 """
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from facegear.arrays import Array, Integers, Mask
+from facegear.dynamics.sweeps.maxima import local_maxima
 from paper.scorecard.outcome import ClaimOutcome, Tables, nearest, number, statement
 
 PROMINENCE = 0.1
@@ -137,4 +137,5 @@ def _regular(tables: Tables, speeds: Array, direction: str) -> Mask:
 
 def _peaks(level: Array) -> Integers:
     """Local maxima that stand PROMINENCE of the largest level above the higher of the valleys beside them."""
-    return find_peaks(level, prominence=PROMINENCE * level.max())[0]
+    positions, prominences = local_maxima(level)
+    return positions[prominences >= PROMINENCE * level.max()]

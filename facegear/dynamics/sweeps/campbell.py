@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from facegear.arrays import Array
+from facegear.dynamics.sweeps.maxima import local_maxima
 from facegear.dynamics.sweeps.sweep import Piece
 from facegear.transmission.modes import Modes
 
@@ -64,6 +64,7 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
 
 def maxima(curve: Array) -> list[int]:
     """Positions of the maxima that are PROMINENT times the higher of the valleys beside them."""
-    indices, facts = scipy.signal.find_peaks(curve, height=SMALL * curve.max(), prominence=0.0)
-    valleys = curve[indices] - facts["prominences"]
-    return [int(i) for i in indices[curve[indices] > PROMINENT * valleys]]
+    positions, prominences = local_maxima(curve)
+    heights = curve[positions]
+    stands_out = heights > PROMINENT * (heights - prominences)
+    return [int(i) for i in positions[(heights >= SMALL * curve.max()) & stands_out]]

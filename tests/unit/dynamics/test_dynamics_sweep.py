@@ -8,12 +8,14 @@ from free_machines import natural_modes
 from hypothesis import given
 from hypothesis import strategies as st
 from lumped_machines import make_machine
+from scipy.signal import find_peaks
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, simulate_many
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import maxima, resonance
 from facegear.dynamics.sweeps.jump_margin import jump_margin
+from facegear.dynamics.sweeps.maxima import local_maxima
 from facegear.dynamics.sweeps.plan import JumpRange, SweepPlan
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
@@ -177,6 +179,15 @@ def test_a_maximum_stands_15_percent_over_the_minimum_on_either_side_before_a_la
         if curve[i] > 1.15 * valley and curve[i] > 0.1 * curve.max():
             expected.append(i)
     assert maxima(curve) == expected
+
+
+@given(hnp.arrays(float, st.integers(1, 30), elements=st.integers(-4, 4).map(float) | st.just(float("nan"))))
+def test_maxima_and_how_far_they_stand_out_are_those_of_scipys_peaks(curve):
+    """Few different values, so that many neighbours are equal."""
+    positions, prominences = local_maxima(curve)
+    expected, found = find_peaks(curve, prominence=0.0)
+    assert positions.tolist() == expected.tolist()
+    assert prominences.tolist() == found["prominences"].tolist()
 
 
 def test_irregular_motion_has_a_positive_exponent_and_an_interval_on_its_rms(model):

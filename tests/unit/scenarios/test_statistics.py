@@ -93,6 +93,14 @@ def test_share_comes_with_an_interval_that_never_leaves_zero_to_one():
     assert 0.0 < none.high < 0.12
 
 
+@pytest.mark.parametrize(("counts", "count"), [(0, 1), (1, 1), (3, 7), (50, 50), (999, 1000)])
+@pytest.mark.parametrize("confidence", [0.8, 0.95])
+def test_interval_of_a_fraction_is_wilsons(counts, count, confidence):
+    computed = fraction_of(np.arange(count) < counts, confidence)
+    expected = scipy.stats.binomtest(counts, count).proportion_ci(confidence, method="wilson")
+    assert (computed.low, computed.high) == pytest.approx((expected.low, expected.high), rel=1e-14)
+
+
 def test_errors_of_percentiles_and_indices_fall_as_docs_cluster_tells():
     few, many = statistics_errors([128, 8192]).itertuples()
     assert few.p95_error < 0.1 and many.p95_error < 0.01 and many.p99_error < 0.02
