@@ -8,19 +8,19 @@ from facegear.arrays import Array, Integers
 def local_maxima(curve: Array) -> tuple[Integers, Array]:
     """Positions (m,) of the maxima of a curve (n,), its ends left out, and their prominences (m,).
 
-    Of equal neighbours the middle counts. A prominence is the height above the higher of the two lowest
-    values that lie on either side before a larger value comes.
+    Of equal neighbours the middle counts. A prominence is the height above the larger of the two smallest
+    values that lie on either side before a larger value than the maximum comes.
     """
     changes = np.flatnonzero(np.diff(curve))
     first, last = np.append(0, changes + 1), np.append(changes, curve.size - 1)
     level = curve[first]
-    highest = np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] > level[2:])) + 1
-    positions = (first[highest] + last[highest]) // 2
+    tops = np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] > level[2:])) + 1
+    positions = (first[tops] + last[tops]) // 2
     valleys = [max(_valley(curve[i::-1]), _valley(curve[i:])) for i in positions]
     return positions, curve[positions] - np.array(valleys, dtype=float)
 
 
 def _valley(curve: Array) -> float:
-    """The lowest value before one that is larger than the first."""
+    """The smallest value before one that is larger than the first."""
     beyond = ~(curve <= curve[0])
     return float(curve[: beyond.argmax() if beyond.any() else curve.size].min())
