@@ -56,7 +56,7 @@ class Project:
     def run(
         self, *arguments: str, check: bool = True, warm: bool = False
     ) -> subprocess.CompletedProcess[str]:
-        """warm: jobs begin where their imports were made; only the plainest machine has Python start each."""
+        """warm: jobs begin where their imports were made; elsewhere Python starts for each, as a user's do."""
         assert not warm or self.sources == ROOT
         done = server().start(self._all(*arguments), environment(), warm)
         if check:
@@ -67,6 +67,15 @@ class Project:
         """Names of the rules that a dry run would execute."""
         done = self.run("-n", *arguments)
         return rules_in(done.stdout + done.stderr) - {"all"}
+
+
+@cache
+def dry_run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Of a folder without results, which must hold no table afterwards; for the same arguments made once."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = Project(Path(folder)).run("-n", *arguments, check=False)
+        assert not list(Path(folder).rglob("*.csv"))
+        return done
 
 
 @cache
