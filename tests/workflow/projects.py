@@ -54,11 +54,11 @@ class Project:
         ]
 
     def run(
-        self, *arguments: str, check: bool = True, warm: bool = False
+        self, *arguments: str, check: bool = True, warm: bool = False, disk: tuple[str, str] | None = None
     ) -> subprocess.CompletedProcess[str]:
-        """warm: jobs begin where their imports were made; elsewhere Python starts for each, as a user's do."""
+        """warm: jobs begin where their imports were made; else Python starts for each, as for a user's."""
         assert not warm or self.sources == ROOT
-        done = server().start(self._all(*arguments), environment(), warm)
+        done = server().start(self._all(*arguments), environment(), warm, disk)
         if check:
             assert done.returncode == 0, f"{arguments}\n{done.stdout[-3000:]}\n{done.stderr[-6000:]}"
         return done

@@ -5,6 +5,7 @@ input is closed, and it is no child of the tests, some of which end or await all
 """
 
 import atexit
+import ctypes
 import gc
 import json
 import os
@@ -20,6 +21,9 @@ from warm_jobs import import_all, leave_after, serve_jobs
 MODULES = ("snakemake.cli", "nbformat", "smart_open", "facegear.config.cases", "facegear.pipeline.needs")
 """What every start imports. The Snakefile of another checkout imports its own `facegear` instead."""
 
+NEW_MOUNTS, NEW_USER = 0x20000, 0x10000000
+"""Namespaces that Linux makes on request: CLONE_NEWNS and CLONE_NEWUSER of sched.h."""
+
 
 class Server:
     """The process that starts Snakemake, for the tests of one worker."""
@@ -33,15 +37,21 @@ class Server:
         atexit.register(self._process.stdin.close)
 
     def start(
-        self, arguments: Sequence[str], environment: Mapping[str, str], warm: bool = False
+        self,
+        arguments: Sequence[str],
+        environment: Mapping[str, str],
+        warm: bool = False,
+        disk: tuple[str, str] | None = None,
     ) -> subprocess.CompletedProcess[str]:
         """What `python -m snakemake` with these arguments gives, started in the present folder.
 
-        warm: jobs begin where their imports were made, too, which takes more memory.
+        warm: jobs begin where their imports were made, too, which takes more memory. disk: a folder that is a
+        disk of its own for this run, and its size, as 4k; its files at the end are printed.
         """
         with tempfile.TemporaryDirectory() as folder:
             out, error = Path(folder, "out"), Path(folder, "error")
-            asked = (arguments, dict(environment), os.getcwd(), str(out), str(error), folder if warm else "")
+            jobs = folder if warm else ""
+            asked = (arguments, dict(environment), os.getcwd(), str(out), str(error), jobs, disk)
             print(json.dumps(asked), file=self._process.stdin, flush=True)
             code = int(self._process.stdout.readline())
             return subprocess.CompletedProcess(arguments, code, out.read_text(), error.read_text())
@@ -50,7 +60,7 @@ class Server:
 def serve() -> list[str]:
     """Answer each request with the exit code of a child; returns the arguments in that child alone."""
     for request in sys.stdin:
-        arguments, environment, folder, out, error, jobs = json.loads(request)
+        arguments, environment, folder, out, error, jobs, disk = json.loads(request)
         if jobs:
             import_all()
         child = os.fork()
@@ -59,6 +69,9 @@ def serve() -> list[str]:
                 opened = os.open(file, os.O_RDWR | os.O_CREAT)
                 os.dup2(opened, number)
                 os.close(opened)
+            if disk:
+                mount(*disk)
+                atexit.register(print_files, disk[0], os.getpid())
             os.chdir(folder)
             os.environ.clear()
             os.environ.update(environment)
@@ -67,6 +80,23 @@ def serve() -> list[str]:
             return arguments
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
     sys.exit()
+
+
+def mount(folder: str, size: str) -> None:
+    """Make a folder an empty disk of a size for this process and its children, in namespaces of their own."""
+    maps = {"setgroups": "deny", "uid_map": f"0 {os.getuid()} 1", "gid_map": f"0 {os.getgid()} 1"}
+    if ctypes.CDLL(None, use_errno=True).unshare(NEW_USER | NEW_MOUNTS):
+        raise OSError(ctypes.get_errno(), "no namespaces")
+    for name, text in maps.items():
+        Path("/proc/self", name).write_text(text)
+    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder], check=True)
+
+
+def print_files(folder: str, process: int) -> None:
+    """Print the files of a folder in the process that is meant, and not at the end of its jobs."""
+    for path in Path(folder).rglob("*") if os.getpid() == process else ():
+        if path.is_file():
+            print(f"left: {path.relative_to(folder)}")
 
 
 def main() -> None:
