@@ -55,6 +55,13 @@ class HatPoints(NamedTuple):
     values: Array
     area: Array
 
+    def part(self, rows: slice) -> "HatPoints":
+        """Some of the points."""
+        gap, lever_arm, pinion, gear, hats, values, area = self
+        return HatPoints(
+            gap[rows], lever_arm[rows], pinion[rows], gear[rows], hats[rows], values[rows], area[rows]
+        )
+
 
 @compiled
 def rows_of(pointer: Integers, index: Integers, weight: Array, keep: Mask) -> Rows:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -9,7 +10,14 @@ from skfem import Basis
 
 from facegear.arrays import Array, Integers
 from facegear.contact.averages import Lattice
-from facegear.contact.bodies.surface import cell_areas, cell_points, edge_hats, hat_values, pressure_basis
+from facegear.contact.bodies.surface import (
+    cell_areas,
+    cell_points,
+    edge_hats,
+    hat_values,
+    interpolation,
+    pressure_basis,
+)
 from facegear.contact.options import Refinement
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry import face_gear
@@ -17,6 +25,21 @@ from facegear.geometry.design import PairDesign
 from facegear.geometry.gear_modifications import tip_edge_as_made
 from facegear.geometry.opposite import FilletCurve, GearHits, fillet_curve
 from facegear.geometry.pinion_surface import SurfacePoints
+
+OF_AN_EDGE = 0.5
+"""Length that one of the two points between neighbouring nodes of an edge stands for, in their distance."""
+
+
+class PinionPoints(NamedTuple):
+    """Points (q, 3) of a pinion that may touch and their normals, with what `HatPoints` has of them."""
+
+    position: Array
+    normal: Array
+    at: Array
+    lever_arm: Array
+    hats: Integers
+    values: Array
+    area: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +128,23 @@ class PinionSurface:
         return coordinates, self.exact(coordinates)
 
     @cached_property
+    def facing(self) -> PinionPoints:
+        """The integration points of the flank and then those of the tip edge, whose hats are numbered after
+        those of the flank.
+        """
+        (under, values), (coordinates, tip), columns = self.under, self.tip, self.shape[1]
+        _, edge_under, edge_values = edge_hats(columns)
+        return PinionPoints(
+            position=np.concatenate([self.points.position, tip.position]),
+            normal=np.concatenate([self.points.normal, tip.normal]),
+            at=np.concatenate([self.at, coordinates]),
+            lever_arm=np.concatenate([self.lever_arm, tip.lever_arm]),
+            hats=np.concatenate([under, np.tile(edge_under + self.shape[0] * columns, 2)]),
+            values=np.concatenate([values, np.pad(edge_values, ((0, 0), (0, 2)))]),
+            area=np.concatenate([self.area, np.full(len(edge_under), OF_AN_EDGE)]),
+        )
+
+    @cached_property
     def fillet_nodes(self) -> Array:
         """Angles gamma (rad) of the fillet's rows before refinement, from the flank's last on."""
         return np.concatenate([self.side.junction[:1], self.side.u[self.side.flank_rows :, 0]])
@@ -124,6 +164,18 @@ class PinionSurface:
         points = self.exact(coarse * self.lattice.factors.astype(float))
         corners = [nodes[a : nu - 2 + a : 2, b : nv - 2 + b : 2].ravel() for a in range(3) for b in range(3)]
         return points, np.stack(corners, axis=-1)
+
+    @cached_property
+    def between_probes(self) -> sp.csr_matrix:
+        """Interpolation (n, probes) from the probes to the refined nodes."""
+        at = np.stack(np.meshgrid(*map(np.arange, self.shape), indexing="ij"), axis=-1).reshape(-1, 2)
+        return interpolation(at / self.lattice.factors, self.side.shape)
+
+    @cached_property
+    def cell(self) -> Integers:
+        """Flat index (q,) of the cell between refined nodes that each point lies in."""
+        row, column = np.floor(self.at).astype(np.int64).T
+        return row * (self.shape[1] - 1) + column
 
     def coordinates(self, flank: Array, fillet: Array, y: Array) -> Array:
         """Refined lattice coordinates (n, 2) of feet as in `EdgeFeet`, nan beside the pinion's ends."""

@@ -10,13 +10,10 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.contact.averages import HatPoints
 from facegear.contact.bodies.surface import edge_hats
-from facegear.contact.flanks import PinionSurface
+from facegear.contact.flanks import OF_AN_EDGE, PinionSurface
 
 SMALLEST_COVER = 0.02
 """Part of a hat's area below which it is left out: the tooth opposite ends there."""
-
-OF_AN_EDGE = 0.5
-"""Length that one of the two points between neighbouring nodes of an edge stands for, in their distance."""
 
 
 def flank_points(
@@ -32,23 +29,32 @@ def flank_points(
     )
 
 
-def edge_points(
-    columns: int, gap: Array, lever_arm: Array, pinion: Array, gear: Array, first: int = 0
-) -> HatPoints:
-    """All points (q,) of `edge_hats` of a tip edge of `columns` nodes, whose hats are numbered from `first`
-    on.
+def edge_points(columns: int, gap: Array, lever_arm: Array, pinion: Array, gear: Array) -> HatPoints:
+    """All points (q,) of `edge_hats` of the gear's tip edge of `columns` nodes in p placements: (p q,).
+
+    gap, lever_arm (p, q) m; refined lattice coordinates `pinion` (p, q, 2) and `gear` (q, 2).
     """
     _, under, values = edge_hats(columns)
-    none = np.zeros_like(values)
+    times = len(gap)
     return HatPoints(
-        gap,
-        lever_arm,
-        pinion,
-        gear,
-        np.concatenate([under + first, under], axis=1),
-        np.concatenate([values, none], axis=1),
+        gap.ravel(),
+        lever_arm.ravel(),
+        pinion.reshape(-1, 2),
+        np.tile(gear, (times, 1)),
+        np.tile(under, (times, 2)),
+        np.tile(np.pad(values, ((0, 0), (0, 2))), (times, 1)),
         np.full(gap.size, OF_AN_EDGE),
     )
+
+
+def merged(first: HatPoints, at: Integers, second: HatPoints, beside: Integers) -> HatPoints:
+    """Points of both, those of the first at rows `at` and those of the second at rows `beside`."""
+    columns = []
+    for one, other in zip(first, second, strict=True):
+        column = np.empty((len(one) + len(other), *one.shape[1:]), one.dtype)
+        column[at], column[beside] = one, other
+        columns.append(column)
+    return HatPoints(*columns)
 
 
 def flank_cover(surface: PinionSurface) -> Array:
@@ -61,8 +67,3 @@ def edge_cover(columns: int) -> Array:
     cover = np.full(columns, SMALLEST_COVER)
     cover[[0, -1]] *= 0.5
     return cover
-
-
-def joined(parts: list[HatPoints]) -> HatPoints:
-    """Points one after the other."""
-    return HatPoints(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))

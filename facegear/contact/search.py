@@ -6,11 +6,11 @@ from itertools import chain, pairwise
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.averages import HatPoints
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import FlankPair
-from facegear.contact.loads import edge_cover, edge_points, flank_cover, flank_points, joined
+from facegear.contact.loads import edge_cover, edge_points, flank_cover, merged
 from facegear.contact.options import ContactOptions
 from facegear.geometry.opposite import EdgeFeet, located, tip_edge_feet
 from facegear.geometry.pinion_surface import SurfacePoints
@@ -91,51 +91,40 @@ def _facing_points(
     pair: FlankPair, placements: Placements, depth: float, options: ContactOptions
 ) -> list[HatPoints | None]:
     """Points of each pair of teeth near the flank opposite, and those of both tip edges; None without any."""
-    design, pinion, gear = pair.design, pair.pinion, pair.gear
+    design, gear = pair.design, pair.gear
+    points, flank_count = pair.pinion.facing, len(pair.pinion.area)
+    first = gear.lattice.shape[1] if options.edges else 0
     near = _near(pair, placements, depth)
     # the pinion's tip edge is looked at together with its flank, and only where that comes near
-    along, tip = pinion.tip
-    counts = [points.size + (tip.position.shape[0] if points.size else 0) for points in near]
-    normals = [part for points in near if points.size for part in (pinion.points.only(points), tip)]
-    hits = located(
-        design,
-        separation_each(
-            design,
-            SurfacePoints(
-                np.concatenate([np.zeros((0, 3)), *(part.position for part in normals)]),
-                np.concatenate([np.zeros((0, 3)), *(part.normal for part in normals)]),
-            ),
-            placements.all,
-            np.repeat(np.arange(len(near)), counts),
-            FARTHEST,
-        ),
+    tip = np.arange(flank_count, points.area.size if options.edges else flank_count)
+    numbers = [np.concatenate([part, tip]) if part.size else part for part in near]
+    counts, number = np.array([part.size for part in numbers]), np.concatenate(numbers)
+    seen = SurfacePoints(points.position[number], points.normal[number])
+    each = np.repeat(np.arange(len(near)), counts)
+    hits = located(design, separation_each(design, seen, placements.all, each, FARTHEST))
+    beside = np.where(number < flank_count, BESIDE * design.module, 0.0)
+    on_gear, gap, at = gear.coordinates(hits, options.fillet, beside), hits.gap, points.at[number]
+    if not options.fillet:
+        gap = np.where(pair.pinion.lattice.in_fillet(at), np.inf, gap)
+    on_flank = HatPoints(
+        gap,
+        points.lever_arm[number],
+        at,
+        on_gear,
+        points.hats[number] + first,
+        points.values[number],
+        points.area[number],
     )
-    starts = np.cumsum([0, *counts])
-    beside = np.zeros(starts[-1])
-    for start, points in zip(starts[:-1], near, strict=True):
-        beside[start : start + points.size] = BESIDE * design.module
-    on_gear = gear.coordinates(hits, options.fillet, beside)
     feet, feet_at = _feet(pair, placements, options)
-    first = gear.lattice.shape[1] if options.edges else 0
-    result = []
-    for row, points in enumerate(near):
-        parts = []
-        if feet is not None:
-            own = feet.gap[row], feet.lever_arm[row], feet_at[row]
-            parts.append(edge_points(first, *own, gear.tip[0]))
-        if points.size:
-            flank = slice(starts[row], starts[row] + points.size)
-            edge = slice(flank.stop, starts[row + 1])
-            gap = hits.gap[flank]
-            if not options.fillet:
-                gap = np.where(pinion.lattice.in_fillet(pinion.at[points]), np.inf, gap)
-            parts.append(flank_points(pinion, points, gap, pinion.lever_arm[points], on_gear[flank], first))
-            if options.edges:
-                hats = first + pinion.shape[0] * pinion.shape[1]
-                own = hits.gap[edge], tip.lever_arm, along
-                parts.append(edge_points(pinion.shape[1], *own, on_gear[edge], hats))
-        result.append(joined(parts) if parts else None)
-    return result
+    if feet is None:
+        every, starts = on_flank, np.cumsum([0, *counts])
+    else:
+        size = feet.gap.shape[1]
+        on_edge = edge_points(gear.lattice.shape[1], feet.gap, feet.lever_arm, feet_at, gear.tip[0])
+        starts = np.cumsum([0, *(counts + size)])
+        at_edge = (starts[:-1, None] + np.arange(size)).ravel()
+        every = merged(on_edge, at_edge, on_flank, np.arange(number.size) + size * (each + 1))
+    return [every.part(slice(*ends)) if ends[1] > ends[0] else None for ends in pairwise(starts)]
 
 
 def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> tuple[EdgeFeet | None, Array]:
@@ -148,10 +137,27 @@ def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> t
 
 
 def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integers]:
-    """Integration points in those elements of each pinion tooth that a probe finds within `depth` (m)."""
-    probes, elements = pair.pinion.probes
+    """Integration points near nodes of each pinion tooth whose gap is less than `depth` (m), by what probes
+    find in their elements.
+    """
+    pinion = pair.pinion
+    probes, elements = pinion.probes
     seen = separation(pair.design, probes, *placements.all, FARTHEST)
     # a gear's edge may lie between a probe and the points that touch: the flank is taken to go on there
     gaps = np.minimum(seen.gap, seen.continued)
     close = np.any((gaps < depth)[:, elements], axis=2)
-    return [np.flatnonzero(row[pair.pinion.element]) for row in close]
+    nodes = ~(pinion.between_probes @ np.where(np.isfinite(gaps), gaps, np.nan).T >= depth)
+    cells = _beside(nodes.T.reshape(-1, *pinion.shape)).reshape(len(gaps), -1)
+    return [
+        np.flatnonzero(near[pinion.element] & cell[pinion.cell])
+        for near, cell in zip(close, cells, strict=True)
+    ]
+
+
+def _beside(nodes: Mask) -> Mask:
+    """Cells (p, m - 1, n - 1) between nodes (p, m, n) that a marked node stands at or beside."""
+    for axis in (1, 2):
+        padded = np.pad(nodes, [(1, 1) if axis == other else (0, 0) for other in range(3)])
+        size = padded.shape[axis] - 3
+        nodes = np.any([np.take(padded, range(k, k + size), axis) for k in range(4)], axis=0)
+    return nodes

@@ -20,6 +20,7 @@ from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import RigidMotion, to_left_flank
 from facegear.geometry.ray_blank import gear_rays
 from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
+from facegear.machine_code.compiler import compiler
 
 PARTS = ("none", "flank", "fillet", "tip land", "root land")
 """Names of the parts NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND."""
@@ -115,9 +116,24 @@ def separation_each(
     placement: phi1, phi2 (rad) and tooth, (p,) each. Raises NotConverged as `separation` does.
     """
     motion = to_left_flank(design, *placement)
-    turn = motion.matrix[at]
-    starts = np.einsum("nij,nj->ni", turn, points.position) + motion.shift[at]
-    return Separation(*_cut(design, starts, np.einsum("nij,nj->ni", turn, points.normal), search_radius))
+    shift = np.ascontiguousarray(motion.shift)
+    starts, ways = _placed(motion.matrix, shift, at, points.position, points.normal)
+    return Separation(*_cut(design, starts, ways, search_radius))
+
+
+@compiler()
+def _placed(matrix: Array, shift: Array, at: Integers, position: Array, normal: Array) -> tuple[Array, Array]:
+    """Points and directions (n, 3), each by its own of motions: matrices (p, 3, 3) and shifts (p, 3)."""
+    starts, ways = np.empty(position.shape), np.empty(position.shape)
+    for row in range(at.size):
+        number = at[row]
+        for i in range(3):
+            start, way = shift[number, i], 0.0
+            for j in range(3):
+                start += matrix[number, i, j] * position[row, j]
+                way += matrix[number, i, j] * normal[row, j]
+            starts[row, i], ways[row, i] = start, way
+    return starts, ways
 
 
 def _cut(design: PairDesign, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
