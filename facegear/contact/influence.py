@@ -38,7 +38,7 @@ def influence_matrix(
     for i, first in enumerate(pairs):
         own = slice(ends[i], ends[i + 1])
         for side, body in enumerate((pinion, gear)):
-            matrix[own, own] += _symmetric(first.loads(side, True).rows, body.own)
+            _add_symmetric(matrix, int(ends[i]), first.loads(side, True).rows, body.own)
         for j in range(i) if coupled else ():
             second = pairs[j]
             other = slice(ends[j], ends[j + 1])
@@ -181,8 +181,8 @@ def _product(first: Rows, compliance: Array, second: Rows) -> Array:
 
 
 @compiled_sums
-def _symmetric(rows: Rows, compliance: Array) -> Array:
-    """`_product` of rows with themselves by a symmetric compliance.
+def _add_symmetric(matrix: Array, origin: int, rows: Rows, compliance: Array) -> None:
+    """Add `_product` of rows with themselves by a symmetric compliance, from row and column `origin` on.
 
     Rows are taken in the order of their first nodes, so that each meets those after it, and of the first
     product only the columns from its own first node on.
@@ -206,13 +206,13 @@ def _symmetric(rows: Rows, compliance: Array) -> Array:
             for b in range(size):
                 half[start + b, begun] = line[b]
             begun += 1
-    result = np.empty((count, count))
     for j in range(count):
         row = order[j]
         _sum_of_rows((pointer[row], pointer[row + 1]), at, weight, half, line, j + 1)
-        for i in range(j + 1):
-            result[row, order[i]] = result[order[i], row] = line[i]
-    return result
+        for i in range(j):
+            matrix[origin + row, origin + order[i]] += line[i]
+            matrix[origin + order[i], origin + row] += line[i]
+        matrix[origin + row, origin + row] += line[j]
 
 
 @inlined

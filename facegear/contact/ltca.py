@@ -21,7 +21,7 @@ from facegear.progress import Progress
 
 AT_ONCE = 8
 """Positions whose candidates are searched together."""
-ROOM = 1.05
+ROOM = 1.12
 """By how much farther they are searched than the position before needed."""
 
 
