@@ -50,9 +50,9 @@ def edge_points(columns: int, gap: Array, lever_arm: Array, pinion: Array, gear:
 def merged(first: HatPoints, at: Integers, second: HatPoints, beside: Integers) -> HatPoints:
     """Points of both, those of the first at rows `at` and those of the second at rows `beside`."""
     columns = []
-    for one, other in zip(first, second, strict=True):
-        column = np.empty((len(one) + len(other), *one.shape[1:]), one.dtype)
-        column[at], column[beside] = one, other
+    for upper, lower in zip(first, second, strict=True):
+        column = np.empty((len(upper) + len(lower), *upper.shape[1:]), upper.dtype)
+        column[at], column[beside] = upper, lower
         columns.append(column)
     return HatPoints(*columns)
 
