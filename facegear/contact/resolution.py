@@ -44,14 +44,16 @@ def flank_nodes(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> floa
 
 
 def estimated_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> float:
-    """Bytes that meshes, factorisation and compliance of both bodies take: an estimate.
+    """Bytes that a process takes for mesh, elimination and compliance of the larger body, the face gear.
 
-    Its three numbers are fitted to the largest memory measured for the paper's pair on coarse and medium
-    meshes (docs/contact.md), which it gives within a fifth; finer ones are extrapolated. It never falls
+    They grow with the square of the dof on its flank, its two cut faces and the largest cut through it. The
+    numbers are fitted to what was measured on six meshes, two of them of wide faces or medium size
+    (docs/contact.md), which they give within a fifth; finer ones are extrapolated. The estimate never falls
     below the flanks' dense compliance, which is certain.
     """
-    nodes, along = flank_nodes(design, sizes, plan), _elements_along(design, sizes)
-    return max(3e8 + 3.6e6 * along**2 + 8.5e4 * along * nodes, 8.0 * nodes**2)
+    nodes, planes = flank_nodes(design, sizes, plan), 2.0 * _elements_along(design, sizes) + 1.0
+    dof = 1.75 * nodes + 11.3 * planes * (design.face_gear.rim_thickness / sizes.thickness + 5.3)
+    return max(1.8e8 + 22.0 * dof**2, 8.0 * nodes**2)
 
 
 def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, available: float) -> None:

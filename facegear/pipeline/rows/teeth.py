@@ -67,7 +67,7 @@ ROWS = (
         },
         files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:STORED")},
         wildcards=BODY,
-        memory_mb=4000,
+        memory_mb=3000,
         minutes=30,
         priority=90,
     ),
