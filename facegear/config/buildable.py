@@ -13,13 +13,23 @@ from facegear.transmission.assembly import Assembly, assembly, squeezed
 from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
 
+Described = tuple[Layout, Imperfections]
+"""The layout of a section `transmission` and its errors."""
 
-def require_buildable(section: Transmission, teeth: ToothNumbers) -> None:
+
+def described(section: Transmission, teeth: ToothNumbers) -> Described:
+    """What the checks of this module look at, made once for several of them."""
+    shape = layout(section, teeth)
+    return shape, imperfections(section, shape)
+
+
+def require_buildable(section: Transmission, teeth: ToothNumbers, made: Described | None = None) -> None:
     """Raise ConfigError for teeth that do not fit, pitch curves of other teeth, forces that nothing holds.
 
     Errors that press a machine together at rest are no hindrance, as its bearings give: preloads().
+    made: described(section, teeth), where the caller has it.
     """
-    shape = layout(section, teeth)
+    shape, flaws = made or described(section, teeth)
     for key, given, count in (
         ("single_pinions", section.single_pinions, teeth.pinion_teeth),
         ("single_gears", section.single_gears, teeth.gear_teeth),
@@ -32,19 +42,18 @@ def require_buildable(section: Transmission, teeth: ToothNumbers) -> None:
     bodies: dict[str, SinglePinion | SingleGear] = {**section.single_pinions, **section.single_gears}
     for name, body in bodies.items():
         _require_hold(shape, name, body)
-    flaws = imperfections(section, shape)
     _require_assembly(section, shape, assembly(shape, _half_backlashes(section, flaws), flaws.clocking))
 
 
-def require_room(section: Transmission, teeth: ToothNumbers) -> None:
+def require_room(section: Transmission, teeth: ToothNumbers, made: Described | None = None) -> None:
     """Raise ConfigError for a machine that is pressed together at rest: it jams where it should turn."""
-    for key, amount, allowed in _pressed(section, teeth):
+    for key, amount, allowed in _pressed(section, made or described(section, teeth)):
         raise ConfigError(key, amount, allowed)
 
 
 def preloads(section: Transmission, teeth: ToothNumbers) -> list[str]:
     """A line for each pinion and mesh that is pressed together at rest, with key and amount."""
-    return [f"{key}: {amount}" for key, amount, _ in _pressed(section, teeth)]
+    return [f"{key}: {amount}" for key, amount, _ in _pressed(section, described(section, teeth))]
 
 
 def _half_backlashes(section: Transmission, flaws: Imperfections) -> Array:
@@ -79,10 +88,9 @@ def _require_assembly(section: Transmission, shape: Layout, built: Assembly) -> 
         raise ConfigError(f"transmission.pinions[{i}].{key}", value, allowed)
 
 
-def _pressed(section: Transmission, teeth: ToothNumbers) -> Iterator[tuple[str, str, str]]:
+def _pressed(section: Transmission, made: Described) -> Iterator[tuple[str, str, str]]:
     """Key, amount and what is allowed of everything that is pressed together at rest."""
-    shape = layout(section, teeth)
-    flaws = imperfections(section, shape)
+    shape, flaws = made
     half = _half_backlashes(section, flaws)
     built = assembly(shape, half, flaws.clocking, flaws)
     for i in np.flatnonzero(~built.fits):

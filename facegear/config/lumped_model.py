@@ -92,13 +92,18 @@ def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
 
 
 def machine(
-    section: Transmission, teeth: ToothNumbers, stiffness: Harmonics, unloaded: Harmonics | None = None
+    section: Transmission,
+    teeth: ToothNumbers,
+    stiffness: Harmonics,
+    unloaded: Harmonics | None = None,
+    shape: Layout | None = None,
 ) -> Machine:
     """The machine that a config describes, with the reference mesh stiffness from its own stage.
 
-    `unloaded` is the pair's own e(t), m. Raises ConfigError where the config asks for it and there is none.
+    `unloaded` is the pair's own e(t), m; shape: layout(section, teeth), where the caller has it. Raises
+    ConfigError where the config asks for e(t) and there is none.
     """
-    shape = layout(section, teeth)
+    shape = shape or layout(section, teeth)
     damping = section.damping
     return Machine(
         layout=shape,

@@ -33,13 +33,21 @@ def run_chunk(
     error's text and NaN in `columns`. Columns: sample, `columns`, error.
     """
     known = {row[SAMPLE]: row for row in journal.read(partial, identity)}
+    results, errors = np.full((len(numbers), len(columns)), np.nan), []
     with journal.appending(partial, identity) as append:
-        for number in numbers:
-            if number not in known:
-                known[number] = _row(evaluate, number, columns)
-                append(known[number])
+        for place, number in enumerate(numbers):
+            row = known.pop(number, None)
+            if row is None:
+                row = _row(evaluate, number, columns)
+                append(row)
+            if row["values"] is not None:
+                results[place] = row["values"]
+            errors.append(row[ERROR])
             on_progress()
-    return _frame([known[number] for number in numbers], columns)
+    frame = pd.DataFrame(results, columns=list(columns))
+    frame.insert(0, SAMPLE, np.array(numbers, dtype=np.int64))
+    frame[ERROR] = errors
+    return frame
 
 
 def _row(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, Any]:
@@ -48,17 +56,6 @@ def _row(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, A
     except FacegearError as error:
         return {SAMPLE: number, "values": None, ERROR: str(error).splitlines()[0]}
     return {SAMPLE: number, "values": [float(values[name]) for name in columns], ERROR: ""}
-
-
-def _frame(rows: list[dict[str, Any]], columns: Sequence[str]) -> pd.DataFrame:
-    nothing = [float("nan")] * len(columns)
-    values = np.array([row["values"] or nothing for row in rows], dtype=float).reshape(
-        len(rows), len(columns)
-    )
-    frame = pd.DataFrame(values, columns=list(columns))
-    frame.insert(0, SAMPLE, np.array([row[SAMPLE] for row in rows], dtype=np.int64))
-    frame[ERROR] = [row[ERROR] for row in rows]
-    return frame
 
 
 def identity(*parts: object) -> str:

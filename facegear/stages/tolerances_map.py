@@ -1,5 +1,6 @@
 """Percentiles of a machine with its tolerances over torque and speed."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -36,14 +37,17 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
     values, loads = samples(machine.causes, 0, asked.samples), asked.loads(machine.speed_rpm)
     count, checked = asked.samples * len(loads), max(CHECKED // len(loads), 1)
 
+    def at_load(values: Mapping[str, Any], factor: float, speed: float) -> dict[str, Any]:
+        off = values["dynamics"]["speed_rpm"] - machine.speed_rpm  # what a cause adds to it
+        transmission = with_torques(values["transmission"], factor)
+        return {**values, "transmission": transmission, "dynamics": {"speed_rpm": speed + off}}
+
+    judges = [machine.judge_near(at_load(machine.start, *load)) for load in loads]
+
     def evaluate(number: int) -> dict[str, float]:
         load, row = divmod(number, asked.samples)
-        factor, speed = loads[load]
-        changed = machine.sample(values[row])
-        off = changed["dynamics"]["speed_rpm"] - machine.speed_rpm  # what a cause adds to it
-        transmission = with_torques(changed["transmission"], factor)
-        loaded = {**changed, "transmission": transmission, "dynamics": {"speed_rpm": speed + off}}
-        return machine.judged(loaded, row < checked)
+        loaded = at_load(machine.sample(values[row]), *loads[load])
+        return machine.judged(loaded, row < checked, judges[load])
 
     frame = machine.run(evaluate, range(count), "tolerances over torque and speed", partial, code)
     tables: list[pd.DataFrame] = []

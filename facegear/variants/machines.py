@@ -9,7 +9,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.config.base import parse
-from facegear.config.buildable import require_buildable, require_room
+from facegear.config.buildable import described, require_buildable, require_room
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
@@ -216,9 +216,10 @@ def judge(
     def assembled(values: Values) -> tuple[PairExcitation, Machine]:
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
-        require_buildable(section, mesh.numbers)
-        require_room(section, mesh.numbers)
-        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded)
+        made = described(section, mesh.numbers)
+        require_buildable(section, mesh.numbers, made)
+        require_room(section, mesh.numbers, made)
+        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded, made[0])
         if mesh.law is not None:
             built = replace(built, tables=flank_tables(mesh.law, built.layout))
         if bodies is not None:

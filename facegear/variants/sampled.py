@@ -116,7 +116,11 @@ class SampledMachine(VariedMachine):
     @cached_property
     def judge(self) -> Judge:
         """What a sample is judged by, given its values."""
-        return self.judge_of(self.question, "this sample", self.start)
+        return self.judge_near(self.start)
+
+    def judge_near(self, nominal: Values) -> Judge:
+        """The same of samples that differ from these values by their causes alone."""
+        return self.judge_of(self.question, "this sample", nominal)
 
     def sample(self, values: Sequence[float]) -> dict[str, Any]:
         """The variable part of the config of a sample with these values of its causes."""
@@ -138,9 +142,12 @@ class SampledMachine(VariedMachine):
         hunting = () if self.question.dynamic else tuple(MISSED.values())
         return (*hunting, *(SIMPLIFIED.values() if self.friction else ()))
 
-    def judged(self, sample: Mapping[str, Any], check: bool) -> dict[str, float]:
-        """What a sample is judged by, and in the columns `checks` what it misses; nan unless `check`."""
-        values = self.judge(sample)
+    def judged(self, sample: Values, check: bool, judge: Judge | None = None) -> dict[str, float]:
+        """What a sample is judged by, and in the columns `checks` what it misses; nan unless `check`.
+
+        judge: that of samples near other values than `start`.
+        """
+        values = (judge or self.judge)(sample)
         if not check:
             return values | dict.fromkeys(self.checks, nan)
         missed = {} if self.question.dynamic else self._missed(sample, values)
