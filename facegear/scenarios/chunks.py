@@ -32,17 +32,17 @@ def run_chunk(
     `on_progress` is called after each sample. A sample that raises FacegearError becomes a row with the
     error's text and NaN in `columns`. Columns: sample, `columns`, error.
     """
-    known = {row[SAMPLE]: row for row in journal.read(partial, identity)}
+    known = {record[SAMPLE]: record for record in journal.read(partial, identity)}
     results, errors = np.full((len(numbers), len(columns)), np.nan), []
     with journal.appending(partial, identity) as append:
-        for place, number in enumerate(numbers):
-            row = known.pop(number, None)
-            if row is None:
-                row = _row(evaluate, number, columns)
-                append(row)
-            if row["values"] is not None:
-                results[place] = row["values"]
-            errors.append(row[ERROR])
+        for row, number in enumerate(numbers):
+            record = known.pop(number, None)
+            if record is None:
+                record = _record(evaluate, number, columns)
+                append(record)
+            if record["values"] is not None:
+                results[row] = record["values"]
+            errors.append(record[ERROR])
             on_progress()
     frame = pd.DataFrame(results, columns=list(columns))
     frame.insert(0, SAMPLE, np.array(numbers, dtype=np.int64))
@@ -50,7 +50,7 @@ def run_chunk(
     return frame
 
 
-def _row(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, Any]:
+def _record(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, Any]:
     try:
         values = evaluate(number)
     except FacegearError as error:
