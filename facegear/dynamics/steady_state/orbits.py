@@ -219,6 +219,14 @@ def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orb
     )
 
 
+def near_for_ever(integrator: Integrator, orbit: Orbit, distance: float) -> bool:
+    """Whether a run so far off a stable orbit stays there: within the error of the steps, and where the
+    slowest disturbance is held.
+    """
+    slow = 1.0 - orbit.holding
+    return distance <= min(10.0 * integrator.tolerance / slow, 0.1 * slow)
+
+
 def drawn_in(integrator: Integrator, orbit: Orbit, ends: Array, since: int) -> bool:
     """Whether nothing can lead a run away from a stable orbit any more.
 
@@ -233,7 +241,7 @@ def drawn_in(integrator: Integrator, orbit: Orbit, ends: Array, since: int) -> b
     off = back - orbit.state
     moving, slow = orbit.moving, 1.0 - orbit.holding
     distance = (integrator.weights * np.abs(off[-1])).max() / integrator.scale
-    if distance <= min(10.0 * integrator.tolerance / slow, 0.1 * slow):
+    if near_for_ever(integrator, orbit, distance):
         return True
     parts = orbit.parts(off)[:, moving]
     missed = np.linalg.norm(parts[1:] - orbit.multipliers[moving] * parts[:-1], axis=1)

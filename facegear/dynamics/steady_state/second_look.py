@@ -5,46 +5,93 @@ the next start, and one that does not end may end. Rounding of the machine's num
 motion is called.
 """
 
-import numpy as np
+from collections.abc import Iterator
 
-from facegear.arrays import Array
+import numpy as np
+import scipy
+
+from facegear.arrays import Array, Mask
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.closing import SMALL
 from facegear.dynamics.steady_state.orbits import change, largest
-from facegear.dynamics.steady_state.settle import Settled, settle
+from facegear.dynamics.steady_state.settle import KnownOrbit, Settled, settle
 
 WANDERED = 16
 """After so many periods with changes that are not small the orbit reached may be a matter of chance."""
+MAX_LOOKS = 7
+CHANCE = 0.05
+"""A periodic motion is out of doubt when fewer starts than this fraction would fail to close, which is itself
+known with a confidence of one minus as much."""
 
 
 def disagreeing(
-    integrator: Integrator, start: Array, settings: Settings, first: Settled, motion: Motion
+    integrator: Integrator,
+    start: Array,
+    settings: Settings,
+    first: Settled,
+    motion: Motion,
+    states: Array,
+    before: int,
 ) -> Settled | None:
-    """Where another start (2, n) settles if it does so otherwise than the first; None if the class holds.
+    """Where another start (2, n) settles if that takes the class of the first back; None if the class holds.
 
-    A run that went straight to its orbit is not in doubt, and one that is not settled says
-    nothing. Two irregular motions are one class.
+    A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another
+    periodic motion is looked at `second_looks` times, and on, up to MAX_LOOKS times, until the periods for
+    which the runs have wandered show that hardly a start would fail to close. Two irregular motions are one
+    class, which is looked at once. `states` (periods, 2, n): of the first motion at the end of its periods.
+    before: periods for which it had wandered when it was given up for the first time.
     """
-    if motion is Motion.NOT_SETTLED or (first.period and not _in_doubt(integrator, first)):
+    if not settings.second_looks or motion is Motion.NOT_SETTLED:
         return None
-    looks = settings.second_looks if first.period else min(settings.second_looks, 1)
-    random = np.random.default_rng(0)
-    for _ in range(looks):
-        other = settle(integrator, _moved(integrator, start, settings.aside, random), settings)
+    if first.period and not before and int(_large(integrator, first, first.period).sum()) <= WANDERED:
+        return None
+    known = KnownOrbit(first.orbit, states) if first.orbit else None
+    starts = other_starts(integrator, start, settings.aside, first)
+    wandered = before + wandering(integrator, first, first.period)
+    for looks in range(1, MAX_LOOKS + 1):
+        other = settle(integrator, next(starts), settings, known=known)
         if other.period != first.period:
             return other
+        wandered += wandering(integrator, other, other.period)
+        rare = never_closing(looks + 1, wandered, 2 * settings.settle) < CHANCE
+        if not first.period or (rare and looks >= settings.second_looks):
+            break
     return None
 
 
-def _in_doubt(integrator: Integrator, settled: Settled) -> bool:
-    """Whether a run wandered before it came to its orbit."""
+def never_closing(runs: int, wandered: int, patience: int) -> float:
+    """Largest chance, with a confidence of 1 - CHANCE, that a run wanders for longer than `patience` periods.
+
+    `runs` that all closed have wandered for `wandered` periods in all. A chaotic transient ends in any period
+    with the same chance, so that the total is distributed as Gamma of order `runs`.
+    """
+    rate = scipy.special.gammaincinv(runs, CHANCE) / max(wandered, 1)
+    return float(np.exp(-rate * patience))
+
+
+def other_starts(integrator: Integrator, start: Array, aside: float, first: Settled) -> Iterator[Array]:
+    """Starts (2, n) beside that of a run, by a fraction `aside` of the length scale.
+
+    They lie in any direction in which the run itself has moved. A symmetric run is left symmetric: what
+    disturbs the symmetry dies away or shows in the exponent, and until it has died away mirrored meshes,
+    which all but switch together, cost half as many steps again.
+    """
+    random = np.random.default_rng(0)
+    moves = first.ends - first.ends.mean(axis=0)
+    while True:
+        off = np.tensordot(random.normal(size=len(moves)), moves, 1)
+        yield start + aside * off / change(integrator, off, 0.0 * off)
+
+
+def wandering(integrator: Integrator, settled: Settled, period: int) -> int:
+    """Periods of a run before the last change over a period that is not small; 0 if there are but few."""
+    large = _large(integrator, settled, period)
+    quiet = int(large[::-1].argmax())
+    return max(settled.periods_run - quiet, 0) if large.sum() > WANDERED else 0
+
+
+def _large(integrator: Integrator, settled: Settled, period: int) -> Mask:
+    """Where the change over a period is not small, at the end of each mesh period that is kept."""
     ends = settled.ends
-    changes = largest(integrator, ends[settled.period :] - ends[: -settled.period])
-    return int((changes > SMALL).sum()) > WANDERED
-
-
-def _moved(integrator: Integrator, start: Array, aside: float, random: np.random.Generator) -> Array:
-    """A start (2, n) moved by a fraction `aside` of the length scale in any direction."""
-    off = random.normal(size=start.shape)
-    return start + aside * off / change(integrator, off, 0.0 * off)
+    return largest(integrator, ends[period:] - ends[: len(ends) - period]) > SMALL

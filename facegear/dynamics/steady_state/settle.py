@@ -9,7 +9,16 @@ from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
-from facegear.dynamics.steady_state.orbits import MATRICES, UNIT_TOLERANCE, Orbit, changes, drawn_in, shoot
+from facegear.dynamics.steady_state.orbits import (
+    MATRICES,
+    UNIT_TOLERANCE,
+    Orbit,
+    changes,
+    drawn_in,
+    largest,
+    near_for_ever,
+    shoot,
+)
 
 NEWTON_COST = 20
 """Mesh periods that cost as much time as one with all tangents."""
@@ -46,14 +55,34 @@ class Settled:
     ends: Array
 
 
-def settle(integrator: Integrator, state: Array, settings: Settings, ends: Array | None = None) -> Settled:
+@dataclass(frozen=True, eq=False)
+class KnownOrbit:
+    """A stable orbit that a run may come to once more; states (period, 2, n) at the end of its periods."""
+
+    orbit: Orbit
+    states: Array
+
+    def reached(self, integrator: Integrator, state: Array) -> float | None:
+        """How far a state (2, n) is off if it is so near that nothing can lead it away again, else None."""
+        distance = float(largest(integrator, self.states - state).min())
+        return distance if near_for_ever(integrator, self.orbit, distance) else None
+
+
+def settle(
+    integrator: Integrator,
+    state: Array,
+    settings: Settings,
+    ends: Array | None = None,
+    known: KnownOrbit | None = None,
+) -> Settled:
     """Run until the state repeats after 1 .. longest_period periods, or patience ends without a sign of it.
 
     With `refine` the orbit that the run tends to is found by Newton's method as soon as that pays, and is
     taken only once the run is drawn in by it. An unstable orbit, on which exact symmetry may hold a run, is
-    left by a kick. `ends`: states that the run passed through before, oldest first.
+    left by a kick. `ends`: states that the run passed through before, oldest first. `known`: an orbit near
+    which the run is over at once.
     """
-    return SettlingRun(integrator, state, settings, ends).settled()
+    return SettlingRun(integrator, state, settings, ends, known).settled()
 
 
 class Passed:
@@ -90,9 +119,16 @@ class SettlingRun:
     Newton's method, whose cost is counted in mesh periods, may take as long as the run itself.
     """
 
-    def __init__(self, integrator: Integrator, state: Array, settings: Settings, ends: Array | None) -> None:
+    def __init__(
+        self,
+        integrator: Integrator,
+        state: Array,
+        settings: Settings,
+        ends: Array | None,
+        known: KnownOrbit | None = None,
+    ) -> None:
         self.integrator, self.settings = integrator, settings
-        self.state = state.copy()
+        self.state, self.known_orbit = state.copy(), known
         self.passed = Passed(4 * settings.longest_period + 2 * TREND + LONG_BLOCK, state.shape)
         if ends is not None:
             self.passed.room_for(len(ends))[:] = ends
@@ -114,6 +150,11 @@ class SettlingRun:
             self._advance()
             if self.periods_run < self.dwell and not self.known:
                 continue
+            if (
+                self.known_orbit
+                and (off := self.known_orbit.reached(self.integrator, self.state)) is not None
+            ):
+                return self._result(self.known_orbit.orbit.period, off, None)
             last = self.periods_run >= self.settings.settle
             near = closing(self.integrator, self.ends, self.settings)
             result = self._refined(near, last) if self.settings.refine else None

@@ -218,10 +218,11 @@ def steady_state(
     state = integrator.by_phase(start)
     serves = guide is not None and settings.refine and guide.serves(system)
     seen = watch(integrator, state, settings, guide if serves else None)
-    other = disagreeing(integrator, state, settings, seen.settled, seen.motion)
+    first, states = seen.settled, seen.window.ends
+    other = disagreeing(integrator, state, settings, first, seen.motion, states, seen.wandered)
     looks = None
     if other is not None:
-        looks = (seen.settled.period, other.period)
+        looks = (first.period, other.period)
         seen = not_settled(integrator, seen, other, settings)
     return _response(system, integrator, seen, looks)
 

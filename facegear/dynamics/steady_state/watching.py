@@ -9,6 +9,7 @@ from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing, wand
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
 from facegear.dynamics.steady_state.guide import Guide, guided
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
+from facegear.dynamics.steady_state.second_look import wandering
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
@@ -20,13 +21,17 @@ ESCAPING = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Watched:
-    """What watching a run has shown: where it settled, its class, and the stretch that it is measured on."""
+    """What watching a run has shown: where it settled, its class, and the stretch that it is measured on.
+
+    wandered: periods for which it had wandered when it was first taken not to close.
+    """
 
     settled: Settled
     motion: Motion
     exponent: Exponent | None
     window: Window
     periods_run: int
+    wandered: int = 0
 
 
 def watch(integrator: Integrator, state: Array, settings: Settings, guide: Guide | None = None) -> Watched:
@@ -39,12 +44,12 @@ def watch(integrator: Integrator, state: Array, settings: Settings, guide: Guide
     """
     if guide is not None and (led := guided(integrator, state, guide)) is not None:
         return _periodic(integrator, led, settings, led.periods_run)
-    ends, periods_run = None, 0
+    ends, periods_run, wandered = None, 0, 0
     for _ in range(settings.extensions + 1):
         settled = settle(integrator, state, settings, ends)
         periods_run += settled.periods_run
         if settled.period:
-            return _periodic(integrator, settled, settings, periods_run)
+            return replace(_periodic(integrator, settled, settings, periods_run), wandered=wandered)
         exponent = largest_exponent(integrator, settled.state, settings)
         window = exponent.window
         motion = _class(integrator, settled, exponent, window, settings)
@@ -52,6 +57,8 @@ def watch(integrator: Integrator, state: Array, settings: Settings, guide: Guide
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
             break
         state, ends = window.ends[-1], exponent.ends
+        near = closing(integrator, settled.ends, settings)
+        wandered = wandered or wandering(integrator, settled, near.period)
     return Watched(settled, motion, exponent, window, periods_run)
 
 

@@ -12,8 +12,12 @@ from facegear.config.dynamics import SECOND_LOOKS
 from facegear.config.load import load_config
 from facegear.config.machines import case_machine
 from facegear.config.model import resolved
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.steady_state.orbits import change
+from facegear.dynamics.steady_state.second_look import CHANCE, never_closing, other_starts
+from facegear.dynamics.steady_state.settle import KnownOrbit, settle
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
 from facegear.dynamics.sweeps.summary import response_summary
 from facegear.harmonics.series import Harmonics
@@ -202,3 +206,39 @@ def test_a_motion_that_every_start_is_drawn_to_needs_no_second_look():
     )
     assert once.label == again.label == "period-1" and again.looks is None
     assert once.periods_run == again.periods_run
+
+
+def test_looks_end_when_a_motion_that_never_closes_is_rarer_than_stated():
+    """Lifetimes of a chaotic transient are exponential: the stated chance is a bound 19 times of 20."""
+    random = np.random.default_rng(1)
+    patience = 512
+    for runs, mean in ((2, 40.0), (4, 150.0), (8, 400.0)):
+        wandered = random.exponential(mean, size=(2000, runs)).sum(axis=1)
+        stated = np.array([never_closing(runs, total, patience) for total in wandered])
+        too_small = (stated < np.exp(-patience / mean)).mean()
+        assert too_small == pytest.approx(CHANCE, abs=0.02)
+
+
+def test_another_start_lies_where_the_run_itself_has_moved_so_that_symmetry_is_kept():
+    """A direction of its own breaks the symmetry: mirrored meshes then switch one after the other."""
+    oscillator = next(random_oscillators(1))
+    integrator = Integrator(oscillator.system, oscillator.speed)
+    random = np.random.default_rng(0)
+    moved = settle(integrator, integrator.by_phase(oscillator.start), Settings(settle=64, dwell=16))
+    only_places = replace(moved, ends=random.normal(size=(20, 2, 1)) * [[[1.0], [0.0]]])
+    start = np.array([[0.3], [0.1]])
+    for _, other in zip(range(5), other_starts(integrator, start, 1e-3, only_places), strict=False):
+        assert other[1, 0] == start[1, 0]
+        assert change(integrator, start, other) == pytest.approx(1e-3)
+
+
+def test_a_run_that_comes_near_a_known_stable_orbit_is_over_with_the_same_period():
+    oscillator = next(random_oscillators(1))
+    integrator = Integrator(oscillator.system, oscillator.speed)
+    start, settings = integrator.by_phase(oscillator.start), Settings()
+    first = settle(integrator, start, settings)
+    states = integrator.run(first.state, first.period).ends
+    again = settle(integrator, start, settings, known=KnownOrbit(first.orbit, states))
+    assert first.orbit is not None and again.period == first.period
+    assert again.periods_run <= first.periods_run
+    assert change(integrator, again.state, states[-1]) < 1e-4
