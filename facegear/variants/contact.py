@@ -26,6 +26,7 @@ from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passage import passing
+from facegear.strength.root_stress import largest_between
 from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
@@ -78,7 +79,11 @@ def _answers(
     unloaded = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")["unloaded_ste_um"]
     approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
     error = 1e-6 * unloaded.to_numpy(float) + approach
-    roots = {body: passing(body, flank, analysis.loads) for body, flank in flanks.items() if flank.gauges}
+    roots = {
+        body: largest_between(passing(body, flank, analysis.loads))
+        for body, flank in flanks.items()
+        if flank.gauges
+    }
     return PairAnswers(error, contact_pressure(analysis.by_torque[0]), roots)
 
 

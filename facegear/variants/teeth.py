@@ -58,7 +58,7 @@ class PairExcitation:
             ERROR_RANGE: 1e6 * answers.error_range,
             ERROR_HARMONIC: 1e6 * answers.error_harmonic,
             PRESSURE: 1e-6 * answers.pressure.at(torque),
-            **{ROOTS[body]: 1e-6 * answers.largest_root_stress(body, torque) for body in answers.roots},
+            **{ROOTS[body]: 1e-6 * largest(torque) for body, largest in answers.roots.items()},
         }
 
 

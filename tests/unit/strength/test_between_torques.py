@@ -5,13 +5,18 @@ from math import sqrt
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from references import against, agrees
 from root_stresses import power_law
 
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
-from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
+from facegear.strength.root_stress import (
+    RootStress,
+    down_the_fillet,
+    largest_between,
+    largest_tension,
+)
 
 
 @against(
@@ -44,13 +49,26 @@ def test_beyond_the_torques_solved_pressure_rises_with_the_root_of_the_torque_an
     assert found.at(500.0) == pytest.approx(1200e6 * 0.5 ** (1 / 3))  # of a point contact: no less than it is
 
 
+@settings(deadline=None)
 @given(torque=st.floats(10.0, 2000.0))
 def test_the_largest_tension_between_torques_is_that_of_every_place_of_the_fillet(torque):
     stress = np.random.default_rng(3).normal(size=(3, 4, 2, 5, 3))
     torques, error = np.array([100.0, 400.0, 1000.0]), np.zeros(3)
     full = RootStress(torques, np.arange(4.0), stress, np.arange(3.0), np.ones((2, 5, 3)), error)
     expected = down_the_fillet(full.at_torque(torque)).max()
-    assert largest_tension(full)(torque) == pytest.approx(expected, rel=1e-12)
+    for largest in (largest_tension, largest_between):
+        assert largest(full)(torque) == pytest.approx(expected, rel=1e-12)
+
+
+@settings(deadline=None)
+@given(torque=st.floats(10.0, 2000.0), seed=st.integers(0, 9))
+def test_sections_that_are_left_out_never_have_the_largest_stress(torque, seed):
+    draw, torques = np.random.default_rng(seed), np.array([100.0, 400.0, 1000.0])
+    sizes = draw.uniform(0.0, 1.0, (1, 40, 2, 1, 3)) ** 3 * torques[:, None, None, None, None]
+    stress = sizes * draw.uniform(0.3, 1.0, (3, 40, 2, 5, 3))
+    full = RootStress(torques, np.arange(40.0), stress, np.arange(3.0), np.ones((2, 5, 3)), np.zeros(3))
+    expected = down_the_fillet(full.at_torque(torque)).max()
+    assert largest_between(full)(torque) == pytest.approx(expected, rel=1e-12)
 
 
 @given(
