@@ -1,6 +1,7 @@
 """Python programs as children of a process that has imported the slow libraries, and nothing of the package.
 
 Each has memory and modules of its own, as a process started anew has; it saves the second of these imports.
+That process is no child of the tests, some of which end all of theirs.
 """
 
 import atexit
@@ -39,6 +40,7 @@ def _server() -> subprocess.Popen[str]:
     process = subprocess.Popen(
         [sys.executable, __file__], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
+    process.wait()  # for the parent of the one that serves
     atexit.register(process.stdin.close)
     return process
 
@@ -73,5 +75,5 @@ def _run(program: str, names: Sequence[str], environment: Mapping[str, str]) -> 
     os._exit(code)
 
 
-if __name__ == "__main__":
+if __name__ == "__main__" and os.fork() == 0:
     _serve()
