@@ -176,16 +176,15 @@ def cvode(method: str) -> Prepare:
 
 
 def heyoka_methods() -> list[Method]:
-    """heyoka.py with its own event handling, alone and in a batch as wide as it recommends.
+    """heyoka.py with its own event handling, alone and in a batch as wide as ours.
 
     Raises ImportError where it is not installed.
     """
     import heyoka
 
-    lanes = heyoka.recommended_simd_size()
     return [
         Method("heyoka.py", heyoka_peer.trajectory(heyoka), TOLERANCES),
-        Method(f"heyoka.py, each of {lanes}", heyoka_peer.batch(heyoka, lanes), TOLERANCES, lanes),
+        Method(f"heyoka.py, each of {WIDTH}", heyoka_peer.batch(heyoka, WIDTH), TOLERANCES, WIDTH),
     ]
 
 
