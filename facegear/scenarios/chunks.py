@@ -1,5 +1,6 @@
 """A chunk of samples in one warm process: appended as it goes, resumed where it was killed."""
 
+import gc
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -15,6 +16,9 @@ Evaluate = Callable[[int], Mapping[str, float]]
 """Results by column name of one sample, given its number. Raises FacegearError where it has none."""
 
 SAMPLE, ERROR = "sample", "error"
+COLLECTED = 1000
+"""Samples after which garbage is collected: arrays count for nothing with Python's own collector, which comes
+late where a few objects hold large ones."""
 
 
 def run_chunk(
@@ -43,6 +47,8 @@ def run_chunk(
             if record["values"] is not None:
                 results[row] = record["values"]
             errors.append(record[ERROR])
+            if (row + 1) % COLLECTED == 0:
+                gc.collect()
             on_progress()
     frame = pd.DataFrame(results, columns=list(columns))
     frame.insert(0, SAMPLE, np.array(numbers, dtype=np.int64))

@@ -1,11 +1,15 @@
 """Chunks resume after a kill, keep failures as rows, and give the same rows however they are cut."""
 
+import gc
+import weakref
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from facegear.errors import FacegearError
 from facegear.io import journal
+from facegear.scenarios import chunks
 from facegear.scenarios.chunks import run_chunk
 
 COLUMNS = ("a", "b")
@@ -105,3 +109,28 @@ def test_rows_are_equal_to_the_bit_for_any_size_of_chunk(tmp_path, size):
     starts = range(0, count, size)
     parts = [run(Machine(), tmp_path / str(at), range(at, min(at + size, count))) for at in starts]
     pd.testing.assert_frame_equal(pd.concat(parts, ignore_index=True), whole, check_exact=True)
+
+
+class Ring:
+    """Refers to itself, as machines with what they have computed do."""
+
+    def __init__(self):
+        self.itself = self
+
+
+def test_what_finished_samples_leave_behind_does_not_pile_up(tmp_path, monkeypatch):
+    monkeypatch.setattr(chunks, "COLLECTED", 50)
+    alive = weakref.WeakSet()
+    most = [0]
+
+    def evaluate(number):
+        alive.add(Ring())
+        most[0] = max(most[0], len(alive))
+        return {"a": 0.0, "b": 0.0}
+
+    gc.disable()
+    try:
+        run(evaluate, tmp_path / "partial", range(400))
+    finally:
+        gc.enable()
+    assert most[0] <= 50
