@@ -9,7 +9,7 @@ import scipy.sparse as sp
 
 from facegear.arrays import Array, Integers
 
-AT_ONCE = 256
+AT_ONCE = 128
 """Small matrices that are made together."""
 
 
