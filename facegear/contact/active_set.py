@@ -47,6 +47,13 @@ def _times(matrix: Array, vector: Array) -> Array:
     return result
 
 
+@for_callers()
+def _put(values: Array, index: Integers, out: Array) -> None:
+    """out[index] = values, which numba would compile with its check of shapes, for two seconds."""
+    for i in range(index.size):
+        out[index[i]] = values[i]
+
+
 @compiled
 def distances(compliance: Array, gap: Array, lever_arm: Array, force: Array, rotation: float) -> Array:
     """Distance (n,) m of all points by forces (n,) N, of which most are zero, and a rotation (rad)."""
@@ -121,7 +128,7 @@ def refined(
         force += turn * turning - change
         rotation += turn
     whole = np.zeros(gap.size)
-    whole[index] = force
+    _put(force, index, whole)
     return whole, rotation, violation(compliance, gap, lever_arm, torque, whole, rotation)
 
 
@@ -147,7 +154,7 @@ def newton(
         touching = bonded(compliance, gap, lever_arm, torque, active)
         rotation = touching[5]
         force[:] = 0.0
-        force[touching[0]] = touching[4]
+        _put(touching[4], touching[0], force)
         distance = distances(compliance, gap, lever_arm, force, rotation)
         turned = nearest = 0.0
         for i in range(count):

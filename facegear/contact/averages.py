@@ -116,7 +116,8 @@ def _hat_averages(points: HatPoints, min_area: Array) -> tuple[Rows, Integers]:
     pointer = np.zeros(chosen.size + 1, np.int64)
     pointer[1:] = np.cumsum(count[chosen])
     slot = np.full(min_area.size, -1)
-    slot[chosen] = pointer[:-1]
+    for m in range(chosen.size):
+        slot[chosen[m]] = pointer[m]
     index, weight = np.empty(pointer[-1], np.int64), np.empty(pointer[-1])
     for q in range(hats.shape[0]):
         for h in range(hats.shape[1] if on[q] else 0):
