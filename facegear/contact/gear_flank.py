@@ -22,7 +22,7 @@ class GearFlank:
     def softer(self, factor: float) -> "GearFlank":
         """The flank with Young's modulus smaller by a factor; its gauges read the same stress."""
         given = self.compliance
-        return replace(self, compliance=replace(given, own=factor * given.own, others=factor * given.others))
+        return replace(self, compliance=replace(given, scale=factor * given.scale))
 
 
 STORED = {

@@ -38,7 +38,7 @@ def influence_matrix(
     for i, first in enumerate(pairs):
         own = slice(ends[i], ends[i + 1])
         for side, body in enumerate((pinion, gear)):
-            _add_symmetric(matrix, int(ends[i]), first.loads(side, True).rows, body.own)
+            _add_symmetric(matrix, int(ends[i]), first.loads(side, True).rows, body.own, body.scale)
         for j in range(i) if coupled else ():
             second = pairs[j]
             other = slice(ends[j], ends[j + 1])
@@ -46,7 +46,7 @@ def influence_matrix(
             block = np.zeros((len(first.hats), len(second.hats)))
             for side, body in enumerate((pinion, gear)):
                 seen, loads = first.loads(side, False), second.loads(side, False)
-                block += product(seen, body.block(teeth_apart), loads)
+                block += body.scale * product(seen, body.block(teeth_apart), loads)
             matrix[own, other] = block
             matrix[other, own] = block.T
     return matrix
@@ -83,7 +83,7 @@ def _approach(
                 teeth_apart = here.tooth - pair.tooth
                 compliance = body.own if refined else body.block(teeth_apart)
                 if (teeth_apart == 0) == refined and compliance is not None:
-                    pushed = np.ascontiguousarray(force.T)
+                    pushed = np.ascontiguousarray(body.scale * force.T)
                     _move(moved, used, compliance, pair.loads(side, refined).rows, pushed)
             _add_averages(total, here.averages, base, values, faces, slot, moved)
     return total
@@ -181,8 +181,9 @@ def _product(first: Rows, compliance: Array, second: Rows) -> Array:
 
 
 @compiled_sums
-def _add_symmetric(matrix: Array, origin: int, rows: Rows, compliance: Array) -> None:
-    """Add `_product` of rows with themselves by a symmetric compliance, from row and column `origin` on.
+def _add_symmetric(matrix: Array, origin: int, rows: Rows, compliance: Array, scale: float) -> None:
+    """Add `_product` of rows with themselves by a symmetric compliance times a scale, from row and column
+    `origin` on.
 
     Rows are taken in the order of their first nodes, so that each meets those after it, and of the first
     product only the columns from its own first node on.
@@ -199,7 +200,7 @@ def _add_symmetric(matrix: Array, origin: int, rows: Rows, compliance: Array) ->
         while begun < count and first[begun] < start + size:
             for a in range(filled, end[begun]):
                 for b in range(size):
-                    part[a, b] = compliance[used[a], used[start + b]]
+                    part[a, b] = scale * compliance[used[a], used[start + b]]
             filled = max(filled, end[begun])
             row = order[begun]
             _sum_of_rows((pointer[row], pointer[row + 1]), at, weight, part, line, size)

@@ -38,6 +38,8 @@ class FlankCompliance:
     readings : (2 d + 1, g, c)
         What g gauges on the tooth t - d further along show by unit normal forces on the nodes of the lattice
         before refinement; empty without gauges.
+    scale
+        What the displacements are times `own` and `others`: another Young's modulus needs no copies of them.
     """
 
     own: Array
@@ -47,9 +49,10 @@ class FlankCompliance:
     refinement: Refinement
     linear: bool = False
     readings: Array = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    scale: float = 1.0
 
     def block(self, places: int) -> Array | None:
-        """Coarse block for a tooth `places` further than the loaded one; None beyond those computed."""
+        """Coarse block, not scaled, for a tooth `places` further than the loaded one; None beyond."""
         reach = len(self.others) // 2
         return self.others[places + reach] if abs(places) <= reach else None
 
@@ -151,8 +154,8 @@ def to_arrays(compliance: FlankCompliance) -> dict[str, AnyArray]:
     """Named arrays from which `from_arrays` rebuilds the compliance."""
     cuts = compliance.refinement
     return {
-        "own_m_per_n": compliance.own,
-        "others_m_per_n": compliance.others,
+        "own_m_per_n": compliance.scale * compliance.own,
+        "others_m_per_n": compliance.scale * compliance.others,
         "shape": np.array(compliance.shape),
         "coarse_shape": np.array(compliance.coarse_shape),
         "refinement": np.array([cuts.profile, cuts.width, cuts.depth, cuts.grading], dtype=float),
