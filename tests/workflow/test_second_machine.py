@@ -36,13 +36,18 @@ def test_the_engine_that_is_out_turns_free_and_axial_bearings_of_the_pinions(res
 
 
 def test_engine_out_leaves_all_load_to_the_other_but_what_its_pinion_takes_where_it_rattles(results):
-    """Rest and an irregular rattle coexist, and rounding decides which of them a start comes to."""
+    """Rest and irregular rattles coexist, and rounding decides which of them a start comes to.
+
+    A pinion without torque that rattles is out of contact for most of the time, and carries less than a
+    twentieth of the load meanwhile: 0.6 and 2 % were met.
+    """
     summary = pd.read_csv(results / "load_sharing" / "summary.csv").set_index(["study", "point"])
     out = summary.loc["second_engine"].loc[["out__60", "out__120"]]
     assert out["starts_high"].to_list() == pytest.approx([2.0, 2.0], abs=1e-6)
     still = out["motion"].eq("period-1")
     assert out.loc[still, "mean"].to_list() == pytest.approx([2.0] * still.sum(), abs=1e-6)
-    assert out["mean"].between(1.97, 2.0 + 1e-6).all()
+    assert out["mean"].between(1.9, 2.0 + 1e-6).all()
+    assert (out["lost_fraction"] > 0.5).all()
     assert summary.loc[("second_engine", "half__120"), "mean"] == pytest.approx(600 / 450, abs=0.03)
 
 
