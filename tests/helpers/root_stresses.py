@@ -20,4 +20,4 @@ def power_law(torques, exponent):
     one = root(400e6)
     torques = np.array(torques)
     factors = (torques / 500.0) ** exponent
-    return replace(one, torques=torques, stress=factors[:, None, None, None, None, None] * one.stress)
+    return replace(one, torques=torques, stress=factors[:, None, None, None, None] * one.stress)
