@@ -14,16 +14,19 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pandas as pd
 
+from facegear.compare.quantities import RESIDUALS
 from facegear.results.chain import Chain
 from facegear.results.store import Store
 from validation.growth.measure import ONE_THREAD
 from validation.ratios.points import POINTS, Point
 
 TURNS = 3
+SAME = 1e-9
+"""Change of a number, over the largest of its array, up to which it is the same."""
 WORKER = Path(__file__).with_name("worker.py")
 COLUMNS = (
     *("point", "unit", "before", "now", "ratio", "memory_before_mb", "memory_now_mb"),
-    *("change", "labels_changed", "labels", "error", "load"),
+    *("change", "fraction_equal", "labels_changed", "labels", "error", "load"),
 )
 
 
@@ -117,29 +120,50 @@ def arguments(point: Point) -> dict[str, object]:
     return Chain(gearbox.values, Store()).arguments(point.stage)
 
 
-def changes(before: dict[str, np.ndarray], now: dict[str, np.ndarray]) -> tuple[float, int, int]:
-    """Largest change of a number over the largest of its array, labels that changed, and how many there are.
+def changes(before: dict[str, np.ndarray], now: dict[str, np.ndarray]) -> tuple[float, float, int, int]:
+    """Largest change of a number over the largest of its array, the fraction of numbers that change by at most
+    SAME, labels that changed, and how many labels there are.
 
-    Rows of an array whose first axis is that of labels count only where the label is the same and begins
-    with `period`, as other motions are statistics.
+    Rows whose `motion` changes its class or its period, or is not periodic, count by their label alone, as
+    other motions are statistics. Residuals count as `facegear compare` has them.
     """
     texts = {name: values for name, values in before.items() if values.dtype.kind in "UO"}
     changed = sum(int((values != now[name]).sum()) for name, values in texts.items())
+    labels = sum(values.size for values in texts.values())
     regular = {
-        len(values): np.array([str(value).startswith("period") for value in values]) & (values == now[name])
-        for name, values in texts.items()
-        if name.endswith(("motion", "label"))
+        name.removesuffix("motion"): _regular(before, now, name) for name in texts if name.endswith("motion")
     }
-    worst = 0.0
+    worst, same, total = 0.0, 0, 0
     for name in before.keys() - texts.keys():
-        old, new = (np.atleast_1d(side[name]).astype(complex) for side in (before, now))
+        old, new = (_counted(name, side[name]) for side in (before, now))
         if old.shape != new.shape:
-            return float("inf"), changed, sum(values.size for values in texts.values())
-        rows = regular.get(len(old), np.ones(len(old), dtype=bool))
-        scale = np.abs(old[rows][np.isfinite(old[rows])]).max(initial=0.0)
-        gap = np.abs(np.where(np.isnan(old) & np.isnan(new), 0.0, new - old))[rows].max(initial=0.0)
-        worst = max(worst, gap / scale if scale > 0.0 else gap)
-    return worst, changed, sum(values.size for values in texts.values())
+            return float("inf"), 0.0, changed, labels
+        for prefix, rows in regular.items():
+            if name.startswith(prefix) and len(rows) == len(old):
+                old, new = old[rows], new[rows]
+        scale = np.abs(old[np.isfinite(old)]).max(initial=0.0)
+        gap = np.where((old == new) | np.isnan(old) & np.isnan(new), 0.0, np.abs(new - old))
+        gap = gap / scale if scale > 0.0 else gap
+        worst, same, total = (
+            max(worst, gap.max(initial=0.0)),
+            same + int((gap <= SAME).sum()),
+            total + gap.size,
+        )
+    return float(worst), same / max(total, 1), changed, labels
+
+
+def _regular(before: dict[str, np.ndarray], now: dict[str, np.ndarray], name: str) -> np.ndarray:
+    """Rows that are periodic with the same period on both sides."""
+    kind, period = before[name].astype(str), name.removesuffix("motion") + "period"
+    rows = np.char.startswith(kind, "period") & (kind == now[name].astype(str))
+    return rows & (before[period] == now[period]) if period in before else rows
+
+
+def _counted(name: str, values: np.ndarray) -> np.ndarray:
+    """Numbers of an array as they are compared."""
+    numbers = np.atleast_1d(values).astype(complex)
+    zero = RESIDUALS.get(name.rsplit("/", 1)[-1], 0.0)
+    return np.where(np.abs(numbers) <= zero, 0.0, numbers)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -157,8 +181,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         for name in asked.points:
             rows.append(ratio(name, POINTS[name], (before, Path.cwd()), folder, asked.turns))
             print(pd.DataFrame(rows[-1:]).to_string(index=False, header=len(rows) == 1), flush=True)
-    if asked.table:
-        pd.DataFrame(rows).to_csv(asked.table, index=False)
+            if asked.table:
+                pd.DataFrame(rows).to_csv(asked.table, index=False)
 
 
 if __name__ == "__main__":

@@ -29,6 +29,18 @@ def test_numbers_of_irregular_motions_and_of_changed_labels_do_not_count_as_chan
     assert (labels_changed, labels) == (1, 4)
 
 
+def test_a_motion_of_another_period_counts_by_its_label_and_residuals_of_solved_contacts_do_not():
+    before = {
+        "motion": np.array(["periodic", "periodic"]),
+        "period": np.array([1, 2]),
+        "rms": np.array([1.0, 2.0]),
+    }
+    now = {**before, "period": np.array([1, 4]), "rms": np.array([1.0, 3.0])}
+    assert changes(before, now)[0] == 0.0
+    assert changes({"kkt_residual": np.array([1e-16])}, {"kkt_residual": np.array([5e-16])})[0] == 0.0
+    assert changes({"kkt_residual": np.array([1e-16])}, {"kkt_residual": np.array([1e-9])})[0] > 0.0
+
+
 def test_arrays_of_another_shape_are_no_small_change():
     assert changes({"k": np.ones(3)}, {"k": np.ones(4)})[0] == np.inf
 
