@@ -96,20 +96,9 @@ def ratio(
     seconds = [min(turn[side]["seconds"] for turn in calls) for side in range(2)]
     memory = [max(turn[side]["memory_mb"] for turn in calls) for side in range(2)]
     before, now = (point.scale * each / point.amount for each in seconds)
-    change, labels_changed, labels = changes(*(pickle.loads(path.read_bytes()) for path in answers))
-    values = (
-        name,
-        point.unit,
-        before,
-        now,
-        now / before,
-        *memory,
-        change,
-        labels_changed,
-        labels,
-        point.error,
-    )
-    return dict(zip(COLUMNS, (*values, os.getloadavg()[0]), strict=True))
+    change = changes(*(pickle.loads(path.read_bytes()) for path in answers))
+    values = (name, point.unit, before, now, now / before, *memory, *change, point.error, os.getloadavg()[0])
+    return dict(zip(COLUMNS, values, strict=True))
 
 
 def arguments(point: Point) -> dict[str, object]:
@@ -121,8 +110,8 @@ def arguments(point: Point) -> dict[str, object]:
 
 
 def changes(before: dict[str, np.ndarray], now: dict[str, np.ndarray]) -> tuple[float, float, int, int]:
-    """Largest change of a number over the largest of its array, the fraction of numbers that change by at most
-    SAME, labels that changed, and how many labels there are.
+    """Largest change of a number over the largest of its array, the fraction of numbers that change by at
+    most SAME, labels that changed, and how many labels there are.
 
     Rows whose `motion` changes its class or its period, or is not periodic, count by their label alone, as
     other motions are statistics. Residuals count as `facegear compare` has them.

@@ -24,7 +24,10 @@ def test_numbers_of_irregular_motions_and_of_changed_labels_do_not_count_as_chan
     value = np.array([[1.0], [2.0], [3.0], [4.0]])
     moved = value * np.array([[1.0], [1.5], [1.0 + 1e-7], [2.0]])
     now = np.where(np.arange(4) == 3, "irregular", MOTIONS)
-    change, labels_changed, labels = changes({"motion": MOTIONS, "rms": value}, {"motion": now, "rms": moved})
+    change, equal, labels_changed, labels = changes(
+        {"motion": MOTIONS, "rms": value}, {"motion": now, "rms": moved}
+    )
+    assert equal == 0.5
     assert change == pytest.approx(1e-7, rel=1e-6)
     assert (labels_changed, labels) == (1, 4)
 
