@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import facegear
 from facegear.pipeline.table import STAGES
 from validation.ratios.points import POINTS, Point
 from validation.ratios.run import COLUMNS, changes, ratio
@@ -14,7 +15,9 @@ MOTIONS = np.array(["period-1", "chaotic", "period-2", "period-1"])
 
 def test_code_is_measured_beside_itself_with_the_same_answers(tmp_path):
     point = Point("config/harmonics_only.yaml", "modal", "s", "docs/theory.md", amount=2)
+    here = np.ones(80_000_000)  # 640 MB that are not the job's
     row = ratio("modal", point, (Path.cwd(), Path.cwd()), tmp_path, turns=1)
+    assert 50.0 < row["memory_now_mb"] < 600.0 < here.nbytes / 2**20
     assert tuple(row) == COLUMNS
     assert row["change"] == 0.0 and row["labels_changed"] == 0
     assert row["before"] > 0.0 and row["ratio"] == pytest.approx(row["now"] / row["before"])
@@ -50,5 +53,6 @@ def test_arrays_of_another_shape_are_no_small_change():
 
 def test_every_point_is_a_job_of_the_workflow_and_says_where_its_error_stands():
     for point in POINTS.values():
+        facegear.load(point.config, results=None).with_values(point.changes)
         assert set(STAGES[point.stage].wildcards) == set(point.wildcards)
         assert Path(point.error.partition(",")[0]).is_file()
