@@ -115,8 +115,12 @@ def _finer(rows: int) -> Array:
 
 
 def largest_tension(root: RootStress) -> Callable[[float], float]:
-    """Largest stress (Pa) on either fillet over the passage and the face, at a torque (N m)."""
-    places = np.stack([down_the_fillet(stress).ravel() for stress in root.stress])
+    """Largest stress (Pa) on either fillet over the passage and the face, at a torque (N m).
+
+    It looks only where the largest stress may be at some torque, so that it is cheap in time and memory.
+    """
+    sections = _sections_with_the_largest(root.stress)
+    places = np.stack([(_finer(stress.shape[-1]) @ stress.T).ravel() for stress in sections])
     kept = np.zeros(places.shape[1], dtype=bool)
     kept[places.argmax(axis=1)] = True
     for low, high in pairwise(places):
@@ -125,22 +129,20 @@ def largest_tension(root: RootStress) -> Callable[[float], float]:
     return lambda torque: float(growth.at(worst, torque).max())
 
 
-def largest_between(root: RootStress) -> Callable[[float], float]:
-    """`largest_tension` for few torques, in little memory: the spline is drawn for each through the gauges of
-    those sections of the fillet that may have the largest stress.
+def _sections_with_the_largest(stress: Array) -> Array:
+    """Sections (t, s, a) across the fillet that may have the largest of the stresses (t, n, 2, a, b).
 
     Between two torques the larger of two places of tension is at least half the blend of their stresses; a
     section whose spline stays below half the largest stress at every torque solved is never the largest.
     """
-    sections = np.moveaxis(root.stress, -2, -1).reshape(len(root.torques), -1, root.stress.shape[-2])
+    sections = np.moveaxis(stress, -2, -1).reshape(len(stress), -1, stress.shape[-2])
     places = sections.reshape(len(sections), -1)
     best = places.argmax(axis=1)
+    if (places[:, best] < 0.0).any():
+        return sections
     reach = np.abs(_finer(sections.shape[-1])).sum(axis=1).max() * np.abs(sections).max(axis=-1)
     kept = (reach >= 0.5 * places.max(axis=1)[:, None]).any(axis=0)
-    if (places[:, best] < 0.0).any():
-        kept[:] = True
-    worst, growth = np.moveaxis(sections[:, kept], -1, -2).copy(), root.scale
-    return lambda torque: float(down_the_fillet(growth.at(worst, torque)).max())
+    return sections[:, kept]
 
 
 def _may_be_largest(low: Array, high: Array) -> Mask:

@@ -26,7 +26,7 @@ from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passage import passing
-from facegear.strength.root_stress import largest_between
+from facegear.strength.root_stress import largest_tension
 from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def _answers(
     approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
     error = 1e-6 * unloaded.to_numpy(float) + approach
     roots = {
-        body: largest_between(passing(body, flank, analysis.loads))
+        body: largest_tension(passing(body, flank, analysis.loads))
         for body, flank in flanks.items()
         if flank.gauges
     }
