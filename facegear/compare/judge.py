@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from facegear.compare.quantities import REGULAR, TABLES, Table, declared
+from facegear.compare.quantities import AFTER_IRREGULAR, REGULAR, TABLES, Table, declared
 from facegear.errors import FacegearError
 from facegear.io import documents, tables
 
@@ -30,6 +30,7 @@ class Verdict(StrEnum):
     MOVED = "moved"
     NO_ERROR = "moved, its error is not stated"
     IRREGULAR = "irregular motion, a statistic"
+    ROUNDING = "after irregular motion, decided by rounding"
     LABEL = "label changed"
     GONE = "gone"
     ADDED = "added"
@@ -103,9 +104,10 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
     parts = [_judge_column(name, table, before.loc[shared], after.loc[shared], column) for column in columns]
     for this, other, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
         lost = [f"column {column}" for column in this.columns if column not in other.columns]
-        parts.append(
-            _one_sided(name, [*this.index.difference(other.index, sort=False).astype(str), *lost], verdict)
-        )
+        rows = this.loc[this.index.difference(other.index, sort=False)]
+        frame = _one_sided(name, [*rows.index.astype(str), *lost], verdict)
+        open_rows = np.concatenate([_after_irregular(rows), np.zeros(len(lost), dtype=bool)])
+        parts.append(frame.assign(verdict=frame["verdict"].mask(open_rows, Verdict.ROUNDING)))
     return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
 
 
@@ -132,12 +134,13 @@ def _judge_column(
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     shown = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
+    open_rows = _after_irregular(before) & _after_irregular(after)
     if not numeric:
         same = (old.fillna("").astype(str) == new.fillna("").astype(str)).to_numpy()
         return shown.assign(
             relative_change=np.nan,
             numerical_error=np.nan,
-            verdict=np.where(same, Verdict.SAME, Verdict.LABEL),
+            verdict=np.select([same, open_rows], [Verdict.SAME, Verdict.ROUNDING], Verdict.LABEL),
         )
     error = table.error(column)
     zero = table.zero.get(column, 0.0)
@@ -146,8 +149,8 @@ def _judge_column(
     irregular = _irregular(before, table) | _irregular(after, table)
     beyond = Verdict.NO_ERROR if error is None else Verdict.MOVED
     verdict = np.select(
-        [change <= REPEATABLE, irregular, change <= (error or 0.0)],
-        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR],
+        [change <= REPEATABLE, irregular, change <= (error or 0.0), open_rows],
+        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING],
         beyond,
     )
     return shown.assign(
@@ -175,6 +178,13 @@ def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
         named = motion.notna().to_numpy()
         rows |= named & ~motion.astype(str).str.startswith(REGULAR).to_numpy()
     return rows
+
+
+def _after_irregular(frame: pd.DataFrame) -> np.ndarray:
+    """Rows whose motion rounding can decide, shape (rows,); none where the table does not say so."""
+    if AFTER_IRREGULAR not in frame.columns:
+        return np.zeros(len(frame), dtype=bool)
+    return frame[AFTER_IRREGULAR].fillna(False).astype(bool).to_numpy()
 
 
 def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:

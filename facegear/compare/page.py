@@ -57,6 +57,8 @@ def verdict(comparison: Comparison) -> str:
     if comparison.equal:
         within = comparison.counts[Verdict.WITHIN_ERROR] + comparison.counts[Verdict.IRREGULAR]
         more = f" {within} numbers moved within their numerical error." if within else ""
+        rounding = comparison.counts[Verdict.ROUNDING]
+        more += f" {rounding} numbers, labels and rows that rounding decides differ." if rounding else ""
         return f"Both folders say the same.{more}"
     files = comparison.rows.loc[comparison.rows["verdict"].isin(CHANGES), "file"].nunique()
     return f"The folders differ in {files} table{'s' * (files > 1)}."

@@ -65,9 +65,9 @@ def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
 
 
 def summary_of_response(model: Model, speed_rpm: float, response: SteadyState) -> pd.DataFrame:
-    """The numbers that a sweep keeps, at one speed: its columns but for the direction."""
+    """The numbers that a sweep keeps, at one speed: its columns but for those of the run over speed."""
     table = sweep_table(model.machine.layout, "none", collect(model, iter([(speed_rpm, response)])))
-    return table.drop(columns="direction")
+    return table.drop(columns=["direction", "after_irregular"])
 
 
 def multiplier_table(response: SteadyState) -> pd.DataFrame:

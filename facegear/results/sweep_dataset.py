@@ -27,6 +27,7 @@ def sweep_dataset(table: pd.DataFrame) -> xr.Dataset:
     variables = {
         "class": _filled(speeds, "class", axes, ""),
         "periodic": _filled(speeds, "periodic", axes, ""),
+        "after_irregular": _filled(speeds, "after_irregular", axes, ""),
     }
     for quantity, rows in table.groupby("quantity", sort=False):
         kind = _kind(rows["body_or_mesh"].iloc[0])

@@ -75,6 +75,15 @@ class Piece:
         return self.period > 0
 
     @property
+    def after_irregular(self) -> Mask:
+        """Whether this motion or an earlier one of the run is not periodic, shape (P,).
+
+        An irregular motion hands on any of its states, so that rounding can decide which of several stable
+        motions is met from there on.
+        """
+        return np.logical_or.accumulate(~self.periodic)
+
+    @property
     def labels(self) -> list[str]:
         """`period-n` or the class of motion at each speed."""
         return [

@@ -34,7 +34,7 @@ PER_SPEED = (
 
 
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
-    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic.
+    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular.
 
     The unit stands in the quantity. `past_law_fraction` is there where a mesh is past its law at some speed.
     """
@@ -52,6 +52,7 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
                     "value": values[order],
                     "class": labels[order],
                     "periodic": piece.periodic[order],
+                    "after_irregular": piece.after_irregular[order],
                 }
             )
         )
@@ -88,6 +89,7 @@ JUMP_COLUMNS = (
     "order",
     "periodic_before",
     "periodic_after",
+    "after_irregular",
 )
 RESONANCE_COLUMNS = (
     "direction",
@@ -102,13 +104,15 @@ RESONANCE_COLUMNS = (
     "mode",
     "order",
     "periodic",
+    "after_irregular",
 )
 
 
 def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) -> pd.DataFrame:
     """One row for each jump: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance.
 
-    order: multiple of the mesh frequency at which the mode moves most.
+    order: multiple of the mesh frequency at which the mode moves most. after_irregular: of the speed after
+    the one with the larger response.
     """
     rows = []
     for jump in direction.jumps:
@@ -127,13 +131,17 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
                 **_belongs(resonance(direction.piece, jump.largest, modes, layout.pinion_teeth)),
                 "periodic_before": before.period > 0,
                 "periodic_after": after.period > 0,
+                "after_irregular": _after_irregular(direction.piece, jump.largest),
             }
         )
     return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
 
 
 def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) -> pd.DataFrame:
-    """Local maxima of the AC RMS, each with the mode it belongs to."""
+    """Local maxima of the AC RMS, each with the mode it belongs to.
+
+    after_irregular: that of the next speed, since a maximum needs both its neighbours.
+    """
     rows, labels = [], piece.labels
     for quantity, item, position, value in peaks(piece):
         names = layout.mesh_names if quantity == "deflection" else layout.body_names
@@ -147,9 +155,15 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
                 "class": labels[position],
                 **_belongs(resonance(piece, position, modes, layout.pinion_teeth)),
                 "periodic": piece.periodic[position],
+                "after_irregular": _after_irregular(piece, position),
             }
         )
     return pd.DataFrame(rows, columns=list(RESONANCE_COLUMNS))
+
+
+def _after_irregular(piece: Piece, position: int) -> bool:
+    """Whether an irregular motion came up to the speed after this one, in the order of the run."""
+    return bool(piece.after_irregular[: position + 2].any())
 
 
 def _belongs(resonance: Resonance) -> dict[str, str | int | float]:

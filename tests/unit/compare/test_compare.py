@@ -91,6 +91,33 @@ def test_numbers_of_an_irregular_motion_are_statistics_and_its_class_is_a_label(
     assert rows["class"] == Verdict.LABEL
 
 
+def sweep_peaks(folder, kind, value, after_irregular, speeds=(7500.0, 9000.0)):
+    """A table of peaks at two speeds, of which the second has the given motion."""
+    (folder / "dynamics").mkdir(parents=True)
+    rows = [(speeds[0], 2.0, "period-1", False), (speeds[1], value, kind, after_irregular)]
+    table = pd.DataFrame(rows, columns=["speed_rpm", "value", "class", "after_irregular"])
+    table = table.assign(direction="down", quantity="rms_um", body_or_mesh="gear")
+    table.to_csv(folder / "dynamics/resonances.csv", index=False)
+    return folder
+
+
+def test_what_follows_an_irregular_motion_in_both_runs_is_decided_by_rounding(tmp_path):
+    old = sweep_peaks(tmp_path / "old", "not settled", 1.0, True)
+    other = sweep_peaks(tmp_path / "other", "period-25", 1.3, True)
+    moved = sweep_peaks(tmp_path / "moved", "period-1", 1.3, True, (7500.0, 9200.0))
+    for new in (other, moved):
+        found = compare(old, new)
+        assert found.equal and found.counts[Verdict.ROUNDING]
+
+
+def test_a_motion_that_is_irregular_in_one_run_first_is_a_change(tmp_path):
+    old = sweep_peaks(tmp_path / "old", "period-1", 1.0, False)
+    other = sweep_peaks(tmp_path / "other", "chaotic", 1.3, True)
+    gone = sweep_peaks(tmp_path / "gone", "period-1", 1.0, False, (7500.0, 9200.0))
+    assert not compare(old, other).equal
+    assert not compare(old, gone).equal
+
+
 @pytest.mark.parametrize(("residual", "equal"), [(6e-13, True), (2e-12, False)])
 def test_a_residual_of_a_contact_moves_only_where_it_is_no_longer_solved(residual, equal, tmp_path):
     for side, value in (("old", 1e-16), ("new", residual)):
