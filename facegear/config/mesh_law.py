@@ -2,7 +2,7 @@
 
 from facegear.arrays import Arrays
 from facegear.geometry.flank_errors import GEARS
-from facegear.mesh_law.load_dependent import ForceTable
+from facegear.mesh_law.force_table import ForceTable
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import FlankTables
 

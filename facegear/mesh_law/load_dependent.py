@@ -1,8 +1,4 @@
-"""The load-dependent law: a table of forces and slopes over amounts, with Fourier series over the phase.
-
-Between two levels of the amount the force is the cubic that has force and slope of the table at both
-(Hermite), at every phase; so are its coefficients Fourier series. Beyond the last level it goes on straight.
-"""
+"""The load-dependent law of all contacts of a machine, each with a table of forces of its kind."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,70 +9,11 @@ import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.machine_code.memory import LANES, aligned, divided
+from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
 from facegear.mesh_law.law import Held
 
-LOOKS = 8
-"""Phases for each harmonic at which slopes are checked."""
 KEPT = 2
 """Sets of phases at which the coefficients of the pieces are kept."""
-
-
-@dataclass(frozen=True, eq=False)
-class ForceTable:
-    """Forces and slopes of one contact at L levels of the amount pressed in.
-
-    levels (L,) in m, rising from 0; forces (L, 2, harmonics + 1) in N and slopes of the same shape in N/m:
-    Fourier series in the phase, sine part first. Forces are zero at the first level. Raises ValueError for
-    other shapes or levels.
-    """
-
-    levels: Array
-    forces: Array
-    slopes: Array
-
-    def __post_init__(self) -> None:
-        count = self.levels.size
-        if count < 2 or self.levels[0] != 0.0 or (np.diff(self.levels) <= 0.0).any():
-            raise ValueError("levels must rise from 0, and there must be two at least")
-        if self.forces.shape != self.slopes.shape or self.forces.shape[:2] != (count, 2):
-            raise ValueError("forces and slopes must have one shape (levels, 2, harmonics + 1)")
-        if self.forces[0].any():
-            raise ValueError("forces must be zero at the first level")
-
-    @cached_property
-    def coefficients(self) -> Array:
-        """Of the powers 0 to 3 of the amount beyond the level at which a piece begins, (L, 4, 2, harmonics +
-        1).
-        """
-        return _hermite(self.levels, self.forces, self.slopes)
-
-    @cached_property
-    def bounds(self) -> Array:
-        """Series (2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m."""
-        return _slope_bounds(self.levels, self.coefficients)
-
-    @cached_property
-    def steepest(self) -> float:
-        """Bound of the slope over phase and amount, N/m."""
-        return float(_sizes(self.bounds).sum(axis=-1).max())
-
-    @cached_property
-    def min_slope(self) -> float:
-        """Smallest slope at LOOKS phases for each harmonic and as many amounts between two levels, N/m."""
-        count = LOOKS * self.forces.shape[2]
-        values = _values(self.coefficients[:, 1:], np.arange(count) / count)
-        first, second, third = np.moveaxis(values, 2, 0)[:, :, None]
-        amounts = np.linspace(0.0, 1.0, LOOKS + 1)[:, None] * np.append(np.diff(self.levels), 0.0)
-        return float((first + amounts * (2.0 * second + 3.0 * amounts * third)).min())
-
-    def mirrored(self) -> "ForceTable":
-        """The table of a contact that goes through the phases the other way round."""
-        sign = np.array([-1.0, 1.0])[:, None]
-        return ForceTable(self.levels, sign * self.forces, sign * self.slopes)
-
-    def scaled(self, factor: float) -> "ForceTable":
-        """Forces and slopes times a factor."""
-        return ForceTable(self.levels, factor * self.forces, factor * self.slopes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +62,7 @@ class LoadDependentLaw:
     @cached_property
     def _bound_sizes(self) -> Array:
         """Amplitudes (kinds, 2 L - 1, harmonics + 1) of the series that bound the slopes."""
-        return _sizes(_slope_bounds(self._levels, self._coefficients))
+        return amplitudes(slope_bounds(self._levels, self._coefficients))
 
     @cached_property
     def _levels(self) -> Array:
@@ -136,7 +73,7 @@ class LoadDependentLaw:
         forces, slopes = (
             np.array([getattr(table, name) for table in self.tables]) for name in ("forces", "slopes")
         )
-        return _hermite(self._levels, forces, slopes)
+        return hermite(self._levels, forces, slopes)
 
     def force(self, cycles: Array, beyond: Array) -> Array:
         """Forces (..., K, M)."""
@@ -198,7 +135,7 @@ class LoadDependentLaw:
         held = []
         for table in self.tables:
             both = np.zeros((2, table.levels.size, 2, 1))
-            both[..., 1, 0] = _values(np.array([table.forces, table.slopes]), at)[0]
+            both[..., 1, 0] = values_at(np.array([table.forces, table.slopes]), at)[0]
             held.append((both[0], both[1]))
         return self._changed(held, self.kind)
 
@@ -256,36 +193,6 @@ def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
     return LoadDependentLaw(tuple(tables), np.arange(len(tables)))
 
 
-def _hermite(levels: Array, forces: Array, slopes: Array) -> Array:
-    """Coefficients (..., L, 4, 2, harmonics + 1) of cubics with forces and slopes (..., L, 2, harmonics + 1)
-    at levels (..., L).
-    """
-    spacing = np.diff(levels)[..., None, None]
-    rise = np.diff(forces, axis=-3) / spacing
-    begin, end = slopes[..., :-1, :, :], slopes[..., 1:, :, :]
-    values = np.zeros((*forces.shape[:-2], 4, *forces.shape[-2:]))
-    values[..., 0, :, :], values[..., 1, :, :] = forces, slopes
-    values[..., :-1, 2, :, :] = (3.0 * rise - 2.0 * begin - end) / spacing
-    values[..., :-1, 3, :, :] = (begin + end - 2.0 * rise) / spacing**2
-    return values
-
-
-def _slope_bounds(levels: Array, coefficients: Array) -> Array:
-    """Series (..., 2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m.
-
-    They are the slopes at the levels, and between two of them the middle coefficient of the slope in
-    Bernstein form.
-    """
-    spacing, slopes = np.diff(levels)[..., None, None], coefficients[..., 1, :, :]
-    middle = slopes[..., :-1, :, :] + spacing * coefficients[..., :-1, 2, :, :]
-    return np.concatenate([slopes, middle], axis=-3)
-
-
-def _sizes(series: Array) -> Array:
-    """Amplitudes (..., harmonics + 1) of Fourier series (..., 2, harmonics + 1)."""
-    return np.asarray(np.hypot(series[..., 0, :], series[..., 1, :]))
-
-
 def _cubic(ahead: Array, coefficients: Array) -> Array:
     zeroth, first, second, third = coefficients
     return np.asarray(zeroth + ahead * (first + ahead * (second + ahead * third)))
@@ -294,25 +201,6 @@ def _cubic(ahead: Array, coefficients: Array) -> Array:
 def _cubic_slope(ahead: Array, coefficients: Array) -> Array:
     _, first, second, third = coefficients
     return np.asarray(first + ahead * (2.0 * second + 3.0 * ahead * third))
-
-
-def _values(series: Array, cycles: Array) -> Array:
-    """Values (K, ...) of Fourier series (..., 2, harmonics + 1) at phases (K,)."""
-    angle = 2.0 * np.pi * np.outer(cycles, np.arange(series.shape[-1]))
-    return np.asarray(
-        np.tensordot(np.sin(angle), series[..., 0, :], axes=(1, -1))
-        + np.tensordot(np.cos(angle), series[..., 1, :], axes=(1, -1))
-    )
-
-
-def lagging(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
-    """The tables of contacts that come later by some mesh periods each."""
-    series = np.array([[table.forces, table.slopes] for table in tables])
-    angle = 2.0 * np.pi * np.multiply.outer(cycles, np.arange(series.shape[-1]))[:, None, None]
-    cosine, sine = np.cos(angle), np.sin(angle)
-    a, b = series[..., 0, :], series[..., 1, :]
-    later = np.stack([a * cosine + b * sine, b * cosine - a * sine], axis=-2)
-    return [ForceTable(table.levels, *both) for table, both in zip(tables, later, strict=True)]
 
 
 @lru_cache(maxsize=16)

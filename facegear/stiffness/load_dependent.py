@@ -15,7 +15,8 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers
 from facegear.errors import FacegearError
-from facegear.mesh_law.load_dependent import ForceTable, load_dependent_law
+from facegear.mesh_law.force_table import ForceTable
+from facegear.mesh_law.load_dependent import load_dependent_law
 
 GEARS, FLANKS = ("upper", "lower"), ("drive", "back")
 LAW_ARRAYS = {

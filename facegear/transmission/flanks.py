@@ -15,9 +15,10 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.by_content import kept_by_content
 from facegear.harmonics.series import Harmonics
+from facegear.mesh_law.force_table import ForceTable, lagging
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
-from facegear.mesh_law.load_dependent import ForceTable, LoadDependentLaw, lagging, load_dependent_law
+from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import FlankTables, Machine, OpenFlanks

@@ -9,8 +9,8 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
+from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.law import MeshLaw
-from facegear.mesh_law.load_dependent import ForceTable
 from facegear.transmission.drive_line import DriveLine
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import Layout, Role

@@ -3,7 +3,8 @@
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.mesh_law.load_dependent import LOOKS, ForceTable, load_dependent_law
+from facegear.mesh_law.force_table import LOOKS, ForceTable
+from facegear.mesh_law.load_dependent import load_dependent_law
 
 PARTS = 2
 """Pieces that one piece becomes behind a spring: cubics are no longer exact, and finer ones are nearer."""

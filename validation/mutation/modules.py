@@ -31,7 +31,11 @@ ROOTS = f"{TESTS}dynamics/test_dynamics_convergence.py::test_"
 MODULES = {
     "contact solver": Module(("facegear/contact/solver.py",), _tests("contact", "contact_solver")),
     "mesh law": Module(
-        ("facegear/mesh_law/linear.py", "facegear/mesh_law/load_dependent.py"),
+        (
+            "facegear/mesh_law/linear.py",
+            "facegear/mesh_law/load_dependent.py",
+            "facegear/mesh_law/force_table.py",
+        ),
         _tests("mesh_law", "linear_law", "load_dependent_law"),
     ),
     "roots": Module(

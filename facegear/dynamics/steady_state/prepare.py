@@ -6,9 +6,10 @@ import numpy as np
 
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import FlankRubbing, System
+from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import LinearLaw
-from facegear.mesh_law.load_dependent import ForceTable, LoadDependentLaw
+from facegear.mesh_law.load_dependent import LoadDependentLaw
 
 
 def prepare_for(system: System) -> None:

@@ -6,7 +6,8 @@ from force_tables import power_table, two_pairs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.mesh_law.load_dependent import ForceTable, lagging, load_dependent_law
+from facegear.mesh_law.force_table import ForceTable, lagging
+from facegear.mesh_law.load_dependent import load_dependent_law
 from facegear.mesh_law.terms import held_force
 
 AMOUNTS = np.append(np.linspace(0.0, 5.0, 83), [1e-6, 3e-5])

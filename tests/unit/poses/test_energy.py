@@ -16,7 +16,7 @@ from facegear.gear_body.reduced import ReducedBody
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.conjugate_slopes import conjugate_slopes
 from facegear.geometry.design import AssemblyErrors
-from facegear.mesh_law.load_dependent import ForceTable
+from facegear.mesh_law.force_table import ForceTable
 from facegear.poses.energy import mesh_energy
 from facegear.poses.fixed_point import operating_pose, pose_at, prepared
 from facegear.poses.surface import STIFFNESS, Nodes, PoseSurface

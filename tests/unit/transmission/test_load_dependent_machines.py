@@ -10,7 +10,7 @@ from references import against, agrees
 
 from facegear.load_sharing.quantities import quasi_static_quantities
 from facegear.load_sharing.quantity_names import PAST_LAW
-from facegear.mesh_law.load_dependent import ForceTable
+from facegear.mesh_law.force_table import ForceTable
 from facegear.transmission.flanks import constant_errors, flank_gaps, flank_law
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.loaded_contacts import loaded_contacts

@@ -8,7 +8,8 @@ from force_tables import power_table, two_pairs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.mesh_law.load_dependent import ForceTable, LoadDependentLaw, load_dependent_law
+from facegear.mesh_law.force_table import ForceTable
+from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
 from facegear.transmission.soft_tables import softened
 
 ONE_WAVE = power_table(16, 0.2, first=0.05)
