@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from facegear.compare.quantities import AFTER_IRREGULAR, REGULAR, TABLES, Table, declared
+from facegear.compare.quantities import AFTER_IRREGULAR, OPEN_CLASSES, REGULAR, TABLES, Table, declared
 from facegear.errors import FacegearError
 from facegear.io import documents, tables
 
@@ -140,7 +140,11 @@ def _judge_column(
         return shown.assign(
             relative_change=np.nan,
             numerical_error=np.nan,
-            verdict=np.select([same, open_rows], [Verdict.SAME, Verdict.ROUNDING], Verdict.LABEL),
+            verdict=np.select(
+                [same, open_rows, _both_irregular(old, new, table)],
+                [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR],
+                Verdict.LABEL,
+            ),
         )
     error = table.error(column)
     zero = table.zero.get(column, 0.0)
@@ -178,6 +182,15 @@ def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
         named = motion.notna().to_numpy()
         rows |= named & ~motion.astype(str).str.startswith(REGULAR).to_numpy()
     return rows
+
+
+def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
+    """Rows in which a class of motion is irregular on both sides, and left open on one, shape (rows,)."""
+    if old.name not in table.motion:
+        return np.zeros(len(old), dtype=bool)
+    sides = [side.fillna(REGULAR).astype(str) for side in (old, new)]
+    regular = np.logical_or(*(side.str.startswith(REGULAR).to_numpy() for side in sides))
+    return np.logical_or(*(side.isin(OPEN_CLASSES).to_numpy() for side in sides)) & ~regular
 
 
 def _after_irregular(frame: pd.DataFrame) -> np.ndarray:
