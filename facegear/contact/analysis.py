@@ -1,11 +1,12 @@
 """The contact analysis of a pair: every flank that meets errors of its own, at all positions and torques."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import AnyArray
+from facegear.arrays import AnyArray, Integers
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
 from facegear.contact.nodal_loads import load_arrays
@@ -21,18 +22,50 @@ from facegear.geometry.flank_errors import distinct_pairs
 
 @dataclass(frozen=True, eq=False)
 class ContactAnalysis:
-    """Tables and arrays of the contact; those in lists stand once for each pair that flanks are part of.
+    """Contact of the different pairs that flanks are part of, solved; its tables and arrays are made where
+    they are asked for.
 
-    - ltca, pressure, by_torque: the first are those of the upper gear's drive flank
-    - by_flank: `by_torque` of both flanks of both gears
-    - loads: arrays of all sets, see `facegear.contact.columns`
+    Attributes
+    ----------
+    models
+        The pairs, that of the upper gear's drive flank first.
+    solved
+        Their positions at each torque, and the pressure on their flanks.
+    numbers : (gears, flanks)
+        Which of the pairs each flank is part of.
     """
 
-    ltca: list[pd.DataFrame]
-    pressure: list[dict[str, AnyArray]]
-    by_torque: list[pd.DataFrame]
-    by_flank: pd.DataFrame
-    loads: dict[str, AnyArray]
+    models: list[ContactModel]
+    solved: list[tuple[list[LoadedPosition], FlankPressure]]
+    numbers: Integers
+
+    @cached_property
+    def ltca(self) -> list[pd.DataFrame]:
+        """The contact table of each pair."""
+        return [ltca_table(*result) for result in self.solved]
+
+    @cached_property
+    def pressure(self) -> list[dict[str, AnyArray]]:
+        """Loads and pressures of each pair, as PRESSURE_ARRAYS."""
+        return [
+            pressure_arrays(results, model.flanks.pinion, pressure)
+            for model, (results, pressure) in zip(self.models, self.solved, strict=True)
+        ]
+
+    @cached_property
+    def by_torque(self) -> list[pd.DataFrame]:
+        """What the tables of each pair say of each torque."""
+        return [by_torque(*tables) for tables in zip(self.ltca, self.pressure, strict=True)]
+
+    @cached_property
+    def by_flank(self) -> pd.DataFrame:
+        """`by_torque` of both flanks of both gears."""
+        return by_flank(self.by_torque, [model.design for model in self.models], self.numbers)
+
+    @cached_property
+    def loads(self) -> dict[str, AnyArray]:
+        """Forces of all pairs on the nodes of both bodies, see `facegear.contact.columns`."""
+        return load_arrays([results for results, _ in self.solved], self.numbers)
 
 
 def contact_analysis(
@@ -52,20 +85,7 @@ def contact_analysis(
     if not every_flank:
         different, numbers = different[:1], np.zeros_like(numbers)
     models = [model.of(other) for other in different]
-    solved = [_solved(result, materials, plan) for result in models]
-    tables = [ltca_table(*result) for result in solved]
-    pressures = [
-        pressure_arrays(result, each.flanks.pinion, pressure)
-        for each, (result, pressure) in zip(models, solved, strict=True)
-    ]
-    summaries = [by_torque(*result) for result in zip(tables, pressures, strict=True)]
-    return ContactAnalysis(
-        ltca=tables,
-        pressure=pressures,
-        by_torque=summaries,
-        by_flank=by_flank(summaries, different, numbers),
-        loads=load_arrays([result for result, _ in solved], numbers),
-    )
+    return ContactAnalysis(models, [_solved(each, materials, plan) for each in models], numbers)
 
 
 def _solved(

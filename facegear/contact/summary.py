@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Arrays, Integers
+from facegear.arrays import Array, Arrays, Integers
 from facegear.geometry.design import PairDesign
 from facegear.geometry.flank_errors import FLANKS, GEARS
 
@@ -73,26 +73,35 @@ def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
     tip edges, the share of the torque that fillets carry and the interference are the largest of all
     positions, which need not be one position's. A mean stiffness over positions of which one has none is nan.
     """
-    rows = [_row(float(torque), table) for torque, table in ltca.groupby("torque_n_m", sort=True)]
+    values = {name: ltca[name].to_numpy() for name in ltca.columns}
+    torques = np.unique(values["torque_n_m"])
+    order = np.argsort(values["position"], kind="stable")
+    groups = [order[values["torque_n_m"][order] == torque] for torque in torques]
+    rows = [
+        _row(float(torque), {name: column[rows] for name, column in values.items()})
+        for torque, rows in zip(torques, groups, strict=True)
+    ]
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def _row(torque: float, table: pd.DataFrame) -> tuple[float, ...]:
-    at = table.sort_values("position")
-    error, average = at["ste_um"].to_numpy(), at["k_average_n_per_m"]
+def _row(torque: float, at: Arrays) -> tuple[float, ...]:
+    """Of columns of the contact table, position by position."""
+    error, average = at["ste_um"], at["k_average_n_per_m"]
+    known = average[~np.isnan(average)]
+    whole = known.size == average.size
     return (
         torque,
-        len(at),
-        average.mean(skipna=False),
-        average.min(skipna=False),
-        average.max(skipna=False),
-        np.nan if average.isna().any() else at["k_local_n_per_m"].mean(),
+        len(error),
+        average.mean(),
+        known.min() if known.size else np.nan,
+        known.max() if known.size else np.nan,
+        at["k_local_n_per_m"].mean() if whole else np.nan,
         float(np.ptp(error)),
-        float(np.ptp(error[::2])) if len(at) % 2 == 0 else np.nan,
+        float(np.ptp(error[::2])) if len(error) % 2 == 0 else np.nan,
         float(np.ptp(at["unloaded_ste_um"])),
         int(at["pairs_in_contact"].min()),
         int(at["pairs_in_contact"].max()),
-        *_largest_pressure(at),
+        *_largest_pressure(at["pressure_mpa"], at["pressure_error_mpa"]),
         at["tip_line_load_n_per_mm"].max(),
         at["tip_length_mm"].max(),
         at["fillet_share"].max(),
@@ -100,12 +109,12 @@ def _row(torque: float, table: pd.DataFrame) -> tuple[float, ...]:
     )
 
 
-def _largest_pressure(table: pd.DataFrame) -> tuple[float, float]:
+def _largest_pressure(pressure: Array, error: Array) -> tuple[float, float]:
     """The largest of all positions with its error (MPa); nan where no position has one."""
-    if table["pressure_mpa"].isna().all():
+    if np.isnan(pressure).all():
         return np.nan, np.nan
-    row = table.loc[table["pressure_mpa"].idxmax()]
-    return float(row["pressure_mpa"]), float(row["pressure_error_mpa"])
+    at = int(np.nanargmax(pressure))
+    return float(pressure[at]), float(error[at])
 
 
 def path_radii(pressure: Arrays) -> pd.DataFrame:

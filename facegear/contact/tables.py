@@ -17,26 +17,26 @@ def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd
 
     nan: pressure where none is inside, average stiffness where the unloaded teeth interfere.
     """
-    rows = [
-        (
-            r.torque,
-            r.position,
-            1e6 * r.ste,
-            1e6 * r.unloaded,
-            r.k_average,
-            r.k_local,
-            r.pairs_in_contact,
-            *r.load_share,
-            *_pressures(loads),
-            r.fillet_share,
-            1e6 * r.overlap,
-            r.residual,
-            abs(r.load_share.sum() - 1.0),
-        )
-        for r, loads in zip(results, pressure.loads, strict=True)
+    of_each = [
+        (1e6 * r.ste, 1e6 * r.unloaded, r.k_average, r.k_local, r.fillet_share, 1e6 * r.overlap, r.residual)
+        for r in results
     ]
-    frame = pd.DataFrame(rows, columns=list(LTCA_COLUMNS))
-    return frame.sort_values(["torque_n_m", "position"], ignore_index=True)
+    ste, unloaded, average, local, in_fillets, overlap, residual = np.array(of_each).T
+    shares = np.array([r.load_share for r in results])
+    columns = (
+        np.array([r.torque for r in results]),
+        np.array([r.position for r in results]),
+        *(ste, unloaded, average, local),
+        np.count_nonzero(shares, axis=1),
+        *shares.T,
+        *np.array([_pressures(loads) for loads in pressure.loads]).T,
+        *(in_fillets, overlap, residual),
+        np.abs(shares.sum(axis=1) - 1.0),
+    )
+    order = np.lexsort((columns[1], columns[0]))
+    return pd.DataFrame(
+        {name: values[order] for name, values in zip(LTCA_COLUMNS, columns, strict=True)}, copy=False
+    )
 
 
 def _pressures(loads: LineLoads) -> tuple[float, ...]:

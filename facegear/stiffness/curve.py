@@ -56,11 +56,11 @@ def load_table(ltca: pd.DataFrame) -> LoadTable:
 
     Raises FacegearError where the teeth interfere, so that there is none.
     """
-    tables = {
-        name: ltca.pivot(index="torque_n_m", columns="position", values=column)
-        for name, column in COLUMN.items()
-    }
-    known = tables["average"].notna().all(axis=1)
+    torques, row = np.unique(ltca["torque_n_m"].to_numpy(float), return_inverse=True)
+    positions, column = np.unique(ltca["position"].to_numpy(float), return_inverse=True)
+    average, local = np.full((2, torques.size, positions.size), np.nan)
+    average[row, column], local[row, column] = (ltca[name].to_numpy(float) for name in COLUMN.values())
+    known = ~np.isnan(average).any(axis=1)
     if not known.any():
         depth = ltca["interference_um"].max()
         raise FacegearError(
@@ -68,10 +68,4 @@ def load_table(ltca: pd.DataFrame) -> LoadTable:
             f"{depth:.3g} um deep in fillets along the line of action (a smaller "
             "tooth_pair.pinion.rack_tip_radius_modules or more tooth_pair.shaper.teeth clears them)"
         )
-    average, local = (tables[name][known] for name in COLUMN)
-    return LoadTable(
-        average.index.to_numpy(float),
-        average.columns.to_numpy(float),
-        average.to_numpy(float),
-        local.to_numpy(float),
-    )
+    return LoadTable(torques[known], positions, average[known], local[known])

@@ -1,7 +1,7 @@
 """Tooth pairs put into contact again and again, with one compliance for all whose bodies are the same."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution
+from facegear.contact.summary import contact_summary
 from facegear.geometry.bodies import BODIES
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.request import StiffnessRequest
@@ -25,12 +26,14 @@ from facegear.stiffness.source import stiffness_from_contact
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
-from facegear.strength.passage import passing
-from facegear.strength.root_stress import largest_tension
+from facegear.strength.passing_tension import PassingTension
 from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
     from facegear.variants.rubbed_teeth import Rub
+
+Tensions = Mapping[str, PassingTension]
+"""By body."""
 
 KEPT = 16
 """Pairs that are remembered: samples of one block of Saltelli's design share theirs."""
@@ -51,7 +54,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
         values = json.loads(text)
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section) - backlash
-        both = bodies(values, section)
+        both, tensions = bodies(values, section)
         analysis = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
         table = stiffness_from_contact(analysis.ltca[0], request).harmonics
         numbers = ToothNumbers.of_config(values)
@@ -60,7 +63,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
             stiffness=series_of(table),
             unloaded=unloaded_error(table),
             backlash_added=added,
-            answers=_answers(analysis, dict(zip(BODIES, both, strict=True)), numbers, request),
+            answers=_answers(analysis, tensions, numbers, request),
             rubbed=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,
         )
 
@@ -72,32 +75,30 @@ def _request(pair: Values) -> StiffnessRequest:
 
 
 def _answers(
-    analysis: ContactAnalysis, flanks: Flanks, numbers: ToothNumbers, request: StiffnessRequest
+    analysis: ContactAnalysis, tensions: Tensions, numbers: ToothNumbers, request: StiffnessRequest
 ) -> PairAnswers:
     assert request.torque is not None
     torque, ltca = request.torque, analysis.ltca[0]
     unloaded = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")["unloaded_ste_um"]
     approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
     error = 1e-6 * unloaded.to_numpy(float) + approach
-    roots = {
-        body: largest_tension(passing(body, flank, analysis.loads))
-        for body, flank in flanks.items()
-        if flank.gauges
-    }
-    return PairAnswers(error, contact_pressure(analysis.by_torque[0]), roots)
+    roots = {body: tension.under(analysis.loads) for body, tension in tensions.items()}
+    return PairAnswers(error, contact_pressure(contact_summary(ltca)), roots)
 
 
-def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values, ToothPair], tuple[GearFlank, GearFlank]]:
-    """Compliance of both bodies of a pair.
+def _bodies(
+    pair: Values, flanks: Flanks
+) -> Callable[[Values, ToothPair], tuple[tuple[GearFlank, GearFlank], Tensions]]:
+    """Compliance of both bodies of a pair, and the root stress of those with gauges.
 
     Those given serve every pair of the same nodes: displacements by a force go with 1/E exactly. Raises
     ConfigError for a pair whose contact the mesh cannot resolve.
     """
     start = ToothPair.of_config(pair["tooth_pair"])
     mesh, contact = Mesh.of_config(pair["mesh"]), Contact.of_config(pair["contact"])
-    known = {_nodes(pair["tooth_pair"]): (start, dict(flanks))}
+    known = {_nodes(pair["tooth_pair"]): (start, dict(flanks), _tensions(flanks))}
 
-    def bodies(values: Values, section: ToothPair) -> tuple[GearFlank, GearFlank]:
+    def bodies(values: Values, section: ToothPair) -> tuple[tuple[GearFlank, GearFlank], Tensions]:
         key = _nodes(values)
         if key not in known:
             setup = contact_setup(section, mesh, contact)
@@ -108,16 +109,21 @@ def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values, ToothPair], tuple
             }
             if len(known) > KEPT_BODIES:
                 known.pop(list(known)[1])
-            known[key] = section, made
-        of, made = known[key]
+            known[key] = section, made, _tensions(made)
+        of, made, tensions = known[key]
         moduli = ([material.young_modulus for material in materials(other)] for other in (of, section))
         first, second = (
             made[body] if before == after else made[body].softer(before / after)
             for body, before, after in zip(BODIES, *moduli, strict=True)
         )
-        return first, second
+        return (first, second), tensions
 
     return bodies
+
+
+def _tensions(flanks: Flanks) -> Tensions:
+    """They are the same for every Young's modulus."""
+    return {body: PassingTension.of_flank(body, flank) for body, flank in flanks.items() if flank.gauges}
 
 
 def _nodes(tooth_pair: Values) -> str:

@@ -1,0 +1,157 @@
+"""Largest root stress of a tooth on its way through the mesh, without the stress at most of its gauges.
+
+Stress is linear in the forces. The largest that a unit force on a node makes anywhere down the fillet, in one
+plane across the face, bounds what all forces together can make there; stress is only superposed where this
+bound exceeds the largest that is known. Forces, all compressed by rows, stand tooth by tooth and position by
+position.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from facegear.arrays import Array, Arrays, Integers
+from facegear.contact.gear_flank import GearFlank
+from facegear.contact.nodal_loads import loads_by_tooth
+from facegear.errors import InvalidInput
+from facegear.machine_code.compiler import compiler
+from facegear.strength.between_torques import scale
+from facegear.strength.root_stress import LONE, down_the_fillet
+
+compiled = compiler()
+
+FIRST = 16
+"""Places whose stress is superposed first, those with the largest bounds."""
+
+
+@dataclass(frozen=True, eq=False)
+class PassingTension:
+    """Root stress of one body by the forces on its flank.
+
+    Attributes
+    ----------
+    body
+        pinion or face_gear.
+    flank_nodes
+        Nodes of the contact surface, before refinement, that belong to the flank.
+    readings : (2 d + 1, 2, a, b, c)
+        As in `FlankCompliance`, by fillet, gauges down it and along the face.
+    bounds : (2, 2 d + 1, c, 2 b)
+        Largest stress (Pa) in a plane of a fillet by a unit force on a node, and by one that pulls.
+    """
+
+    body: str
+    flank_nodes: int
+    readings: Array
+    bounds: Array
+
+    @classmethod
+    def of_flank(cls, body: str, flank: GearFlank) -> "PassingTension":
+        """Of a flank with gauges. Raises InvalidInput where its fillets carry none."""
+        if flank.gauges is None:
+            raise InvalidInput("gauges on the fillets", False, "true, for root stress")
+        readings = flank.compliance.readings
+        readings = readings.reshape(len(readings), *flank.gauges.tangent_angle.shape, -1)
+        bounds = np.stack([np.stack([_bounds(sign * part) for part in readings]) for sign in (-1.0, 1.0)])
+        return cls(body, flank.side.flank_rows * flank.side.shape[1], readings, bounds)
+
+    def under(self, loads: Arrays) -> Callable[[float], float]:
+        """Largest stress (Pa) on either fillet over the passage and the face, at a torque (N m).
+
+        `loads`: LOAD_ARRAYS of one variant. What presses on the body's own fillet is left out.
+        """
+        by_tooth = loads_by_tooth(loads, self.body, self.flank_nodes)
+        torques, count = np.unique(loads["torque_n_m"]), np.unique(loads["position"]).size
+        teeth = np.array(sorted(by_tooth))
+
+        def force(row: int) -> sp.csr_matrix:
+            rows = slice(row * count, (row + 1) * count)
+            return sp.vstack([by_tooth[tooth][rows] for tooth in teeth], format="csr")
+
+        def largest(torque: float) -> float:
+            first = int(np.clip(np.searchsorted(torques, torque) - 1, 0, max(torques.size - 2, 0)))
+            near = range(first, min(first + 2, torques.size))
+            ends = [force(row) for row in near]
+            stress = np.array([self._largest(end, teeth, splined=False) for end in ends])
+            growth = scale(torques[list(near)], stress, LONE, 1.0)
+            (row,), (own,), (above,) = growth.parts(np.array([torque]))
+            there = own * ends[row] + (above * ends[row + 1] if above > 0.0 else 0.0 * ends[row])
+            return self._largest(there, teeth, splined=True)
+
+        return largest
+
+    def _largest(self, force: sp.csr_matrix, teeth: Integers, splined: bool) -> float:
+        """Of the gauges, or of the splines through them, by forces (teeth positions, c) N."""
+        forces = force.indptr, force.indices, force.data, teeth, force.shape[0] // teeth.size
+        bounds = _bounded(*forces, self.bounds)
+        order = np.argsort(-bounds.ravel(), kind="stable")
+        largest, done = -np.inf, 0
+        while done < order.size and bounds.ravel()[order[done]] > largest:
+            places = np.stack(np.unravel_index(order[done : done + FIRST], bounds.shape), axis=1)
+            stress = _superposed(*forces, self.readings, places)
+            if splined:
+                stress = down_the_fillet(stress[:, :, None])[..., 0]
+            largest, done = max(largest, float(stress.max())), done + FIRST
+        return largest
+
+
+def _bounds(stress: Array) -> Array:
+    """Largest, 0 at least, (c, 2 b) of stresses (2, a, b, c) at the gauges and at points between them."""
+    down = np.moveaxis(stress, 1, -1)[..., None]
+    between = down_the_fillet(down)[..., 0].max(axis=-1)
+    largest = np.maximum(np.maximum(stress.max(axis=1), between), 0.0)
+    return np.ascontiguousarray(largest.reshape(-1, largest.shape[-1]).T)
+
+
+@compiled
+def _bounded(
+    starts: Integers, nodes: Integers, force: Array, teeth: Integers, positions: int, bounds: Array
+) -> Array:
+    """Bounds (t, positions, 2 b) of the stress of all teeth from the one before the first of the loaded
+    `teeth` to the one after the last.
+    """
+    reach, first = bounds.shape[1] // 2, teeth[0] - 1
+    limits = np.zeros((teeth[-1] + 2 - first, positions, bounds.shape[3]))
+    for read in range(limits.shape[0]):
+        for loaded in range(teeth.size):
+            apart = read + first - teeth[loaded] + reach
+            if apart < 0 or apart > 2 * reach:
+                continue
+            for position in range(positions):
+                row = loaded * positions + position
+                for entry in range(starts[row], starts[row + 1]):
+                    size, sign = abs(force[entry]), 0 if force[entry] > 0.0 else 1
+                    for plane in range(limits.shape[2]):
+                        limits[read, position, plane] += size * bounds[sign, apart, nodes[entry], plane]
+    return limits
+
+
+@compiled
+def _superposed(
+    starts: Integers,
+    nodes: Integers,
+    force: Array,
+    teeth: Integers,
+    positions: int,
+    readings: Array,
+    places: Integers,
+) -> Array:
+    """Stress (n, a) down the fillet at places (n, 3): tooth, position and plane of `_bounded`."""
+    reach, first = readings.shape[0] // 2, teeth[0] - 1
+    stress = np.zeros((places.shape[0], readings.shape[2]))
+    for number in range(places.shape[0]):
+        read, position, plane = places[number]
+        fillet, along = plane // readings.shape[3], plane % readings.shape[3]
+        for loaded in range(teeth.size):
+            apart = read + first - teeth[loaded] + reach
+            if apart < 0 or apart > 2 * reach:
+                continue
+            row = loaded * positions + position
+            for entry in range(starts[row], starts[row + 1]):
+                for gauge in range(stress.shape[1]):
+                    stress[number, gauge] -= (
+                        force[entry] * readings[apart, fillet, gauge, along, nodes[entry]]
+                    )
+    return stress
