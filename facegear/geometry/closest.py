@@ -4,19 +4,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.arrays import Array, Mask
+from facegear.arrays import Array, Integers, Mask
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.curvature import relative_curvatures
 from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import RigidMotion, to_left_flank
-from facegear.geometry.separation import separation_in
+from facegear.geometry.flank_gaps import FlankGaps
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
 
 PAIRS = np.arange(-2, 3)
 """Tooth numbers looked at: at phi1 within half a pitch of zero no other pair can touch."""
 
-_GRID = np.array([(a, b) for a in np.linspace(-1, 1, 5) for b in np.linspace(-1, 1, 5)])
-_SHRINK, _MAX_STEPS = 0.55, 60
+_GRID = np.linspace(-1.0, 1.0, 5)
+_SHRINK, _GROWTH, _MAX_STEPS = 0.55, 1.5, 60
+_GAIN = 1e-13
+"""By how much (m) a gap must be less to count as such."""
 _STENCIL = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)])
 _STEP = np.array([2e-4, 1e-4])
 """Distance of the stencil's points, in roll (rad) and y (m)."""
@@ -57,18 +60,18 @@ def closest(
         near, size = _coarse(design, phi1, phi2, margin)
         size, levels = size * _SHRINK**_FIRST, _LEVELS - _FIRST
     chosen = (near.gap <= near.gap.min(axis=1, keepdims=True) + margin).ravel()
-    motion = _motions(design, phi1, phi2).only(chosen)
+    pairs = _pairs(design, phi1, phi2).only(chosen)
     parts = [part.ravel().copy() for part in (near.gap, near.roll, near.y)]
-    refined = _refined(design, motion, parts[1][chosen], parts[2][chosen], size, levels)
+    refined = _refined(pairs, parts[1][chosen], parts[2][chosen], size, levels)
     for part, values in zip(parts, refined, strict=True):
         part[chosen] = values
     return Closest(*(part.reshape(near.roll.shape) for part in parts))
 
 
-def _motions(design: PairDesign, phi1: Array, phi2: Array) -> RigidMotion:
-    """Of all pairs at p placements, (5 p,)."""
+def _pairs(design: PairDesign, phi1: Array, phi2: Array) -> FlankGaps:
+    """All pairs at p placements, (5 p,)."""
     turns = np.repeat(phi1, len(PAIRS)), np.repeat(phi2, len(PAIRS))
-    return to_left_flank(design, *turns, np.tile(PAIRS, len(phi1)).astype(float))
+    return FlankGaps.of_pairs(design, *turns, np.tile(PAIRS, len(phi1)).astype(float))
 
 
 def bounds(design: PairDesign) -> tuple[Array, Array]:
@@ -84,78 +87,108 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tupl
     first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)
     rolls, ys = np.linspace(low[0], high[0], 15), np.linspace(first, last, 15)
     roll, y = (part.ravel() for part in np.meshgrid(rolls, ys, indexing="ij"))
-    motion = _motions(design, phi1, phi2)
-    gap = separation_in(design, flank_points(design, roll, y), motion).gap
+    pairs = _pairs(design, phi1, phi2)
+    gap = pairs.at(roll, y)
     best, size = np.argmin(gap, axis=1), np.array([rolls[1] - rolls[0], ys[1] - ys[0]])
     near = [part.reshape(len(phi1), len(PAIRS)) for part in (gap.min(axis=1), roll[best], y[best])]
     beside = margin + _COARSE * design.module
     walking = near[0] <= near[0].min(axis=1, keepdims=True) + beside
-    here = motion.only(walking.ravel())
-    walked = _walked(design, here, near[1][walking], near[2][walking], size, _FIRST)
+    walked = _walked(pairs.only(walking.ravel()), near[1][walking], near[2][walking], size, _FIRST)
     for part, values in zip(near, walked, strict=True):
         part[walking] = values
     return Closest(*near), size
 
 
-def _refined(
-    design: PairDesign, motion: RigidMotion, roll: Array, y: Array, size: Array, levels: int
-) -> tuple[Array, Array, Array]:
+def _refined(pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int) -> tuple[Array, Array, Array]:
     """Minima near roll and y (n,): by Newton's method where the gap is smooth, else by grids."""
-    *minimum, smooth = _smooth_minimum(design, motion, roll, y)
+    *minimum, smooth = _smooth_minimum(pairs, roll, y)
     rest = np.flatnonzero(~smooth)
     if rest.size:
-        here = motion.only(rest)
-        walked = _walked(design, here, roll[rest], y[rest], size, levels)
-        for part, values in zip(minimum, _polished(design, here, *walked), strict=True):
+        here = pairs.only(rest)
+        walked = _walked(here, roll[rest], y[rest], size, levels)
+        for part, values in zip(minimum, _polished(here, *walked), strict=True):
             part[rest] = values
     return minimum[0], minimum[1], minimum[2]
 
 
-def _walked(
-    design: PairDesign, motion: RigidMotion, roll: Array, y: Array, size: Array, levels: int
-) -> tuple[Array, Array, Array]:
+def _walked(pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int) -> tuple[Array, Array, Array]:
     """Walk 5 x 5 grids to the minimum, shrinking them when their middle part holds it.
 
     The grids lean along the contact line where the walk begins, as the gap is a narrow and flat valley in its
     direction.
     """
-    low, high = bounds(design)
+    low, high = bounds(pairs.design)
     width = np.tile(size, (len(roll), 1))
     gap, roll, y = np.full(len(roll), np.inf), roll.copy(), y.copy()
-    lean, active = _contact_line(design, roll, y), np.arange(len(roll))
+    lean, active = _contact_line(pairs.design, roll, y), np.arange(len(roll))
     for _ in range(_MAX_STEPS):
-        w = width[active]
-        across, along = _GRID[:, 0] * w[:, :1], _GRID[:, 1] * w[:, 1:]
-        rolls = np.clip(roll[active, None] + across + lean[active, None] * along, low[0], high[0])
-        ys = np.clip(y[active, None] + along, low[1], high[1])
-        gaps = separation_in(design, flank_points(design, rolls, ys), motion.only(active)).gap
-        at, best = np.arange(len(active)), np.argmin(gaps, axis=1)
-        min_gap = gaps[at, best]
-        gained = min_gap < gap[active] - 1e-13
-        border = (np.abs(_GRID[best]) == 1) & gained[:, None] & np.isfinite(min_gap)[:, None]
-        gap[active] = min_gap
-        roll[active], y[active] = rolls[at, best], ys[at, best]
-        width[active] *= np.where(border, 1.5, _SHRINK)
-        active = active[np.any(width[active] > size * _SHRINK**levels, axis=1)]
+        rolls, ys = _grids(active, roll, y, lean, width, low, high)
+        gaps = pairs.only(active).at(rolls, ys)
+        active = _walk_on(gaps, rolls, ys, active, gap, roll, y, width, size * _SHRINK**levels)
         if len(active) == 0:
             break
     return gap, roll, y
 
 
-def _smooth_minimum(
-    design: PairDesign, motion: RigidMotion, roll: Array, y: Array
-) -> tuple[Array, Array, Array, Mask]:
+@compiled
+def _grids(
+    active: Integers, roll: Array, y: Array, lean: Array, width: Array, low: Array, high: Array
+) -> tuple[Array, Array]:
+    """Roll and y of the `active` grids (n, 25), half as wide as `width` (m, 2), between `low` and `high`."""
+    rolls, ys = np.empty((2, active.size, _GRID.size**2))
+    for number in range(active.size):
+        row = active[number]
+        for i in range(_GRID.size):
+            for j in range(_GRID.size):
+                across, along = _GRID[i] * width[row, 0], _GRID[j] * width[row, 1]
+                at = i * _GRID.size + j
+                rolls[number, at] = min(max(roll[row] + across + lean[row] * along, low[0]), high[0])
+                ys[number, at] = min(max(y[row] + along, low[1]), high[1])
+    return rolls, ys
+
+
+@compiled
+def _walk_on(
+    gaps: Array,
+    rolls: Array,
+    ys: Array,
+    active: Integers,
+    gap: Array,
+    roll: Array,
+    y: Array,
+    width: Array,
+    ends: Array,
+) -> Integers:
+    """Move gap, roll and y (m,) of the active ones to the least of the gaps (n, 25) on their grids.
+
+    A width (m, 2) grows where a lesser gap lies on the grid's border, else it shrinks. Returns those that are
+    wider than one of the `ends` (2,).
+    """
+    going = np.empty(active.size, np.bool_)
+    for number in range(active.size):
+        row, best = active[number], np.argmin(gaps[number])
+        new = gaps[number, best]
+        gained = new < gap[row] - _GAIN and new < np.inf
+        gap[row], roll[row], y[row] = new, rolls[number, best], ys[number, best]
+        for axis, at in ((0, best // _GRID.size), (1, best % _GRID.size)):
+            border = gained and (at == 0 or at == _GRID.size - 1)
+            width[row, axis] *= _GROWTH if border else _SHRINK
+        going[number] = width[row, 0] > ends[0] or width[row, 1] > ends[1]
+    return active[going]
+
+
+def _smooth_minimum(pairs: FlankGaps, roll: Array, y: Array) -> tuple[Array, Array, Array, Mask]:
     """Newton's method from 3 x 3 stencils: gap, roll, y, and whether it is a minimum of a smooth gap.
 
     Where a modification begins within a stencil, or the flank ends, a finer one has its minimum elsewhere.
     """
-    low, high = bounds(design)
+    low, high = bounds(pairs.design)
     minimum, smooth = (np.full(len(roll), np.inf), roll.copy(), y.copy()), np.zeros(len(roll), bool)
     here, fine, bends = np.arange(len(roll)), np.zeros(len(roll), bool), np.zeros((len(roll), 2))
     for _ in range(_NEWTON_STEPS):
         part = np.where(fine, _FINER, 1.0)
         last = minimum[1][here], minimum[2][here]
-        bowl = _bowl(design, motion.only(here), *last, part[:, None] * _STEP)
+        bowl = _bowl(pairs.only(here), *last, part[:, None] * _STEP)
         new = last[0] + part * bowl.across * _STEP[0], last[1] + part * bowl.along * _STEP[1]
         size, bend = np.hypot(bowl.across, bowl.along), bowl.bend / part[:, None] ** 2
         inside = (new[0] > low[0]) & (new[0] < high[0]) & (new[1] > low[1]) & (new[1] < high[1])
@@ -184,12 +217,10 @@ class _Bowl:
     convex: Mask
 
 
-def _polished(
-    design: PairDesign, motion: RigidMotion, gap: Array, roll: Array, y: Array
-) -> tuple[Array, Array, Array]:
+def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Array, Array, Array]:
     """One Newton step from a 3 x 3 stencil where the minimum lies inside the flank."""
-    bowl = _bowl(design, motion, roll, y, np.tile(_STEP, (len(roll), 1)))
-    low, high = bounds(design)
+    bowl = _bowl(pairs, roll, y, np.tile(_STEP, (len(roll), 1)))
+    low, high = bounds(pairs.design)
     new_roll, new_y = roll + bowl.across * _STEP[0], y + bowl.along * _STEP[1]
     good = (
         bowl.convex
@@ -199,17 +230,17 @@ def _polished(
     )
     good &= (new_y > low[1]) & (new_y < high[1])
     new_roll, new_y = np.where(good, new_roll, roll), np.where(good, new_y, y)
-    new = separation_in(design, flank_points(design, new_roll[:, None], new_y[:, None]), motion).gap[:, 0]
+    new = pairs.at(new_roll[:, None], new_y[:, None])[:, 0]
     better = good & (new < gap)
     return np.where(better, new, gap), np.where(better, new_roll, roll), np.where(better, new_y, y)
 
 
-def _bowl(design: PairDesign, motion: RigidMotion, roll: Array, y: Array, step: Array) -> _Bowl:
+def _bowl(pairs: FlankGaps, roll: Array, y: Array, step: Array) -> _Bowl:
     """The paraboloid through 3 x 3 stencils of steps (n, 2) about roll and y (n,)."""
     rolls, ys = (
         at[:, None] + _STENCIL[:, axis] * step[:, axis : axis + 1] for axis, at in ((0, roll), (1, y))
     )
-    g = separation_in(design, flank_points(design, rolls, ys), motion).gap.reshape(-1, 3, 3)
+    g = pairs.at(rolls, ys).reshape(-1, 3, 3)
     with np.errstate(invalid="ignore", divide="ignore"):
         slope = (g[:, 2, 1] - g[:, 0, 1]) / 2, (g[:, 1, 2] - g[:, 1, 0]) / 2
         bend = g[:, 2, 1] - 2 * g[:, 1, 1] + g[:, 0, 1], g[:, 1, 2] - 2 * g[:, 1, 1] + g[:, 1, 0]

@@ -98,11 +98,14 @@ def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
     from_tip = base * (design.pinion_tip_roll - roll)
     from_root = base * (roll - junction_roll(design))
     from_middle = np.abs(np.asarray(y, float) - design.mean_radius)
-    taken: Array = (
-        linear(part.tip_relief, from_tip)
-        + linear(part.root_relief, from_root)
-        + parabola(part.lead_crowning, from_middle)
-    )
+    taken = np.zeros(np.broadcast_shapes(roll.shape, from_middle.shape))
+    for relief, shape, distance in (
+        (part.tip_relief, linear, from_tip),
+        (part.root_relief, linear, from_root),
+        (part.lead_crowning, parabola, from_middle),
+    ):
+        if relief.amount != 0.0:
+            taken += shape(relief, distance)
     if part.flanks.right is None:
         return taken
     return taken - deviation(part.flanks.right, *deviation_place(design, roll, y))

@@ -1,6 +1,7 @@
 """Points and normals of the pinion's right flank and fillet in space, modifications included."""
 
 from dataclasses import dataclass
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,6 +9,7 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array, Integers
 from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
+from facegear.machine_code.compiler import compiler
 
 
 @dataclass(frozen=True)
@@ -44,10 +46,33 @@ def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePo
 
     Modifications move points along the unmodified normal; the normal's own change (1e-3 rad) is left out.
     """
-    roll, y = np.broadcast_arrays(np.asarray(roll, float), np.asarray(y, float))
-    position = pinion.cartesian(*pinion.involute_point(design, roll), y)
-    normal = _normals(*pinion.involute_normal(design, roll))
-    return SurfacePoints(position - pinion.removed(design, roll, y)[..., None] * normal, normal)
+    taken = pinion.removed(design, roll, y)
+    roll, y = (_filled(np.asarray(part, float), taken.shape) for part in (roll, y))
+    base, angle = design.pinion_base_radius, design.pinion_half_base_angle
+    position, normal = _involute(base, angle, roll, y, taken.ravel())
+    return SurfacePoints(position.reshape(*taken.shape, 3), normal.reshape(*taken.shape, 3))
+
+
+def _filled(values: Array, shape: tuple[int, ...]) -> Array:
+    """Values that broadcast to a shape, flat (n,)."""
+    return np.ravel(values if values.shape == shape else np.broadcast_to(values, shape))
+
+
+@compiler()
+def _involute(base: float, angle: float, roll: Array, y: Array, taken: Array) -> tuple[Array, Array]:
+    """Positions and normals (n, 3) at roll and y (n,), so much `taken` (n,) m off along the normal.
+
+    `base` radius (m) and half `angle` (rad) of the tooth there.
+    """
+    position, normal = np.empty((roll.size, 3)), np.empty((roll.size, 3))
+    for row in range(roll.size):
+        cosine, sine = cos(angle - roll[row]), sin(angle - roll[row])
+        along = base * roll[row] - taken[row]
+        position[row, 0] = base * sine + along * cosine
+        position[row, 1] = y[row]
+        position[row, 2] = along * sine - base * cosine
+        normal[row, 0], normal[row, 1], normal[row, 2] = cosine, 0.0, sine
+    return position, normal
 
 
 def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> SurfacePoints:

@@ -10,7 +10,8 @@ def linear(relief: Relief, from_end: Array) -> Array:
     """Of a tip, root or end relief: removed (m) at distances from the end (m)."""
     if relief.amount == 0:
         return np.zeros_like(from_end)
-    return relief.amount * np.clip((relief.start + relief.length - from_end) / relief.length, 0, 1)
+    part = (relief.start + relief.length - from_end) / relief.length
+    return relief.amount * np.minimum(np.maximum(part, 0.0), 1.0)
 
 
 def parabola(relief: Relief, from_middle: Array) -> Array:

@@ -8,6 +8,7 @@ lengthens the rays, to first order.
 """
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +19,7 @@ from facegear.geometry.design import PairDesign
 from facegear.geometry.gear_modifications import as_generated, opened
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import RigidMotion, to_left_flank
-from facegear.geometry.ray_blank import gear_rays
+from facegear.geometry.ray_blank import Blank, FlankSample, gear_rays
 from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
 from facegear.machine_code.compiler import compiler
 
@@ -85,12 +86,12 @@ def separation_in(
     design: PairDesign, points: SurfacePoints, motion: RigidMotion, search_radius: float | None = None
 ) -> Separation:
     """The same in p placements given as `placement.to_left_flank` of the design: motions (p,)."""
-    search_radius = design.module if search_radius is None else search_radius
+    search_radius = float(design.module if search_radius is None else search_radius)
     placements, count = len(motion.shift), points.position.shape[-2]
     gap = np.full((placements, count), np.inf)
     part = np.zeros(gap.shape, np.int8)
     u, v, continued = (np.full(gap.shape, value) for value in (np.nan, np.nan, np.inf))
-    block = max(1, RAYS_AT_ONCE // max(count, 1))
+    block, gear = max(1, RAYS_AT_ONCE // max(count, 1)), GearSide.of_design(design)
     for first in range(0, placements, block):
         rows = slice(first, first + block)
         here = motion.only(rows)
@@ -98,7 +99,7 @@ def separation_in(
             vectors[rows] if vectors.ndim == 3 else vectors for vectors in (points.position, points.normal)
         )
         starts, ways = here.points(position).reshape(-1, 3), here.directions(normal).reshape(-1, 3)
-        hit = _cut(design, starts, ways, float(search_radius))
+        hit = gear.cut(starts, ways, search_radius)
         for target, values in zip((gap, part, u, v, continued), hit, strict=True):
             target[rows] = values.reshape(-1, count)
     return Separation(gap=gap, part=part, u=u, v=v, continued=continued)
@@ -117,12 +118,14 @@ def separation_each(
     """
     motion = to_left_flank(design, *placement)
     shift = np.ascontiguousarray(motion.shift)
-    starts, ways = _placed(motion.matrix, shift, at, points.position, points.normal)
-    return Separation(*_cut(design, starts, ways, search_radius))
+    starts, ways = placed_rays(motion.matrix, shift, at, points.position, points.normal)
+    return Separation(*GearSide.of_design(design).cut(starts, ways, search_radius))
 
 
 @compiler()
-def _placed(matrix: Array, shift: Array, at: Integers, position: Array, normal: Array) -> tuple[Array, Array]:
+def placed_rays(
+    matrix: Array, shift: Array, at: Integers, position: Array, normal: Array
+) -> tuple[Array, Array]:
     """Points and directions (n, 3), each by its own of motions: matrices (p, 3, 3) and shifts (p, 3)."""
     starts, ways = np.empty(position.shape), np.empty(position.shape)
     for row in range(at.size):
@@ -136,21 +139,36 @@ def _placed(matrix: Array, shift: Array, at: Integers, position: Array, normal: 
     return starts, ways
 
 
-def _cut(design: PairDesign, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
-    """Fields of `Separation`, (n,), of rays (n, 3) of unit length in the frame of the gear's flank."""
-    blank, sample = gear_rays(design)
-    *hit, lost = cut(blank, starts, ways, search_radius, *sample)
-    if lost:
-        raise NotConverged("separation", f"{lost} rays at the gear", "Newton from two starts, 16 steps each")
-    hit[0] = hit[0] + _opened(design, starts, ways, hit[0], hit[1] != ROOT_LAND)
-    hit[4] = hit[4] + _opened(design, starts, ways, hit[4], True)
-    return hit
+@dataclass(frozen=True, eq=False)
+class GearSide:
+    """The side of a design's gear that rays are cut with: as generated, or with modifications."""
 
+    design: PairDesign
+    blank: Blank
+    sample: FlankSample
+    generated: bool
 
-def _opened(design: PairDesign, starts: Array, ways: Array, length: Array, where: Mask | bool) -> Array:
-    """How much longer rays of a length (n,) become by the gear's modifications where they count."""
-    if as_generated(design):
-        return np.zeros_like(length)
-    length = np.where(where, length, np.inf)
-    with np.errstate(invalid="ignore"):
-        return opened(design, starts + length[:, None] * ways, ways)
+    @classmethod
+    def of_design(cls, design: PairDesign) -> Self:
+        """Of the flank that meets the pinion's right one."""
+        return cls(design, *gear_rays(design), as_generated(design))
+
+    def cut(self, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
+        """Fields of `Separation`, (n,), of rays (n, 3) of unit length in the frame of the gear's flank.
+
+        Raises NotConverged where a ray close to the flank cannot be cut with it.
+        """
+        *hit, lost = cut(self.blank, starts, ways, search_radius, *self.sample)
+        if lost:
+            where = f"{lost} rays at the gear"
+            raise NotConverged("separation", where, "Newton from two starts, 16 steps each")
+        if not self.generated:
+            hit[0] = hit[0] + self._opened(starts, ways, hit[0], hit[1] != ROOT_LAND)
+            hit[4] = hit[4] + self._opened(starts, ways, hit[4], True)
+        return hit
+
+    def _opened(self, starts: Array, ways: Array, length: Array, where: Mask | bool) -> Array:
+        """How much longer rays of a length (n,) become by the gear's modifications where they count."""
+        length = np.where(where, length, np.inf)
+        with np.errstate(invalid="ignore"):
+            return opened(self.design, starts + length[:, None] * ways, ways)
