@@ -157,14 +157,17 @@ def check_pitch_once(pair: ToothPair, section: Transmission) -> None:
                 raise ConfigError(key, "given", allowed)
 
 
-def geometric_backlash(pair: ToothPair) -> float:
-    """Backlash of the pair as assembled, um. Raises ConfigError for a pair that jams or does not mesh."""
+def geometric_backlash(pair: ToothPair, beside: Sequence[float] = ()) -> float:
+    """Backlash of the pair as assembled, um; `beside` as `normal_backlash` has it.
+
+    Raises ConfigError for a pair that jams or does not mesh.
+    """
     # Imported here: only a pair with assembly errors needs compiled geometry to read its config.
     from facegear.geometry.backlash import normal_backlash
 
     assembly = pair.assembly.model_dump()
     try:
-        backlash = normal_backlash(pair_design(pair))
+        backlash = normal_backlash(pair_design(pair), tuple(beside))
     except NotConverged:
         raise ConfigError(
             "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"

@@ -13,6 +13,7 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.position import Spot
 from facegear.geometry import pinion
+from facegear.machine_code.compiler import compiler
 
 APART = 2.0
 """Rows of the lattice between two loaded hats of a plane from which on they belong to two contacts."""
@@ -35,21 +36,31 @@ def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
     if not spot.fillet.any():
         return spot
     row, plane = np.divmod(spot.hats, surface.shape[1])
-    keep = ~spot.fillet
-    for number in np.unique(plane[spot.fillet]):
-        here = np.flatnonzero(plane == number)
-        keep[here] &= _of_the_line(row[here], spot.fillet[here], line[number])
+    keep = _kept(row, plane, spot.fillet, line, APART)
     return replace(spot, hats=spot.hats[keep], force=spot.force[keep], fillet=spot.fillet[keep])
 
 
-def _of_the_line(row: Integers, fillet: Mask, line: float) -> Mask:
-    """Which loaded hats of a plane, in rows (m,), belong to no contact that lies in the fillet alone."""
-    order = np.argsort(row, kind="stable")
-    contact = np.zeros(row.size, np.int64)
-    contact[order] = np.cumsum(np.diff(row[order], prepend=row[order[0]]) > APART)
-    kept = np.ones(row.size, bool)
-    for number in np.unique(contact[fillet]):
-        own = contact == number
-        if not row[own].min() - APART <= line <= row[own].max() + APART:
-            kept[own] = False
+@compiler()
+def _kept(row: Integers, plane: Integers, fillet: Mask, line: Array, apart: float) -> Mask:
+    """Which loaded hats, in rows and planes (m,), are neither in a fillet nor part of a contact in one.
+
+    A contact: hats of a plane no more than `apart` rows from the next. One that reaches a fillet lies in it,
+    unless the plane's contact line (n,) is within `apart` rows of it.
+    """
+    kept = ~fillet
+    for hat in range(row.size):
+        if not fillet[hat]:
+            continue
+        low = high = row[hat]
+        grown = True
+        while grown:
+            grown = False
+            for other in range(row.size):
+                beside = low - apart <= row[other] <= high + apart and not low <= row[other] <= high
+                if beside and plane[other] == plane[hat]:
+                    low, high, grown = min(low, row[other]), max(high, row[other]), True
+        if not low - apart <= line[plane[hat]] <= high + apart:
+            for other in range(row.size):
+                if plane[other] == plane[hat] and low <= row[other] <= high:
+                    kept[other] = False
     return kept

@@ -61,9 +61,10 @@ class LineLoads:
 
     def largest(self) -> tuple[float, float]:
         """Largest pressure (Pa) and its error; nan where none is inside."""
-        if not (self.where == INSIDE).any():
+        known = self.where == INSIDE
+        if not known.any():
             return np.nan, np.nan
-        at = np.nanargmax(self.pressure)
+        at = int(np.argmax(np.where(known, self.pressure, -np.inf)))
         return float(self.pressure[at]), float(self.error[at])
 
     def part(self, rows: slice) -> "LineLoads":
@@ -72,7 +73,7 @@ class LineLoads:
 
     def at_tips(self) -> tuple[float, float]:
         """Largest line load (N/m) at tip edges and the length (m) that carries any; zero without."""
-        on = np.isin(self.where, (PINION_TIP, GEAR_TIP))
+        on = (self.where == PINION_TIP) | (self.where == GEAR_TIP)
         return float(self.line_load[on].max(initial=0.0)), float(self.length[on].sum())
 
 

@@ -12,9 +12,10 @@ POSITIONS = 4
 
 
 @lru_cache(maxsize=256)
-def normal_backlash(design: PairDesign) -> float:
+def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float:
     """Backlash (m) along the line of action, smallest of a few positions of a pitch; negative where it jams.
 
+    beside: positions at which `unloaded_motion` of the pair will be asked for, too: one search finds both.
     Without assembly errors and deviations it is the thinning of the pinion's teeth. Raises NotConverged where
     the flanks do not face each other.
     """
@@ -23,14 +24,17 @@ def normal_backlash(design: PairDesign) -> float:
     drive, back = exact_contact(design), exact_contact(mirrored(design))
     if drive is not None and back is not None:
         return -back.transmission_error - drive.transmission_error
-    return _searched(design)
+    return _searched(design, beside)
 
 
-def _searched(design: PairDesign) -> float:
+def _searched(design: PairDesign, beside: tuple[float, ...]) -> float:
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
     from facegear.geometry.unloaded import unloaded_motion
 
-    phi1 = pinion_angle(design, (np.arange(POSITIONS) + 0.5) / POSITIONS)
+    positions = (np.arange(POSITIONS) + 0.5) / POSITIONS
+    phi1 = pinion_angle(design, positions)
+    if beside:
+        unloaded_motion(design, pinion_angle(design, np.union1d(positions, beside)))
     drive, _ = unloaded_motion(design, phi1)
     back = drive if design == mirrored(design) else unloaded_motion(mirrored(design), phi1)[0]
     return float(((-back[::-1] - drive) * design.gear_base_radius).min())

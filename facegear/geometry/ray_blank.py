@@ -9,6 +9,7 @@ import numpy as np
 from facegear.arrays import Array, Mask
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
+from facegear.geometry.generated import generated
 
 SAMPLES = 25
 """Points of the sampled flank each way."""
@@ -81,9 +82,13 @@ class FlankSample(NamedTuple):
     spacing: float
 
 
-@lru_cache(maxsize=16)
 def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
-    """A design's face gear as `facegear.geometry.rays.cut` takes it."""
+    """A design's face gear, as it is generated, as `facegear.geometry.rays.cut` takes it."""
+    return _of_generated(generated(design))
+
+
+@lru_cache(maxsize=16)
+def _of_generated(design: PairDesign) -> tuple[Blank, FlankSample]:
     return blank(design), _flank_sample(design)
 
 

@@ -1,6 +1,7 @@
 """Unloaded contact of the pair: where the flanks touch, the transmission error, the other pairs' gaps."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -80,15 +81,26 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
 
 def unloaded_motion(design: PairDesign, phi1: ArrayLike) -> tuple[Array, Array]:
     """phi2 (rad) and transmission error (m), (p,) each, of `unloaded_contact`, with no search if there is an
-    exact answer. Raises what it raises.
+    exact answer. What was searched for is kept. Raises what it raises.
     """
     exact = exact_contact(design)
     if exact is None:
-        contact = searched_contact(design, phi1, every_pair=False)
-        return contact.phi2, contact.transmission_error
+        known, asked = _searched_motion(design), np.atleast_1d(np.asarray(phi1, float)).tolist()
+        if new := [angle for angle in asked if angle not in known]:
+            contact = searched_contact(design, new, every_pair=False)
+            motion = zip(contact.phi2.tolist(), contact.transmission_error.tolist(), strict=True)
+            known.update(zip(new, motion, strict=True))
+        phi2, error = np.array([known[angle] for angle in asked]).T
+        return phi2, error
     conjugate = np.atleast_1d(conjugate_angle(design, phi1))
     error = np.full(conjugate.size, exact.transmission_error)
     return conjugate + error / design.gear_base_radius, error
+
+
+@lru_cache(maxsize=16)
+def _searched_motion(design: PairDesign) -> dict[float, tuple[float, float]]:
+    """What a search has found of a design: phi2 (rad) and transmission error (m) by phi1 (rad)."""
+    return {}
 
 
 def searched_contact(design: PairDesign, phi1: ArrayLike, every_pair: bool = True) -> UnloadedContact:

@@ -10,6 +10,7 @@ from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.gear_modifications import flank_end
+from facegear.geometry.generated import generated
 from facegear.geometry.limits import THINNEST_LAND, RadiusLimits, face_range, radius_limits
 from facegear.geometry.roots import root
 
@@ -28,7 +29,7 @@ def check(design: PairDesign) -> RadiusLimits:
     _check_pinion(design)
     _check_relief(design)
     check_shaper(design)
-    limits = _check_gear(design)
+    limits = _check_gear(generated(design))
     _check_gear_modifications(design)
     return limits
 
@@ -189,6 +190,7 @@ def _land_left(design: PairDesign, rounding: float) -> float:
     return 2 * face_gear.root_half_angle(tool) * tool.gear_pitch_radius - THINNEST_LAND * tool.module
 
 
+@lru_cache(maxsize=16)
 def _check_gear(design: PairDesign) -> RadiusLimits:
     gear, m = design.face_gear, design.module
     if gear.addendum >= design.pinion.dedendum:

@@ -7,9 +7,9 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.errors import InvalidInput
-from facegear.harmonics.fit import LEVELS, fit_harmonics
+from facegear.harmonics.fit import LEVELS, Fit, fit_harmonics
 from facegear.harmonics.series import Harmonics
-from facegear.stiffness.curve import load_table
+from facegear.stiffness.curve import LoadTable, load_table
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.tables import curve_table, harmonics_table, with_unloaded_error
 from facegear.stiffness.unloaded import peak_to_peak, unloaded_series
@@ -28,11 +28,38 @@ class Stiffness:
     summary: str
 
 
-def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
+@dataclass(frozen=True, eq=False)
+class ContactCurve:
+    """k(t) at a load of the contact analysis, N/m.
+
+    Attributes
+    ----------
+    table
+        Stiffness over positions and torques that it was taken from.
+    samples, fit
+        At the positions solved, and their series, before both are scaled.
+    scale
+        Factor on both that the request asks for.
+    whole, series
+        Scaled and varied, with all orders and with those kept.
+    error, error_cut
+        Unloaded transmission error of the same orders (m), and what the cut misses of it (m).
+    """
+
+    table: LoadTable
+    samples: Array
+    fit: Fit
+    scale: float
+    whole: Harmonics
+    series: Harmonics
+    error: Harmonics
+    error_cut: float
+
+
+def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> ContactCurve:
     """Curve at the requested load and its series.
 
-    Source fem_scaled multiplies the curve so that its mean is the requested one. Beside the harmonics stand
-    the means of both definitions at that load, scaled alike. Raises InvalidInput for a
+    Source fem_scaled multiplies the curve so that its mean is the requested one. Raises InvalidInput for a
     load outside those solved and for a variation with which k(t) is not positive throughout.
     """
     assert request.torque is not None
@@ -50,25 +77,36 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
             f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
         )
         raise InvalidInput("variation of the mesh stiffness", request.variation, allowed)
-    reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
     error, cut = unloaded_series(ltca, series.order)
-    between = table.interpolation_error(request.torque, request.definition)
+    return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
+
+
+def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
+    """`curve_from_contact` as tables. Raises what that raises.
+
+    Beside the harmonics stand the means of both definitions at that load, scaled alike.
+    """
+    curve = curve_from_contact(ltca, request)
+    assert request.torque is not None
+    table, fit, scale, torque = curve.table, curve.fit, curve.scale, request.torque
+    reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
+    between = table.interpolation_error(torque, request.definition)
     loads = "" if np.isnan(between) else f"interpolation between loads {100 * between:.2g} %; "
     summary = (
-        f"{request.definition} stiffness at {request.torque:g} N m, mean {fit.series.mean:.4g} N/m "
+        f"{request.definition} stiffness at {torque:g} N m, mean {fit.series.mean:.4g} N/m "
         f"times {scale:.4f}; orders for an error of the peak-to-peak of {reach}; "
-        f"{loads}unloaded transmission error {1e6 * peak_to_peak(error):.3g} um peak to peak"
+        f"{loads}unloaded transmission error {1e6 * peak_to_peak(curve.error):.3g} um peak to peak"
     )
     harmonics = with_unloaded_error(
-        harmonics_table(series, fit, scale * request.variation), error, cut
+        harmonics_table(curve.series, fit, scale * request.variation), curve.error, curve.error_cut
     ).assign(
-        mean_average_n_per_m=scale * table.at(request.torque, "average").mean(),
-        mean_local_n_per_m=scale * table.at(request.torque, "local").mean(),
+        mean_average_n_per_m=scale * table.at(torque, "average").mean(),
+        mean_local_n_per_m=scale * table.at(torque, "local").mean(),
     )
     return Stiffness(
-        curve_table(table.positions, _varied(scale * samples, request.variation), series),
+        curve_table(table.positions, _varied(scale * curve.samples, request.variation), curve.series),
         harmonics,
-        harmonics_table(whole, fit, scale * request.variation),
+        harmonics_table(curve.whole, fit, scale * request.variation),
         summary,
     )
 

@@ -16,14 +16,14 @@ from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import GearFlank
+from facegear.contact.ltca import even_positions
 from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution
 from facegear.contact.summary import contact_summary
 from facegear.geometry.bodies import BODIES
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.request import StiffnessRequest
-from facegear.stiffness.source import stiffness_from_contact
-from facegear.stiffness.tables import series_of, unloaded_error
+from facegear.stiffness.source import curve_from_contact
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passing_tension import PassingTension
@@ -53,15 +53,15 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
     def meshed(text: str) -> PairExcitation:
         values = json.loads(text)
         section = parse(ToothPair, values, "this pair")
-        added = geometric_backlash(section) - backlash
+        added = geometric_backlash(section, even_positions(plan.positions)) - backlash
         both, tensions = bodies(values, section)
         analysis = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
-        table = stiffness_from_contact(analysis.ltca[0], request).harmonics
+        curve = curve_from_contact(analysis.ltca[0], request)
         numbers = ToothNumbers.of_config(values)
         return PairExcitation(
             numbers=numbers,
-            stiffness=series_of(table),
-            unloaded=unloaded_error(table),
+            stiffness=curve.series,
+            unloaded=curve.error,
             backlash_added=added,
             answers=_answers(analysis, tensions, numbers, request),
             rubbed=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,

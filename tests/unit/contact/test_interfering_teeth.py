@@ -115,3 +115,29 @@ def test_a_plane_s_load_beside_a_fillet_s_belongs_to_the_line_and_what_touches_t
     np.testing.assert_array_equal(kept.hats // columns, [2, 3, 4])
     ran_off = on_flank(spot, np.full(columns, last - 1.0), surface)
     np.testing.assert_array_equal(ran_off.hats // columns, row[:-1])
+
+
+def test_hats_of_a_contact_in_a_fillet_are_left_out_whatever_stands_beside_the_line(model_of):
+    """Against every plane's contacts sorted by row and looked at one by one."""
+    surface, draw = model_of(coarse=True).flanks.pinion, np.random.default_rng(2)
+    rows, columns = surface.shape
+    for _ in range(40):
+        hats = np.sort(draw.choice(rows * columns, rows * columns // 3, replace=False))
+        fillet, line = draw.random(hats.size) < 0.2, draw.uniform(0.0, rows, columns)
+        kept = on_flank(spot_of(hats, fillet), line, surface).hats
+        expected = []
+        for plane in range(columns):
+            here = np.flatnonzero(hats % columns == plane)
+            row = hats[here] // columns
+            for contact in np.split(here, np.flatnonzero(np.diff(row) > 2) + 1) if here.size else ():
+                own = hats[contact] // columns
+                apart = not own[0] - 2 <= line[plane] <= own[-1] + 2
+                if not (fillet[contact].any() and apart):
+                    expected += hats[contact][~fillet[contact]].tolist()
+        assert sorted(kept.tolist()) == sorted(expected)
+
+
+def spot_of(hats, fillet):
+    """Forces of 1 N on hats."""
+    none = np.zeros(0)
+    return Spot(0, hats, np.ones(hats.size), fillet, none, none)

@@ -2,12 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from facegear.geometry import unloaded
 from facegear.geometry.analysis import analyse
 from facegear.geometry.backlash import normal_backlash
-from facegear.geometry.design import AssemblyErrors
+from facegear.geometry.design import AssemblyErrors, GearModifications, Relief
 from facegear.geometry.document import pair_record
+from facegear.geometry.placement import pinion_angle
+from facegear.geometry.ray_blank import gear_rays
+from facegear.geometry.validate import check
 from facegear.plots.tooth_pair import path_text
 
 
@@ -28,3 +33,37 @@ def test_the_path_of_a_pair_without_errors_is_the_nominal_one(pair):
     message = path_text(pair_record(design, analyse(design, positions=4)))
     assert float(message.split()[3]) == pytest.approx(268.125, abs=0.005) and "nominal" not in message
     assert normal_backlash(design) == design.pinion.thinning
+
+
+def test_positions_that_are_asked_for_too_change_no_backlash_and_are_not_searched_again(pair, monkeypatch):
+    design, searched = pair(26, tip_relief=Relief(15e-6, length=2e-3), offset=2e-5), []
+
+    def counted(of, phi1, **named):
+        searched.append(len(np.atleast_1d(phi1)))
+        return original(of, phi1, **named)
+
+    original = unloaded.searched_contact
+    alone = normal_backlash(design)
+    unloaded._searched_motion.cache_clear()
+    monkeypatch.setattr(unloaded, "searched_contact", counted)
+    positions = tuple(number / 16 for number in range(16))
+    assert normal_backlash(design, positions) == pytest.approx(alone, rel=1e-9)
+    assert searched == [16, 4]  # the drive flank at all positions, the back flank at those of the backlash
+    phi2, error = unloaded.unloaded_motion(design, pinion_angle(design, positions))
+    assert searched == [16, 4]
+    monkeypatch.undo()
+    again = original(design, pinion_angle(design, positions), every_pair=False)
+    assert phi2 == pytest.approx(again.phi2, abs=1e-15) and error == pytest.approx(
+        again.transmission_error, abs=1e-15
+    )
+
+
+def test_pairs_that_differ_in_modifications_and_assembly_alone_share_the_gear_that_is_generated(pair):
+    plain = pair(26)
+    made = replace(
+        plain.face_gear, modifications=GearModifications(profile_crowning=Relief(1e-5, length=3e-3))
+    )
+    other = replace(pair(26, tip_relief=Relief(15e-6, length=2e-3), offset=2e-5), face_gear=made)
+    assert gear_rays(other)[1] is gear_rays(plain)[1]
+    assert check(other) is check(plain)
+    assert gear_rays(pair(25))[1] is not gear_rays(plain)[1]
