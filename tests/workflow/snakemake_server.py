@@ -9,14 +9,15 @@ import ctypes
 import gc
 import json
 import os
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
-
-from warm_jobs import import_all, leave_after, serve_jobs
+from types import SimpleNamespace
 
 MODULES = ("snakemake.cli", "nbformat", "smart_open", "facegear.config.cases", "facegear.pipeline.needs")
 """What every start imports. The Snakefile of another checkout imports its own `facegear` instead."""
@@ -45,13 +46,12 @@ class Server:
     ) -> subprocess.CompletedProcess[str]:
         """What `python -m snakemake` with these arguments gives, started in the present folder.
 
-        warm: jobs begin where their imports were made, too, which takes more memory. disk: a folder that is a
+        warm: what jobs are copies of has made its imports before the run began. disk: a folder that is a
         disk of its own for this run, and its size, as 4k; its files at the end are printed.
         """
         with tempfile.TemporaryDirectory() as folder:
             out, error = Path(folder, "out"), Path(folder, "error")
-            jobs = folder if warm else ""
-            asked = (arguments, dict(environment), os.getcwd(), str(out), str(error), jobs, disk)
+            asked = (arguments, dict(environment), os.getcwd(), str(out), str(error), warm, disk)
             print(json.dumps(asked), file=self._process.stdin, flush=True)
             code = int(self._process.stdout.readline())
             return subprocess.CompletedProcess(arguments, code, out.read_text(), error.read_text())
@@ -60,8 +60,8 @@ class Server:
 def serve() -> list[str]:
     """Answer each request with the exit code of a child; returns the arguments in that child alone."""
     for request in sys.stdin:
-        arguments, environment, folder, out, error, jobs, disk = json.loads(request)
-        if jobs:
+        arguments, environment, folder, out, error, warm, disk = json.loads(request)
+        if warm:
             import_all()
         child = os.fork()
         if not child:
@@ -75,11 +75,39 @@ def serve() -> list[str]:
             os.chdir(folder)
             os.environ.clear()
             os.environ.update(environment)
-            if jobs:
-                sys.executable = str(serve_jobs(Path(jobs)))
+            if warm:
+                serve_jobs()
             return arguments
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
     sys.exit()
+
+
+def import_all() -> None:
+    """What the scripts import of libraries and of the package, in the process that all jobs come from."""
+    from facegear.pipeline.table import STAGES
+
+    for stage in STAGES.values():
+        drawn = [stage.figures.draw.partition(":")[0]] if stage.figures else []
+        for module in (*stage.modules, *drawn, "facegear.report.page"):
+            import_module(module)
+    gc.freeze()
+
+
+def serve_jobs() -> None:
+    """Have the run of this process ask a copy of it for its jobs in place of a server of its own."""
+    from workflow.process import forked_jobs, job_server
+
+    ours, theirs = socket.socketpair()
+    process = os.fork()
+    if not process:
+        ours.close()
+        job_server.serve(theirs, [])
+        os._exit(0)
+    theirs.close()
+    server = SimpleNamespace(
+        kill=lambda: os.kill(process, signal.SIGKILL), wait=lambda: os.waitpid(process, 0)
+    )
+    forked_jobs.started = lambda: (ours, server)
 
 
 def mount(folder: str, size: str) -> None:
@@ -102,6 +130,8 @@ def print_files(folder: str, process: int) -> None:
 def main() -> None:
     """Serve, and in each child be what `python -m snakemake` is."""
     sys.path[0] = os.getcwd()
+    from workflow.process.job_server import leave_after
+
     for module in MODULES:
         import_module(module)
     from snakemake import cli

@@ -10,6 +10,7 @@ from pathlib import Path
 import psutil
 
 from facegear.errors import FacegearError
+from workflow.process.forked_jobs import SERVER
 
 PATIENCE = 60.0
 """Seconds that a scheduler may take to end jobs."""
@@ -23,7 +24,8 @@ def end_orphans() -> bool:
     Called with the run's lock held: whatever else works on jobs of this folder belongs to a run that is dead.
     Returns whether there was anything. Raises FacegearError where something does not end.
     """
-    processes = [process for process in psutil.process_iter() if _is_orphan(process)]
+    own = psutil.Process().children(recursive=True)
+    processes = [process for process in psutil.process_iter() if _is_orphan(process, own)]
     for process in processes:
         with suppress(psutil.NoSuchProcess):
             process.kill()
@@ -36,8 +38,8 @@ def end_orphans() -> bool:
     return bool(processes or jobs)
 
 
-def _is_orphan(process: psutil.Process) -> bool:
-    """Whether a process is a job of a local run, or its script."""
+def _is_orphan(process: psutil.Process, own: list[psutil.Process]) -> bool:
+    """Whether a process is a job of a local run, its script, or a server of scripts that is not our own."""
     try:
         if process.uids().real != os.getuid() or process.cwd() != os.getcwd():
             return False
@@ -45,7 +47,8 @@ def _is_orphan(process: psutil.Process) -> bool:
     except (psutil.Error, OSError):
         return False
     inner = words[1:3] == ["-m", "snakemake"] and "subprocess" in words
-    return inner or any("/.snakemake/scripts/" in word for word in words[:3])
+    server = tuple(words[1 : 1 + len(SERVER)]) == SERVER and process not in own
+    return inner or server or any("/.snakemake/scripts/" in word for word in words[:3])
 
 
 def _cancel(jobs: list[str]) -> None:

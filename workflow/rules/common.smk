@@ -27,10 +27,13 @@ from paper.reproduction import read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
 from facegear.provenance.rebuild import rebuild_command
 from workflow.process.engine import (
+    before_planning,
     given_config,
     given_directory,
+    run_scripts_by,
     write_parameters_without_pandas,
 )
+from workflow.process.forked_jobs import ForkedJobs
 from workflow.process.jobs import Jobs, settle
 from workflow.process.orphans import end_orphans
 from workflow.process.terminal import quieten, stop_at_once
@@ -67,6 +70,9 @@ wildcard_constraints:
     case="|".join(re.escape(case) for case in CASES),
 
 
+FORKED = ForkedJobs(lambda rule: MODULES.get(rule, ()))
+if before_planning(workflow, FORKED.start):
+    run_scripts_by(FORKED.run)
 QUIET = quieten(workflow, logger)
 RUN_LOCKS = []  # held until this process ends
 

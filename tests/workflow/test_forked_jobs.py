@@ -1,0 +1,250 @@
+"""Scripts that begin as copies of one process: what they see, how they end, when Python starts instead."""
+
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager, nullcontext
+from pathlib import Path
+from types import SimpleNamespace
+
+import psutil
+import pytest
+from projects import ROOT
+
+from workflow.process import engine, forked_jobs
+from workflow.process.engine import Script
+from workflow.process.forked_jobs import ForkedJobs
+from workflow.process.orphans import end_orphans
+
+pytestmark = [
+    pytest.mark.skipif(sys.platform != "linux", reason="copies of a process are made on Linux alone"),
+    pytest.mark.xdist_group("forked_jobs"),
+]
+
+
+@pytest.fixture(scope="module")
+def jobs(tmp_path_factory):
+    """The server of a run in an empty folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("run"))
+        patch.setenv("PYTHONPATH", str(ROOT))
+        jobs = ForkedJobs(lambda rule: {"figures": ["colorsys"]}.get(rule, []))
+        jobs.start()
+        yield jobs
+
+
+@pytest.fixture
+def run(jobs, tmp_path, monkeypatch):
+    """Exit code of a text run as a script of this folder, and the processes that were watched."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(text, rule="modal", threads=1, temporary=""):
+        (tmp_path / "stage.py").write_text(text)
+        watched = []
+
+        @contextmanager
+        def watch(process):
+            watched.append(psutil.Process(process))
+            yield
+
+        return jobs.run(Script(rule, "stage.py", threads, temporary, watch)), watched
+
+    return run
+
+
+def test_a_script_sees_what_python_would_show_it(run, tmp_path, monkeypatch):
+    monkeypatch.setenv("ASKED", "now")
+    (tmp_path / "beside.py").write_text("")
+    code, watched = run(
+        """
+import beside, os, signal, sys, threading
+from pathlib import Path
+blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+told = [os.environ[name] for name in ("ASKED", "TMPDIR", "OMP_NUM_THREADS")]
+found = [__name__, sys.argv, os.getcwd(), *told]
+Path("seen").write_text(repr([*found, os.getpid(), signal.SIGINT in blocked, threading.active_count()]))
+""",
+        temporary="/elsewhere",
+    )
+    seen = ["__main__", ["stage.py"], str(tmp_path), "now", "/elsewhere", "1", watched[0].pid, True, 1]
+    assert code == 0 and (tmp_path / "seen").read_text() == repr(seen)
+
+
+def test_the_modules_of_a_rule_are_imported_once_for_all_its_jobs(run, tmp_path):
+    text = "import sys; from pathlib import Path; Path('seen').write_text(str('colorsys' in sys.modules))"
+    assert run(text)[0] == 0 and (tmp_path / "seen").read_text() == "False"
+    assert run(text, rule="figures")[0] == 0 and (tmp_path / "seen").read_text() == "True"
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("raise SystemExit(3)", 3),
+        ("raise SystemExit('no')", 1),
+        ("1 / 0", 1),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", -9),
+        ("import os; os._exit(7)", 7),
+        ("import atexit, os; atexit.register(os._exit, 5)", 5),
+        ("import threading, os; threading.Timer(0.2, lambda: os._exit(6)).start()", 6),
+    ],
+)
+def test_a_script_ends_as_it_would_by_itself(run, text, code):
+    assert run(text)[0] == code
+
+
+def test_a_script_begins_when_it_is_watched(jobs, tmp_path, monkeypatch):
+    """A short one ended before its benchmark had found it."""
+    monkeypatch.chdir(tmp_path)
+    Path("stage.py").write_text("open('begun', 'w')")
+
+    @contextmanager
+    def watch(process):
+        time.sleep(0.3)
+        assert psutil.pid_exists(process) and not Path("begun").exists()
+        yield
+
+    assert jobs.run(Script("modal", "stage.py", 1, "", watch)) == 0 and Path("begun").exists()
+
+
+def test_a_job_on_two_threads_is_no_copy_of_a_process_with_one(run):
+    assert run("", threads=2) == (None, [])
+
+
+def test_python_is_started_where_there_is_no_server(tmp_path, monkeypatch):
+    monkeypatch.setenv(forked_jobs.VARIABLE, "no")
+    jobs = ForkedJobs(lambda rule: [])
+    jobs.start()
+    assert jobs.run(Script("modal", "stage.py", 1, "", None)) is None
+
+
+def test_a_job_whose_server_is_killed_is_ended_and_the_next_one_is_python_s_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    Path("stage.py").write_text("import time; time.sleep(60)")
+    jobs = ForkedJobs(lambda rule: [])
+    jobs.start()
+    watched = []
+
+    @contextmanager
+    def watch(number):
+        watched.append(process := psutil.Process(number))
+        process.parent().kill()
+        yield
+
+    script = Script("modal", "stage.py", 1, "", watch)
+    assert jobs.run(script) == -signal.SIGKILL
+    psutil.wait_procs(watched, timeout=10)
+    assert not watched[0].is_running() and jobs.run(script) is None
+
+
+class Job:
+    """A script of Snakemake's, as far as it is asked; Python's own start is only noted."""
+
+    container_img = conda_env = env_modules = shadow_dir = bench_record = None
+    rulename, threads, resources = "modal", 1, {"tmpdir": "/tmp"}
+
+    def execute_script(self, file, edit=False):
+        self.started = file
+
+
+@pytest.fixture
+def scripts(monkeypatch):
+    """The class of scripts of a Snakemake, which the test may change."""
+    scripts = type("PythonScript", (Job,), {"execute_script": Job.execute_script})
+    module = SimpleNamespace(PythonScript=scripts, benchmarked=None)
+    monkeypatch.setattr(engine, "import_module", lambda name: module)
+    return scripts
+
+
+def test_snakemake_hands_a_script_over_and_starts_python_where_it_is_not_taken(scripts):
+    asked, code = [], 0
+    assert engine.run_scripts_by(lambda script: asked.append(script) or code)
+    job = scripts()
+    job.execute_script("stage.py")
+    assert (asked[0].rule, asked[0].file, asked[0].temporary) == ("modal", "stage.py", "/tmp")
+    assert not hasattr(job, "started")
+    code = 4
+    with pytest.raises(subprocess.CalledProcessError, match="exit status 4"):
+        job.execute_script("stage.py")
+    code = None
+    job.execute_script("stage.py")
+    assert job.started == "stage.py"
+
+
+@pytest.mark.parametrize("name", ["container_img", "conda_env", "env_modules", "shadow_dir"])
+def test_a_job_with_an_environment_of_its_own_is_started_by_snakemake(scripts, name):
+    setattr(scripts, name, "own")
+    assert engine.run_scripts_by(lambda script: 0)
+    job = scripts()
+    job.execute_script("stage.py")
+    assert job.started == "stage.py"
+
+
+@pytest.mark.parametrize("name", ["rulename", "threads", "resources", "bench_record"])
+def test_a_script_of_another_snakemake_is_started_by_it(scripts, monkeypatch, name):
+    monkeypatch.delattr(Job, name)
+    assert engine.run_scripts_by(lambda script: 0)
+    job = scripts()
+    job.execute_script("stage.py")
+    assert job.started == "stage.py"
+
+
+def test_without_scripts_or_a_plan_snakemake_goes_on_as_ever(scripts, monkeypatch):
+    assert not engine.before_planning(SimpleNamespace(), None)
+    monkeypatch.setattr(engine, "import_module", lambda name: SimpleNamespace())
+    assert not engine.run_scripts_by(lambda script: 0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "mode", "begins"),
+    [
+        ((True, False, False), "DEFAULT", True),
+        ((True, True, False), "DEFAULT", False),
+        ((True, False, True), "DEFAULT", False),
+        ((False, False, False), "DEFAULT", False),
+        ((True, False, False), "SUBPROCESS", False),
+    ],
+    ids=["run", "dry run", "touch", "cluster", "job"],
+)
+def test_a_server_is_started_before_the_plan_of_a_local_run_alone(settings, mode, begins):
+    done = []
+    known = dict(zip(("local_exec", "dryrun_exec", "touch_exec"), settings, strict=True))
+    workflow = SimpleNamespace(
+        executor_plugin=SimpleNamespace(common_settings=SimpleNamespace(**known)),
+        exec_mode=SimpleNamespace(name=mode),
+        _build_dag=lambda: done.append("planned"),
+    )
+    assert engine.before_planning(workflow, lambda: done.append("begun"))
+    workflow._build_dag()
+    assert done == [*["begun"] * begins, "planned"]
+
+
+KILLED = """
+from contextlib import nullcontext
+from pathlib import Path
+from workflow.process.engine import Script
+from workflow.process.forked_jobs import ForkedJobs
+jobs = ForkedJobs(lambda rule: [])
+jobs.start()
+watched = lambda process: nullcontext(Path("working").write_text(f"{process}."))
+jobs.run(Script("modal", "long.py", 1, "", watched))
+"""
+
+
+def test_a_job_that_a_killed_run_left_here_is_ended_and_our_own_server_is_not(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    Path("long.py").write_text("import time; time.sleep(60)")
+    Path("short.py").touch()
+    killed = subprocess.Popen([sys.executable, "-c", KILLED])
+    while not Path("working").exists() or not Path("working").read_text().endswith("."):
+        assert killed.poll() is None
+        time.sleep(0.02)
+    killed.kill()
+    killed.wait()
+    own = ForkedJobs(lambda rule: [])
+    own.start()
+    assert end_orphans()
+    assert not psutil.pid_exists(int(Path("working").read_text()[:-1])) and not end_orphans()
+    assert own.run(Script("modal", "short.py", 1, "", lambda process: nullcontext())) == 0
