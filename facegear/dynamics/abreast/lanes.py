@@ -14,16 +14,45 @@ from facegear.machine_code.memory import aligned
 NONE = -1
 
 
+class Tally(NamedTuple):
+    """What lanes add up over a batch of periods, or over all periods of a machine; the last dimension is the
+    lane.
+
+    origin, coordinates (n,), products (pairs of coordinates,), level, deflections, squared, forces (2,
+    contacts), minimum, maximum, pull (contacts,): as in the single integrator's Sums; fractions (3,
+    contacts): phase spent open, on the drive and on the back flank, rad. stiffness (kinds,) of the law at an
+    instant.
+    """
+
+    origin: Array
+    level: Array
+    coordinates: Array
+    products: Array
+    deflections: Array
+    squared: Array
+    forces: Array
+    minimum: Array
+    maximum: Array
+    pull: Array
+    fractions: Array
+    stiffness: Array
+
+
 class Lanes(NamedTuple):
     """The last dimension of all but the tables is the lane, and WIDTH long.
 
     values (P,): the machines' rows. y, deflection, law, error, load (rows, coordinates, contacts or kinds):
     Taylor coefficients. force, side, level, active, acting, edge (contacts,): as in the single integrator's
     Work, with one piece of the law. scaled (rows,): terms of one contact's deflection over the step, terms:
-    of its way from a level. first: fraction of the step up to a switch. phase in the period and length of the
-    step, rad; ahead: from its start to a sample, sample (coordinates,). number of the machine in a lane or
-    NONE; period: periods it has run; taken, sampled: steps and samples of this one. parts, angles: of Fourier
-    series. powers, conversion: tables that are only read. polynomial, subdivision: of one lane's zeros.
+    of its way from a level. first: fraction of the step up to a switch. found (2 contacts, rows): the ways
+    from a level that change their sign within the step, found_changes how often, found_standing whether (1)
+    the zero at the start is divided out, ways (): how many a lane has, wanted: which lanes have one more.
+    phase in the period and length of the step, rad, and longest that it may be; ahead: from its start to a
+    sample, sample (coordinates,). turn, turned (rows, coordinates or contacts): of a disturbance and its
+    deflections, was_acting (contacts,): damping in the step before; fresh: 1 in the first step of a machine.
+    number of the machine in a lane or NONE; period: periods it has run; taken, sampled: steps and samples of
+    this one. parts, angles: of Fourier series. powers, conversion, nodes: tables that are only read, the last
+    of the rule that integrates. polynomial, subdivision: of one lane's zeros.
     """
 
     order: int
@@ -45,7 +74,18 @@ class Lanes(NamedTuple):
     length: Array
     ahead: Array
     first: Array
+    found: Array
+    found_changes: Array
+    found_standing: Array
+    ways: Integers
+    wanted: Array
+    longest: Array
     sample: Array
+    turn: Array
+    turned: Array
+    was_acting: Array
+    fresh: Array
+    tally: Tally
     number: Integers
     period: Integers
     taken: Integers
@@ -56,10 +96,11 @@ class Lanes(NamedTuple):
     polynomial: Array
     conversion: Array
     subdivision: Array
+    nodes: Array
 
 
-def make_lanes(structure: Structure, order: int) -> Lanes:
-    """Allocate scratch space."""
+def make_lanes(structure: Structure, order: int, nodes: Array) -> Lanes:
+    """Allocate scratch space. nodes (2, count): of the rule that integrates over a step, and weights."""
     n, m, rows = structure.n, structure.m, order + 1
     terms = max(structure.law_terms, structure.error_terms, structure.load_terms)
     return Lanes(
@@ -75,6 +116,18 @@ def make_lanes(structure: Structure, order: int) -> Lanes:
         length=aligned(WIDTH),
         ahead=aligned(WIDTH),
         first=aligned(WIDTH),
+        found=aligned(2 * m, rows, WIDTH),
+        found_changes=aligned(2 * m, WIDTH),
+        found_standing=aligned(2 * m, WIDTH),
+        ways=np.zeros(WIDTH, dtype=np.int64),
+        wanted=aligned(WIDTH),
+        longest=aligned(WIDTH),
+        turn=aligned(rows, n, WIDTH),
+        turned=aligned(rows, m, WIDTH),
+        was_acting=aligned(m, WIDTH),
+        fresh=aligned(WIDTH),
+        tally=_tally(structure),
+        nodes=nodes,
         sample=aligned(n, WIDTH),
         terms=aligned(rows, WIDTH),
         powers=fourier_scratch(terms, rows).powers,
@@ -93,4 +146,22 @@ def make_lanes(structure: Structure, order: int) -> Lanes:
         period=np.zeros(WIDTH, dtype=np.int64),
         taken=np.zeros(WIDTH, dtype=np.int64),
         sampled=np.zeros(WIDTH, dtype=np.int64),
+    )
+
+
+def _tally(structure: Structure) -> Tally:
+    n, m = structure.n, structure.m
+    return Tally(
+        origin=aligned(n, WIDTH),
+        level=aligned(m, WIDTH),
+        coordinates=aligned(n, WIDTH),
+        products=aligned(n * (n + 1) // 2, WIDTH),
+        deflections=aligned(m, WIDTH),
+        squared=aligned(m, WIDTH),
+        forces=aligned(2, m, WIDTH),
+        minimum=aligned(m, WIDTH),
+        maximum=aligned(m, WIDTH),
+        pull=aligned(m, WIDTH),
+        fractions=aligned(3, m, WIDTH),
+        stiffness=aligned(structure.law_kinds, WIDTH),
     )

@@ -2,28 +2,25 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.abreast.rows import Row, may_run_abreast, row_of
-from facegear.dynamics.integrator.integrator import Integrator, require
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator, RunResult, require
+from facegear.dynamics.integrator.sums import Sums, make_sums
+from facegear.dynamics.stretch import Stretch
+from facegear.errors import NotConverged
 from facegear.machine_code.versions import NUMBA_IS_KNOWN
+
+if TYPE_CHECKING:
+    from facegear.dynamics.abreast.run import Queue
 
 FEWEST = 3
 """Machines of one structure that pay for lanes: all lanes together take as long as two or three runs."""
-
-
-@dataclass(frozen=True, eq=False)
-class ManyRun:
-    """What a run has left: states (kept, 2, n) at the ends of its last periods, coordinates
-    (periods * samples, n) at evenly spaced phases from the start of each period, and the number of steps.
-    """
-
-    ends: Array
-    samples: Array
-    steps: int
 
 
 def run_many(
@@ -33,33 +30,48 @@ def run_many(
     kept: int | None = None,
     samples: int = 0,
     fewest: int = FEWEST,
-) -> list[ManyRun]:
+) -> list[RunResult]:
     """Run machines from starts (2, n) by phase, with the steps and to the errors of `Integrator.run`.
 
-    Machines of one structure run side by side; those that have what the lanes have not, and those of which
-    there are fewer than `fewest`, run one after the other. kept: states of how many of the last periods are
-    kept, None for all. Raises NotConverged if any of the runs fails.
+    kept: states at the ends of how many of the last periods are kept, None for all. Raises NotConverged if
+    any of the runs fails. fewest: as in run_stretches().
     """
-    kept = periods if kept is None else min(kept, periods)
-    runs: dict[int, ManyRun] = {}
+    stretches = [
+        Stretch(integrator, start, periods, samples=samples)
+        for integrator, start in zip(integrators, starts, strict=True)
+    ]
+    runs = []
+    for run in run_stretches(stretches, kept, fewest):
+        if isinstance(run, NotConverged):
+            raise run
+        runs.append(run)
+    return runs
+
+
+def run_stretches(
+    stretches: Sequence[Stretch], kept: int | None = None, fewest: int = FEWEST
+) -> list[RunResult | NotConverged]:
+    """Run stretches of many machines; what one fails with stands in the place of its result.
+
+    Machines of one structure that are asked for the same run side by side; those that have, or are asked for,
+    what the lanes have not, and those of which there are fewer than `fewest`, run one after the other. kept:
+    as in run_many().
+    """
+    runs: dict[int, RunResult | NotConverged] = {}
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
-    rows = {id(each): _row_of(each) for each in set(integrators)}
-    for number, integrator in enumerate(integrators):
-        row = rows[id(integrator)]
-        if row is not None:
-            groups[(integrator.order, *row.key)].append(number)
+    rows = {id(each): _row_of(each) for each in {stretch.integrator for stretch in stretches}}
+    for number, stretch in enumerate(stretches):
+        row = rows[id(stretch.integrator)]
+        if row is not None and (stretch.tangents is None or len(stretch.tangents) == 1):
+            groups[(stretch.integrator.order, *row.key, *stretch.asks)].append(number)
     for numbers in groups.values():
         if len(numbers) >= fewest:
-            order = integrators[numbers[0]].order
-            of_group = [row for number in numbers if (row := rows[id(integrators[number])])]
-            from_starts = [starts[number] for number in numbers]
-            done = _side_by_side(of_group, from_starts, order, periods, kept, samples)
-            runs |= zip(numbers, done, strict=True)
-    for number, integrator in enumerate(integrators):
-        if number not in runs:
-            run = integrator.run(starts[number], periods, samples=samples)
-            runs[number] = ManyRun(run.ends[periods - kept :], run.samples, run.steps)
-    return [runs[number] for number in range(len(integrators))]
+            group = [stretches[number] for number in numbers]
+            of_group = [row for stretch in group if (row := rows[id(stretch.integrator)])]
+            runs |= zip(numbers, _side_by_side(of_group, group, kept), strict=True)
+    return [
+        runs[number] if number in runs else _alone(stretch, kept) for number, stretch in enumerate(stretches)
+    ]
 
 
 def _row_of(integrator: Integrator) -> Row | None:
@@ -69,29 +81,74 @@ def _row_of(integrator: Integrator) -> Row | None:
     return row_of(integrator.packed, integrator.tolerance)
 
 
+def _alone(stretch: Stretch, kept: int | None) -> RunResult | NotConverged:
+    try:
+        run = stretch.run()
+    except NotConverged as failure:
+        return failure
+    return run if kept is None else replace(run, ends=run.ends[max(stretch.periods - kept, 0) :])
+
+
 def _side_by_side(
-    rows: list[Row], starts: list[Array], order: int, periods: int, kept: int, samples: int
-) -> list[ManyRun]:
-    """Runs of machines of one structure."""
+    rows: list[Row], stretches: list[Stretch], kept: int | None
+) -> list[RunResult | NotConverged]:
+    """Runs of machines of one structure that are asked for the same."""
     # The lanes are compiled only where they are asked for.
     from facegear.dynamics.abreast.lanes import make_lanes
     from facegear.dynamics.abreast.run import Queue, run_abreast
+    from facegear.dynamics.abreast.sums import many_sums
 
-    shape, count = rows[0].structure, len(rows)
+    shape, count, first = rows[0].structure, len(rows), stretches[0]
+    n, m, disturbed = shape.n, shape.m, first.tangents is not None
+    periods = np.array([stretch.periods for stretch in stretches])
+    most = int(periods.max())
     queue = Queue(
         rows=np.array([row.values for row in rows]),
-        starts=np.array(starts),
+        starts=np.array([stretch.state for stretch in stretches]),
         periods=periods,
-        per_period=samples,
-        ends=np.empty((count, kept, 2, shape.n)),
-        samples=np.empty((count, periods * samples, shape.n)),
+        tangents=np.array([part for stretch in stretches for part in stretch.disturbances]).reshape(-1, 2, n),
+        longest=np.array([_longest_step(stretch) for stretch in stretches]),
+        per_period=first.samples,
+        batches=first.batches,
+        ends=np.empty((count, most if kept is None else min(kept, most), 2, n)),
+        samples=np.empty((count, most * first.samples, n)),
+        growth=np.empty((count if disturbed and first.growth else 0, most)),
+        sums=many_sums(count, n, m, first.batches),
         steps=np.zeros(count, dtype=np.int64),
         status=np.zeros(count, dtype=np.int64),
     )
-    run_abreast(shape, make_lanes(shape, order), queue)
-    for status in queue.status:
-        require(int(status))
-    return [
-        ManyRun(ends, coordinates, int(steps))
-        for ends, coordinates, steps in zip(queue.ends, queue.samples, queue.steps, strict=True)
-    ]
+    run_abreast(shape, make_lanes(shape, first.integrator.order, first.integrator.work.nodes), queue)
+    return [_result(queue, number, stretch) for number, stretch in enumerate(stretches)]
+
+
+def _longest_step(stretch: Stretch) -> float:
+    """The longest step, rad, that a run may take."""
+    return np.inf if stretch.tangents is None else stretch.integrator.longest_step()
+
+
+def _result(queue: "Queue", number: int, stretch: Stretch) -> RunResult | NotConverged:
+    """What a machine of a queue has left."""
+    try:
+        require(int(queue.status[number]))
+    except NotConverged as failure:
+        return failure
+    integrator, periods = stretch.integrator, stretch.periods
+    ends = queue.ends[number, :periods]
+    summed = stretch.batches > 0
+    turned = queue.tangents[number, None] if len(queue.tangents) else np.zeros((0, 2, integrator.size))
+    fractions = queue.sums.fractions[number] if summed else np.zeros((3, integrator.rows))
+    return RunResult(
+        state=ends[-1],
+        ends=ends,
+        tangents=turned,
+        samples=queue.samples[number, : periods * queue.per_period],
+        fractions=fractions / (TAU * periods),
+        divergence=np.nan,
+        growth=queue.growth[number, :periods] if len(queue.growth) else np.zeros(0),
+        steps=int(queue.steps[number]),
+        sums=_sums(queue, number) if summed else make_sums(integrator.packed, 0),
+    )
+
+
+def _sums(queue: "Queue", number: int) -> Sums:
+    return Sums(**{name: getattr(queue.sums, name)[number] for name in Sums._fields})

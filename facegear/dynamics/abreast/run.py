@@ -14,7 +14,9 @@ from facegear.dynamics.abreast.functions import SMALLEST, exponential, logarithm
 from facegear.dynamics.abreast.kernel import inlined, longest
 from facegear.dynamics.abreast.lanes import NONE, Lanes
 from facegear.dynamics.abreast.rows import SCALE, TOLERANCE, WEIGHTS, Structure
+from facegear.dynamics.abreast.sums import ManySums, add_step, clear, keep_batch, keep_whole
 from facegear.dynamics.abreast.switches import until_switch
+from facegear.dynamics.abreast.tangents import move_tangents, shorten
 from facegear.dynamics.abreast.taylor import deflect, excitation, move, recurrence, values
 from facegear.dynamics.abreast.wide import (
     WIDTH,
@@ -38,17 +40,25 @@ from facegear.dynamics.integrator.periods import DONE, MAX_STEPS, NOT_FINITE, TO
 class Queue(NamedTuple):
     """Machines that wait for a lane, and what they leave.
 
-    rows (machines, P), starts (machines, 2, n) by phase. periods: of each. Written are the states at the ends
-    of the last of them, ends (machines, kept, 2, n), coordinates at evenly spaced phases from the start of
-    each period, samples (machines, periods * per_period, n), steps (machines,) and status (machines,).
+    rows (machines, P), starts (machines, 2, n) by phase, periods (machines,) of each. tangents (machines, 2,
+    n), or none: disturbances, moved along; longest (machines,): step, rad. Written are the states at the ends
+    of the last periods, ends (machines, kept, 2, n), coordinates at evenly spaced phases from the start of
+    each period, samples (machines, periods * per_period, n), logarithms of the growth of the disturbance in
+    each period, growth (machines, periods), which is brought back to length one after it, or none, sums over
+    batches of the periods, steps (machines,) and status (machines,).
     """
 
     rows: Array
     starts: Array
-    periods: int
+    periods: Integers
+    tangents: Array
+    longest: Array
     per_period: int
+    batches: int
     ends: Array
     samples: Array
+    growth: Array
+    sums: ManySums
     steps: Integers
     status: Integers
 
@@ -61,9 +71,14 @@ def run_abreast(shape: Structure, lanes: Lanes, queue: Queue) -> None:
         waiting, running = _refill(shape, lanes, queue, lane, waiting, running)
     while running > 0:
         _advance(shape, lanes)
+        if queue.tangents.shape[0] > 0:
+            move_tangents(shape, lanes)
+        if queue.batches > 0:
+            add_step(shape, lanes)
         if queue.per_period > 0:
             _sample(shape, lanes, queue)
-        move(shape, lanes)
+        move(shape, lanes, lanes.y)
+        store(lanes.fresh, 0, splat(0.0))
         for lane in range(WIDTH):
             if _at_end(shape, lanes, queue, lane):
                 waiting, running = _refill(shape, lanes, queue, lane, waiting, running - 1)
@@ -91,6 +106,14 @@ def _enter(shape: Structure, lanes: Lanes, queue: Queue, lane: int, number: int)
     for k in range(shape.n):
         lanes.y[0, k, lane] = queue.starts[number, 0, k]
         lanes.y[1, k, lane] = queue.starts[number, 1, k]
+    if queue.tangents.shape[0] > 0:
+        for k in range(shape.n):
+            lanes.turn[0, k, lane] = queue.tangents[number, 0, k]
+            lanes.turn[1, k, lane] = queue.tangents[number, 1, k]
+    if queue.batches > 0:
+        clear(shape, lanes, lane)
+    lanes.longest[lane] = queue.longest[number]
+    lanes.fresh[lane] = 1.0
     lanes.phase[lane] = 0.0
     lanes.period[lane] = 0
     lanes.taken[lane] = 0
@@ -101,11 +124,11 @@ def _enter(shape: Structure, lanes: Lanes, queue: Queue, lane: int, number: int)
 def _advance(shape: Structure, lanes: Lanes) -> None:
     """Expand the motions and write the step of each lane into `length`."""
     excitation(shape, lanes, lanes.order + 1)
-    deflect(shape, lanes, 0)
-    deflect(shape, lanes, 1)
+    for row in range(2):
+        deflect(shape, lanes, lanes.y, lanes.deflection, row, False)
     find_states(shape, lanes)
     for _ in range(MAX_GUESSES):
-        recurrence(shape, lanes)
+        recurrence(shape, lanes, lanes.y, lanes.deflection, False)
         if not (shape.opens and correct_states(shape, lanes)):
             break
     _step_lengths(shape, lanes)
@@ -115,7 +138,7 @@ def _advance(shape: Structure, lanes: Lanes) -> None:
 @inlined
 def _step_lengths(shape: Structure, lanes: Lanes) -> None:
     """Steps at which each of the last two terms is below the tolerance (Jorba and Zou 2005), none of them
-    past the end of the period.
+    past the end of the period, or longer than it may be.
     """
     tolerance = load(lanes.values, shape.offsets[TOLERANCE])
     target = multiply(tolerance, load(lanes.values, shape.offsets[SCALE]))
@@ -128,7 +151,7 @@ def _step_lengths(shape: Structure, lanes: Lanes) -> None:
         power = multiply(logarithm(divide(target, size)), splat(1.0 / i))
         smallest = smaller(smallest, power)
     length = exponential(larger(smaller(smallest, splat(600.0)), splat(-600.0)))
-    rest = subtract(splat(TAU), load(lanes.phase, 0))
+    rest = smaller(subtract(splat(TAU), load(lanes.phase, 0)), load(lanes.longest, 0))
     half = multiply(splat(0.5), rest)
     shared = where_positive(subtract(length, half), half, length)
     store(lanes.length, 0, where_positive(subtract(rest, length), shared, rest))
@@ -168,26 +191,48 @@ def _at_end(shape: Structure, lanes: Lanes, queue: Queue, lane: int) -> bool:
         lanes.phase[lane] = phase
         return False
     lanes.phase[lane] = 0.0
+    grown = shorten(shape, lanes, lane) if queue.growth.shape[0] > 0 else 1.0
     if number == NONE:
         return False
+    if queue.growth.shape[0] > 0:
+        queue.growth[number, lanes.period[lane]] = np.log(grown)
     finite = _keep_end(shape, lanes, queue, lane)
     queue.steps[number] += lanes.taken[lane]
     lanes.period[lane] += 1
     lanes.taken[lane], lanes.sampled[lane] = 0, 0
     status = TOO_MANY_STEPS if stuck else DONE if finite else NOT_FINITE
     queue.status[number] = status
-    return status != DONE or lanes.period[lane] == queue.periods
+    done = lanes.period[lane] == queue.periods[number]
+    if queue.batches > 0:
+        _keep_sums(shape, lanes, queue, lane, done)
+    if done and queue.tangents.shape[0] > 0:
+        for k in range(shape.n):
+            queue.tangents[number, 0, k] = lanes.turn[0, k, lane]
+            queue.tangents[number, 1, k] = lanes.turn[1, k, lane]
+    return status != DONE or done
+
+
+@inlined
+def _keep_sums(shape: Structure, lanes: Lanes, queue: Queue, lane: int, done: bool) -> None:
+    """Write what a lane has added up where a batch of periods, or the last of them, is over."""
+    run, periods = lanes.period[lane], queue.periods[lanes.number[lane]]
+    batch = (run - 1) * queue.batches // periods
+    if run * queue.batches // periods > batch:
+        keep_batch(shape, lanes, queue.sums, lane, batch)
+    if done:
+        keep_whole(shape, lanes, queue.sums, lane)
 
 
 @inlined
 def _keep_end(shape: Structure, lanes: Lanes, queue: Queue, lane: int) -> bool:
     """Write the state at the end of a period if it is one of the last; False if it is not finite."""
-    row = lanes.period[lane] - (queue.periods - queue.ends.shape[1])
+    number, kept = lanes.number[lane], queue.ends.shape[1]
+    row = lanes.period[lane] - max(queue.periods[number] - kept, 0)
     total = 0.0
     for k in range(shape.n):
         displacement, velocity = lanes.y[0, k, lane], lanes.y[1, k, lane]
         total += displacement + velocity
         if row >= 0:
-            queue.ends[lanes.number[lane], row, 0, k] = displacement
-            queue.ends[lanes.number[lane], row, 1, k] = velocity
+            queue.ends[number, row, 0, k] = displacement
+            queue.ends[number, row, 1, k] = velocity
     return bool(np.isfinite(total))

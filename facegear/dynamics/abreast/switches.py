@@ -33,23 +33,26 @@ def until_switch(shape: Structure, lanes: Lanes) -> None:
     if not shape.opens:
         return
     store(lanes.first, 0, splat(1.0))
+    for lane in range(WIDTH):
+        lanes.ways[lane] = 0
     for m in range(shape.m):
         lower = load(lanes.values, shape.offsets[LOWER] + m)
         upper = load(lanes.values, shape.offsets[UPPER] + m)
         level, closes = load(lanes.level, m), subtract(upper, lower)
-        size = _put_down(shape, lanes, m)
+        size = put_down(shape, lanes, m)
         active, none = load(lanes.active, m), splat(0.0)
         # In contact deflections count from the edge, else an open mesh may reach either.
         above = where_positive(active, none, upper)
         able = where_positive(closes, splat(1.0), none)
-        _stop_at(lanes, above, where_positive(active, magnitude(level), level), able, size)
+        _look_at(lanes, above, where_positive(active, magnitude(level), level), able, size)
         able = where_positive(active, none, able)
-        _stop_at(lanes, lower, subtract(none, level), able, size)
+        _look_at(lanes, lower, subtract(none, level), able, size)
+    _stop_at_first(lanes)
     store(lanes.length, 0, multiply(load(lanes.length, 0), load(lanes.first, 0)))
 
 
 @inlined
-def _put_down(shape: Structure, lanes: Lanes, m: int) -> Wide:
+def put_down(shape: Structure, lanes: Lanes, m: int) -> Wide:
     """Write the terms of deflection m in powers of the fraction of the step; the sum of their sizes but for
     the first.
     """
@@ -64,30 +67,58 @@ def _put_down(shape: Structure, lanes: Lanes, m: int) -> Wide:
 
 
 @inlined
-def _stop_at(lanes: Lanes, level: Wide, standing: Wide, able: Wide, size: Wide) -> None:
-    """Shorten the steps of lanes that are able (1) to where the deflection passes a level; where it stands on
-    the level (1) now, the known zero at the start is divided out.
+def _look_at(lanes: Lanes, level: Wide, standing: Wide, able: Wide, size: Wide) -> None:
+    """Add to the ways of lanes that are able (1) that from a level, if it changes its sign within the step;
+    where the deflection stands on the level (1) now, the known zero at the start is divided out.
     """
     start = subtract(load(lanes.scaled, 0), level)
     # Terms that together are smaller than the way to the level do not reach it; equality counts as reached.
     reach = subtract(multiply(size, splat(1.0 + 1e-12)), magnitude(start))
     reach = where_positive(standing, splat(1.0), reach)
-    candidates = positive_lanes(where_positive(able, reach, splat(0.0)))
-    if candidates == 0:
+    wanted = where_positive(able, reach, splat(0.0))
+    if positive_lanes(wanted) == 0:
         return
     _polynomial(lanes, start, standing)
-    several = subtract(_sign_changes(lanes), splat(1.5))
-    wanted = where_positive(able, reach, splat(0.0))
-    root = _refined(lanes, where_positive(several, splat(0.0), wanted))
-    # Standing on the level, what follows at once was decided by the acceleration already.
-    early = subtract(splat(SHORTEST), multiply(root, load(lanes.length, 0)))
-    spurious = where_positive(standing, early, splat(-1.0))
-    root = where_positive(spurious, splat(NEVER), root)
-    store(lanes.first, 0, smaller(load(lanes.first, 0), root))
-    alone = candidates & positive_lanes(where_positive(spurious, splat(1.0), several))
+    changes = _sign_changes(lanes)
+    candidates = positive_lanes(where_positive(wanted, changes, splat(0.0)))
+    if candidates == 0:
+        return
+    store(lanes.wanted, 0, changes)
+    stands = positive_lanes(standing)
     for lane in range(WIDTH):
-        if (alone >> lane) & 1:
-            _look_alone(lanes, lane, (positive_lanes(standing) >> lane) & 1 == 1)
+        if (candidates >> lane) & 1:
+            way = lanes.ways[lane]
+            lanes.found_changes[way, lane] = lanes.wanted[lane]
+            lanes.found_standing[way, lane] = float((stands >> lane) & 1)
+            for i in range(lanes.order + 1):
+                lanes.found[way, i, lane] = lanes.terms[i, lane]
+            lanes.ways[lane] = way + 1
+
+
+@inlined
+def _stop_at_first(lanes: Lanes) -> None:
+    """Shorten the steps to the first zero of the ways of each lane.
+
+    Lanes pass a level at different contacts: one way of each lane at a time leaves hardly a lane idle.
+    """
+    most = 0
+    for lane in range(WIDTH):
+        most = max(most, lanes.ways[lane])
+    for way in range(most):
+        for lane in range(WIDTH):
+            lanes.wanted[lane] = 1.0 if lanes.ways[lane] > way else 0.0
+        wanted = load(lanes.wanted, 0)
+        several = subtract(load(lanes.found_changes, way), splat(1.5))
+        root = _refined(lanes, way, where_positive(several, splat(0.0), wanted))
+        # Standing on the level, what follows at once was decided by the acceleration already.
+        early = subtract(splat(SHORTEST), multiply(root, load(lanes.length, 0)))
+        spurious = where_positive(load(lanes.found_standing, way), early, splat(-1.0))
+        root = where_positive(spurious, splat(NEVER), root)
+        store(lanes.first, 0, smaller(load(lanes.first, 0), root))
+        alone = positive_lanes(where_positive(spurious, wanted, where_positive(several, wanted, splat(0.0))))
+        for lane in range(WIDTH):
+            if (alone >> lane) & 1:
+                _look_alone(lanes, way, lane)
 
 
 @inlined
@@ -124,15 +155,16 @@ def _sign_changes(lanes: Lanes) -> Wide:
 
 
 @inlined
-def _refined(lanes: Lanes, wanted: Wide) -> Wide:
-    """The one zero before `first` of the polynomials of wanted lanes, NEVER of the others and where it comes
+def _refined(lanes: Lanes, way: int, wanted: Wide) -> Wide:
+    """The one zero before `first` of a way of wanted lanes, NEVER of the others and where it comes
     later: Newton's method kept inside a shrinking bracket.
     """
+    terms, at = lanes.found, way * (lanes.order + 1)
     low, high = splat(0.0), load(lanes.first, 0)
-    at_low = load(lanes.terms, 0)
-    at_high = load(lanes.terms, lanes.order)
+    at_low = load(terms, at)
+    at_high = load(terms, at + lanes.order)
     for i in range(lanes.order - 1, -1, -1):
-        at_high = multiply_add(at_high, high, load(lanes.terms, i))
+        at_high = multiply_add(at_high, high, load(terms, at + i))
     sign = where_positive(at_high, splat(1.0), splat(-1.0))
     below = multiply(sign, subtract(splat(0.0), at_low))
     pending = where_positive(below, where_positive(wanted, splat(1.0), splat(0.0)), splat(0.0))
@@ -143,10 +175,10 @@ def _refined(lanes: Lanes, wanted: Wide) -> Wide:
     beside = subtract(multiply(splat(1.0 - BESIDE), high), t)
     t = where_positive(beside, t, multiply(splat(0.5), high))
     for _ in range(ITERATIONS):
-        value, slope = load(lanes.terms, lanes.order), splat(0.0)
+        value, slope = load(terms, at + lanes.order), splat(0.0)
         for i in range(lanes.order - 1, -1, -1):
             slope = multiply_add(slope, t, value)
-            value = multiply_add(value, t, load(lanes.terms, i))
+            value = multiply_add(value, t, load(terms, at + i))
         rise = multiply(sign, value)
         high = where_positive(rise, t, high)
         low = where_positive(rise, low, t)
@@ -166,11 +198,11 @@ def _refined(lanes: Lanes, wanted: Wide) -> Wide:
 
 
 @inlined
-def _look_alone(lanes: Lanes, lane: int, standing: bool) -> None:
-    """The first of several zeros of one lane, by bounds that are halved."""
+def _look_alone(lanes: Lanes, way: int, lane: int) -> None:
+    """The first of several zeros of a way of one lane, by bounds that are halved."""
     for i in range(lanes.order + 1):
-        lanes.polynomial[i] = lanes.terms[i, lane]
+        lanes.polynomial[i] = lanes.found[way, i, lane]
     root = first_root(lanes.polynomial, lanes.order, lanes.conversion, lanes.subdivision)
-    if standing and root * lanes.length[lane] < SHORTEST:
+    if lanes.found_standing[way, lane] > 0.0 and root * lanes.length[lane] < SHORTEST:
         root = root_after(lanes.polynomial, lanes.order, root, lanes.conversion, lanes.subdivision)
     lanes.first[lane] = min(lanes.first[lane], root)

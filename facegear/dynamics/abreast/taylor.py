@@ -84,39 +84,38 @@ def _fourier(lanes: Lanes, at: int, terms: int, count: int, rows: int, out: Arra
 
 
 @inlined
-def deflect(shape: Structure, lanes: Lanes, i: int) -> None:
-    """Row i of the deflections, G y - e."""
+def deflect(shape: Structure, lanes: Lanes, y: Array, deflection: Array, i: int, turns: bool) -> None:
+    """Row i of the deflections, G y - e; of a disturbance that `turns` with the motion, G y."""
     at, first, row = shape.offsets[JACOBIAN], i * shape.n, i * shape.m
     for m in range(shape.m):
-        error = load(lanes.error, i * shape.error_kinds + take(shape.error_kind, m))
-        total, other = subtract(splat(0.0), error), splat(0.0)
+        total, other = splat(0.0), splat(0.0)
+        if not turns:
+            total = subtract(total, load(lanes.error, i * shape.error_kinds + take(shape.error_kind, m)))
         begin, end = take(shape.starts, m), take(shape.starts, m + 1)
         for e in range(begin, end - 1, 2):
-            total = multiply_add(
-                load(lanes.values, at + e), load(lanes.y, first + take(shape.columns, e)), total
-            )
+            total = multiply_add(load(lanes.values, at + e), load(y, first + take(shape.columns, e)), total)
             other = multiply_add(
-                load(lanes.values, at + e + 1), load(lanes.y, first + take(shape.columns, e + 1)), other
+                load(lanes.values, at + e + 1), load(y, first + take(shape.columns, e + 1)), other
             )
         if (end - begin) % 2 == 1:
             e = end - 1
-            total = multiply_add(
-                load(lanes.values, at + e), load(lanes.y, first + take(shape.columns, e)), total
-            )
-        store(lanes.deflection, row + m, add(total, other))
+            total = multiply_add(load(lanes.values, at + e), load(y, first + take(shape.columns, e)), total)
+        store(deflection, row + m, add(total, other))
 
 
 @inlined
-def recurrence(shape: Structure, lanes: Lanes) -> None:
-    """Fill rows 2 .. order of y and of deflection from rows 0 and 1 of both."""
+def recurrence(shape: Structure, lanes: Lanes, y: Array, deflection: Array, turns: bool) -> None:
+    """Fill rows 2 .. order of y and of deflection from rows 0 and 1 of both: of the motion, or of a
+    disturbance that turns with it.
+    """
     for i in range(lanes.order - 1):
-        _push(shape, lanes, i)
-        _accelerate(shape, lanes, i)
-        deflect(shape, lanes, i + 2)
+        _push(shape, lanes, deflection, i)
+        _accelerate(shape, lanes, y, i, turns)
+        deflect(shape, lanes, y, deflection, i + 2, turns)
 
 
 @inlined
-def _push(shape: Structure, lanes: Lanes, i: int) -> None:
+def _push(shape: Structure, lanes: Lanes, deflection: Array, i: int) -> None:
     """Coefficient i of the forces, with the factor of the next coefficient of y."""
     m, count = shape.m, shape.law_kinds
     rate, pushed = splat(i + 1.0), splat(-1.0 / ((i + 1) * (i + 2)))
@@ -125,33 +124,33 @@ def _push(shape: Structure, lanes: Lanes, i: int) -> None:
         total, other = splat(0.0), splat(0.0)
         for j in range(i, 0, -2):
             total = multiply_add(
-                load(lanes.law, j * count + kind), load(lanes.deflection, (i - j) * m + contact), total
+                load(lanes.law, j * count + kind), load(deflection, (i - j) * m + contact), total
             )
             other = multiply_add(
                 load(lanes.law, (j - 1) * count + kind),
-                load(lanes.deflection, (i - j + 1) * m + contact),
+                load(deflection, (i - j + 1) * m + contact),
                 other,
             )
         if i % 2 == 0:
-            other = multiply_add(load(lanes.law, kind), load(lanes.deflection, i * m + contact), other)
+            other = multiply_add(load(lanes.law, kind), load(deflection, i * m + contact), other)
         total = multiply(load(lanes.active, contact), add(total, other))
         damping = multiply(load(lanes.acting, contact), rate)
-        total = multiply_add(damping, load(lanes.deflection, (i + 1) * m + contact), total)
+        total = multiply_add(damping, load(deflection, (i + 1) * m + contact), total)
         store(lanes.force, contact, multiply(pushed, total))
 
 
 @inlined
-def _accelerate(shape: Structure, lanes: Lanes, i: int) -> None:
+def _accelerate(shape: Structure, lanes: Lanes, y: Array, i: int, turns: bool) -> None:
     """Row i + 2 of y."""
     n, at = shape.n, shape.offsets[JACOBIAN]
     rate, factor = splat(i + 1.0), splat(1.0 / ((i + 1) * (i + 2)))
-    constant = shape.load_terms == 1 and i > 0
+    unloaded = turns or (shape.load_terms == 1 and i > 0)
     for k in range(n):
         damping = load(lanes.values, shape.offsets[DAMPING] + k)
-        total = multiply(damping, multiply(rate, load(lanes.y, (i + 1) * n + k)))
+        total = multiply(damping, multiply(rate, load(y, (i + 1) * n + k)))
         omega_squared = load(lanes.values, shape.offsets[OMEGA] + k)
-        total = multiply_add(omega_squared, load(lanes.y, i * n + k), total)
-        applied = splat(0.0) if constant else load(lanes.load, i * n + k)
+        total = multiply_add(omega_squared, load(y, i * n + k), total)
+        applied = splat(0.0) if unloaded else load(lanes.load, i * n + k)
         total, other = multiply(factor, subtract(applied, total)), splat(0.0)
         begin, end = take(shape.back_starts, k), take(shape.back_starts, k + 1)
         for e in range(begin, end - 1, 2):
@@ -172,20 +171,20 @@ def _accelerate(shape: Structure, lanes: Lanes, i: int) -> None:
                 load(lanes.force, take(shape.back_rows, e)),
                 total,
             )
-        store(lanes.y, (i + 2) * n + k, add(total, other))
+        store(y, (i + 2) * n + k, add(total, other))
 
 
 @inlined
-def move(shape: Structure, lanes: Lanes) -> None:
+def move(shape: Structure, lanes: Lanes, y: Array) -> None:
     """Move rows 0 and 1 of y to the ends of the steps, by Horner's rule."""
     n, order, step = shape.n, lanes.order, load(lanes.length, 0)
     for k in range(n):
-        value, slope = load(lanes.y, order * n + k), splat(0.0)
+        value, slope = load(y, order * n + k), splat(0.0)
         for i in range(order - 1, -1, -1):
             slope = multiply_add(slope, step, value)
-            value = multiply_add(value, step, load(lanes.y, i * n + k))
-        store(lanes.y, k, value)
-        store(lanes.y, n + k, slope)
+            value = multiply_add(value, step, load(y, i * n + k))
+        store(y, k, value)
+        store(y, n + k, slope)
 
 
 @inlined

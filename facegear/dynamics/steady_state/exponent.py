@@ -6,10 +6,12 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.courses import Course
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
-from facegear.dynamics.steady_state.window import Window, run_window
+from facegear.dynamics.steady_state.window import Window, window
+from facegear.dynamics.stretch import Stretch
 
 ALIGN, MIN_ALIGN = 2, 32
 """Batches, and least periods, for which a disturbance turns before its growth counts."""
@@ -43,7 +45,7 @@ class Exponent:
     window: Window
 
 
-def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> Exponent:
+def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> Course[Exponent]:
     """Largest exponent from a state (2, n) by phase, by one tangent vector over the settings' window.
 
     The vector is brought back to length one after every period (Parker and Chua 1989).
@@ -53,23 +55,23 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
     tangent /= np.sqrt(((integrator.weights * tangent) ** 2).sum())
     # The vector first turns into the direction of fastest growth.
     align = max(ALIGN * settings.window // BATCHES, MIN_ALIGN)
-    run = integrator.run(state, align, tangent, growth=True)
+    run = yield Stretch(integrator, state, align, tangent, growth=True)
     ends, rates, tangent = run.ends, np.zeros(0), run.tangents
     if settings.window < MIN_WINDOW:
         missing = MIN_WINDOW - settings.window
-        run = integrator.run(ends[-1], missing, tangent, growth=True)
+        run = yield Stretch(integrator, ends[-1], missing, tangent, growth=True)
         rates, tangent = run.growth, run.tangents
         ends = np.concatenate([ends, run.ends])
     for windows in range(1, 2**settings.extensions + 1):
-        window = run_window(integrator, ends[-1], settings.window, settings.samples, tangent)
-        tangent = window.tangent
-        ends, rates = np.concatenate([ends, window.ends]), np.concatenate([rates, window.growth])
+        last = yield from window(integrator, ends[-1], settings.window, settings.samples, tangent)
+        tangent = last.tangent
+        ends, rates = np.concatenate([ends, last.ends]), np.concatenate([rates, last.growth])
         if windows.bit_count() > 1:
             continue
         growth, value, half_width = _judged(rates)
         if growth is not Growth.UNKNOWN:
             break
-    return Exponent(growth, value, half_width, ends, window)
+    return Exponent(growth, value, half_width, ends, last)
 
 
 def _judged(rates: Array) -> tuple[Growth, float, float]:

@@ -11,11 +11,12 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, Mask
+from facegear.dynamics.courses import Course
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.closing import SMALL
 from facegear.dynamics.steady_state.orbits import change, largest
-from facegear.dynamics.steady_state.settle import KnownOrbit, Settled, settle
+from facegear.dynamics.steady_state.settle import KnownOrbit, Settled, settling
 
 WANDERED = 16
 """After so many periods with changes that are not small the orbit reached may be a matter of chance."""
@@ -33,7 +34,7 @@ def disagreeing(
     motion: Motion,
     states: Array,
     before: int,
-) -> Settled | None:
+) -> Course[Settled | None]:
     """Where another start (2, n) settles if that takes the class of the first back; None if the class holds.
 
     A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another
@@ -50,7 +51,7 @@ def disagreeing(
     starts = other_starts(integrator, start, settings.aside, first)
     wandered = before + wandering(integrator, first, first.period)
     for looks in range(1, MAX_LOOKS + 1):
-        other = settle(integrator, next(starts), settings, known=known)
+        other = yield from settling(integrator, next(starts), settings, known=known)
         if other.period != first.period:
             return other
         wandered += wandering(integrator, other, other.period)

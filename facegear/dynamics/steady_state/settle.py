@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.courses import Course, alone
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
@@ -19,6 +20,7 @@ from facegear.dynamics.steady_state.orbits import (
     near_for_ever,
     shoot,
 )
+from facegear.dynamics.stretch import Stretch
 
 NEWTON_COST = 20
 """Mesh periods that cost as much time as one with all tangents."""
@@ -75,6 +77,17 @@ def settle(
     ends: Array | None = None,
     known: KnownOrbit | None = None,
 ) -> Settled:
+    """settling() of one run by itself."""
+    return alone(settling(integrator, state, settings, ends, known))
+
+
+def settling(
+    integrator: Integrator,
+    state: Array,
+    settings: Settings,
+    ends: Array | None = None,
+    known: KnownOrbit | None = None,
+) -> Course[Settled]:
     """Run until the state repeats after 1 .. longest_period periods, or patience ends without a sign of it.
 
     With `refine` the orbit that the run tends to is found by Newton's method as soon as that pays, and is
@@ -144,10 +157,10 @@ class SettlingRun:
         """The last states at the end of a period, oldest first."""
         return self.passed.states
 
-    def settled(self) -> Settled:
+    def settled(self) -> Course[Settled]:
         """Go on, block by block, until the run has settled or patience ends."""
         while True:
-            self._advance()
+            yield from self._advance()
             if self.periods_run < self.dwell and not self.known:
                 continue
             if (
@@ -168,14 +181,14 @@ class SettlingRun:
             if last and not (closer and self.periods_run < LONGER * self.settings.settle):
                 return self._in_noise(near) or self._result(0, near.residual, None)
 
-    def _advance(self) -> None:
+    def _advance(self) -> Course[None]:
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
         if not self.known:
             block = max(block, self.dwell - self.periods_run)
         if self.periods_run < settings.settle:
             block = min(block, settings.settle - self.periods_run)
-        run = self.integrator.run(self.state, block)
+        run = yield Stretch(self.integrator, self.state, block)
         self.state = run.state
         self.passed.room_for(block)[:] = run.ends
         self.periods_run += block

@@ -1,7 +1,8 @@
 """Steady state of a machine at a speed: the public entry of the dynamics."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from facegear.arrays import Array, ComplexArray
 from facegear.by_content import kept_by_content
+from facegear.dynamics.courses import Course, alone
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.reduction import Reduced, reduce
@@ -26,7 +28,7 @@ from facegear.dynamics.steady_state.mesh_samples import (
 from facegear.dynamics.steady_state.orbits import Orbit
 from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.second_look import disagreeing
-from facegear.dynamics.steady_state.watching import Watched, not_settled, watch
+from facegear.dynamics.steady_state.watching import Begun, Watched, begin, not_settled, watch
 from facegear.errors import NotConverged
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.statics import static_equilibrium
@@ -184,11 +186,62 @@ def simulate(
     A `guide`, an orbit of a like machine, is followed where it serves; then no multipliers are computed.
     Raises NotConverged if the integration itself fails; a motion that does not settle is a result, named so.
     """
+    return alone(simulating(model, speed_rpm, settings, start, guide))
+
+
+def simulating(
+    model: Model | Machine,
+    speed_rpm: float,
+    settings: Settings | None = None,
+    start: State | None = None,
+    guide: Guide | None = None,
+) -> Course[SteadyState]:
+    """simulate() as a course, for many side by side."""
+    return (yield from (yield from started(model, speed_rpm, settings, start, guide)).followed())
+
+
+@dataclass(frozen=True, eq=False)
+class Started:
+    """A motion at a pinion speed that was watched for the first time."""
+
+    system: System
+    begun: Begun
+    speed_rpm: float
+
+    @property
+    def state(self) -> State:
+        """What it may hand on to a motion at another speed: a state of its own, the last that was seen."""
+        return self.begun.integrator.by_time(self.begun.state)
+
+    def followed(self) -> Course[SteadyState]:
+        """The steady state that is left of it when it is watched until its class is known, and looked at
+        again.
+        """
+        with _naming(self.speed_rpm):
+            return (yield from _steady(self.system, self.begun))
+
+
+def started(
+    model: Model | Machine,
+    speed_rpm: float,
+    settings: Settings | None = None,
+    start: State | None = None,
+    guide: Guide | None = None,
+) -> Course[Started]:
+    """The first watch of simulate()."""
     model = build_model(model) if isinstance(model, Machine) else model
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
     start = static_start(model) if start is None else start
+    with _naming(speed_rpm):
+        begun = yield from _begun(model.system, frequency, settings or Settings(), start, guide)
+    return Started(model.system, begun, speed_rpm)
+
+
+@contextmanager
+def _naming(speed_rpm: float) -> Iterator[None]:
+    """What does not converge is said to be at a speed."""
     try:
-        return steady_state(model.system, frequency, settings or Settings(), start, guide)
+        yield
     except NotConverged as error:
         raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.tried) from None
 
@@ -213,17 +266,33 @@ def steady_state(
     A class of motion that does not come out again from starts a little aside is taken back: then the motion
     is not settled, and `looks` says why.
     """
+
+    def course() -> Course[SteadyState]:
+        return (yield from _steady(system, (yield from _begun(system, frequency, settings, start, guide))))
+
+    return alone(course())
+
+
+def _begun(
+    system: System, frequency: float, settings: Settings, start: State, guide: Guide | None
+) -> Course[Begun]:
+    """The first watch of a system from a start."""
     prepare_for(system)
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
-    state = integrator.by_phase(start)
     serves = guide is not None and settings.refine and guide.serves(system)
-    seen = watch(integrator, state, settings, guide if serves else None)
+    return begin(integrator, integrator.by_phase(start), settings, guide if serves else None)
+
+
+def _steady(system: System, begun: Begun) -> Course[SteadyState]:
+    """The steady state that a run comes to, and whether it holds from other starts."""
+    integrator, settings = begun.integrator, begun.settings
+    seen = yield from watch(begun)
     first, states = seen.settled, seen.window.ends
-    other = disagreeing(integrator, state, settings, first, seen.motion, states, seen.wandered)
-    looks = None
+    looked = disagreeing(integrator, begun.start, settings, first, seen.motion, states, seen.wandered)
+    other, looks = (yield from looked), None
     if other is not None:
         looks = (first.period, other.period)
-        seen = not_settled(integrator, seen, other, settings)
+        seen = yield from not_settled(integrator, seen, other, settings)
     return _response(system, integrator, seen, looks)
 
 

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.courses import Course, alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.averages import BATCHES, Averages, averages
+from facegear.dynamics.stretch import Stretch
 
 MAX_SAMPLES = 4096
 MAX_IN_ALL = 65_536
@@ -32,16 +34,22 @@ class Window:
     tangent: Array
 
 
-def run_window(
+def run_window(integrator: Integrator, state: Array, periods: int, samples: int) -> Window:
+    """window() of one run by itself, without a disturbance."""
+    return alone(window(integrator, state, periods, samples))
+
+
+def window(
     integrator: Integrator, state: Array, periods: int, samples: int, tangent: Array | None = None
-) -> Window:
+) -> Course[Window]:
     """Run periods from a state (2, n) by phase with at least so many samples in each. Raises NotConverged.
 
     A periodic motion over its own period needs one batch; BATCHES of others show how far chance goes. A
     disturbance (1, 2, n) of length one is moved along and turned.
     """
     per_period = samples_needed(integrator, samples, periods)
-    result = integrator.run(
+    result = yield Stretch(
+        integrator,
         state,
         periods,
         tangent,

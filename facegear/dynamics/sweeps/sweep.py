@@ -7,14 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.arrays import Array, Integers, Mask
+from facegear.dynamics.courses import alone, side_by_side
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.simulate import Model, SteadyState, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, SteadyState, started, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.transmission.loaded_modes import loaded_modes
 
 DEFLECTION = ("mean", "rms", "ac_rms", "minimum", "maximum", "rms_interval", "ac_rms_interval")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
+TOGETHER = 32
+"""Speeds whose motions are watched on side by side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,13 +130,21 @@ def run_speeds(
     start: State | None,
     step: Callable[[], None] = lambda: None,
 ) -> Iterator[tuple[float, SteadyState]]:
-    """Steady states at speeds in the given order, the state carried over."""
+    """Steady states at speeds in the given order, the state carried over.
+
+    What a motion hands on is known after its first watch: where it has settled that is a state of the motion
+    it has settled on, else the last one seen, as good as any other of an irregular motion. All that is left
+    to see of TOGETHER speeds is run side by side.
+    """
     state = static_start(model) if start is None else start
-    for speed in speeds:
-        response = simulate(model, float(speed), settings, state)
-        state = response.state
-        step()
-        yield float(speed), response
+    for first in range(0, len(speeds), TOGETHER):
+        motions = []
+        for speed in speeds[first : first + TOGETHER]:
+            motions.append(alone(started(model, float(speed), settings, state)))
+            state = motions[-1].state
+            step()
+        responses = side_by_side([motion.followed() for motion in motions])
+        yield from zip((motion.speed_rpm for motion in motions), responses, strict=True)
 
 
 def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:

@@ -1,0 +1,50 @@
+"""What is watched of a motion as a course of stretches, each of which depends on what the last has shown.
+
+A course asks for a stretch by yielding it and is given its run. The same code watches one machine alone
+and many whose stretches run side by side.
+"""
+
+from collections.abc import Generator, Sequence
+from typing import TypeAlias, TypeVar
+
+from facegear.dynamics.abreast.many import run_stretches
+from facegear.dynamics.integrator.integrator import RunResult
+from facegear.dynamics.stretch import Stretch
+from facegear.errors import NotConverged
+
+T = TypeVar("T")
+
+
+Course: TypeAlias = Generator[Stretch, RunResult, T]
+"""A NotConverged of a stretch is raised where it was asked for."""
+
+
+def alone(course: Course[T]) -> T:
+    """What a course comes to when each of its stretches runs by itself. Raises NotConverged."""
+    return side_by_side([course])[0]
+
+
+def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
+    """What each of many courses comes to; stretches that are asked for at a time run in lanes where they can.
+
+    Raises NotConverged if any of the courses does.
+    """
+    found: dict[int, T] = {}
+    asked: dict[int, Stretch] = {}
+    answers: dict[int, RunResult | NotConverged | None] = dict.fromkeys(range(len(courses)))
+    while answers:
+        asked.clear()
+        for number, answer in answers.items():
+            try:
+                asked[number] = _next_of(courses[number], answer)
+            except StopIteration as end:
+                found[number] = end.value
+        answers = dict(zip(asked, run_stretches(list(asked.values())), strict=True))
+    return [found[number] for number in range(len(courses))]
+
+
+def _next_of(course: Course[T], answer: RunResult | NotConverged | None) -> Stretch:
+    """The stretch that a course asks for after an answer. Raises StopIteration at its end."""
+    if isinstance(answer, NotConverged):
+        return course.throw(answer)
+    return next(course) if answer is None else course.send(answer)

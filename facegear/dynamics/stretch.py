@@ -1,0 +1,46 @@
+"""A stretch of a motion that a machine is asked to run."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.dynamics.integrator.integrator import Integrator, RunResult
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """Whole mesh periods from a state (2, n) by phase, with what `Integrator.run` can be asked for.
+
+    Without batches there are no fractions of time in contact, and no divergence where machines run side by
+    side.
+    """
+
+    integrator: Integrator
+    state: Array
+    periods: int
+    tangents: Array | None = None
+    samples: int = 0
+    batches: int = 0
+    growth: bool = False
+
+    def run(self) -> RunResult:
+        """Run it by itself. Raises NotConverged."""
+        return self.integrator.run(
+            self.state,
+            self.periods,
+            self.tangents,
+            samples=self.samples,
+            batches=self.batches,
+            growth=self.growth,
+        )
+
+    @property
+    def disturbances(self) -> Array:
+        """The tangents (columns, 2, n), which may be none."""
+        return np.zeros((0, *self.state.shape)) if self.tangents is None else self.tangents
+
+    @property
+    def asks(self) -> tuple[object, ...]:
+        """What must be the same for machines that run side by side."""
+        return len(self.disturbances), self.samples, self.batches, self.growth
