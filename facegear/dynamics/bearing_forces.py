@@ -6,7 +6,8 @@ import scipy
 
 from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.compiled import TAU
-from facegear.dynamics.steady_state.simulate import Model, SteadyState
+from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.steady_state.statistics import moments
 from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads
 from facegear.transmission.static_gears import at_rest

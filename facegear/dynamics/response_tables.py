@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.integrator.compiled import TAU
-from facegear.dynamics.steady_state.simulate import Model, SteadyState
+from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.steady_state.spectra import MAX_ORDER, spectrum
 from facegear.dynamics.sweeps.sweep import collect
 from facegear.dynamics.sweeps.sweep_tables import UM, sweep_table

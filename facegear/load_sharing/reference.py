@@ -8,11 +8,12 @@ import pandas as pd
 from facegear.arrays import Array
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.dynamics.sweeps.sweep import carried_over
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import load_groups
 from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.run import cycle_forces, group_average, watched_motion
+from facegear.load_sharing.run import WATCHED, cycle_forces, followed, group_average, watched_for
 from facegear.load_sharing.sampling import densely_sampled
 from facegear.load_sharing.statics import mean_equilibrium_forces, static_forces
 from facegear.load_sharing.statistics import average
@@ -74,10 +75,17 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
         return pd.DataFrame(columns=list(SPEED_COLUMNS))
     speeds = np.linspace(options.speeds.first, options.speeds.last, options.speeds.points)
     progress = Progress("load sharing over speed", speeds.size)
-    model, state, rows = build_model(machine), None, []
-    for speed in speeds:
-        response = watched_motion(model, float(speed), settings, options, state)
-        state, response = response.state, densely_sampled(response)
+    model, rows = build_model(machine), []
+    responses = carried_over(
+        model,
+        speeds,
+        watched_for(settings, options, WATCHED),
+        None,
+        lambda motion: followed(model, motion, settings, options),
+        progress.step,
+    )
+    for speed, found in zip(speeds, responses, strict=True):
+        response = densely_sampled(found)
         for group in load_groups(machine.layout):
             sharing_average = group_average(response, group, options.confidence)[2]
             rows.append(
@@ -93,7 +101,6 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
                     "motion": response.label,
                 }
             )
-        progress.step()
     return pd.DataFrame(rows, columns=list(SPEED_COLUMNS))
 
 

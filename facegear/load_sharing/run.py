@@ -5,9 +5,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Mask
+from facegear.dynamics.courses import Course, alone
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.guide import Guide, guide_of
-from facegear.dynamics.steady_state.simulate import Model, SteadyState, build_model, simulate, static_start
+from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.steady_state.simulate import (
+    Model,
+    Started,
+    build_model,
+    simulating,
+    started,
+    static_start,
+)
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions
@@ -105,20 +114,31 @@ def watched_motion(
     """The motion from a start: what has not closed after a few times the cycles averaged is measured.
 
     `guide`: an orbit that the run may come to, or one of a like machine.
+    """
+    begin = started(model, speed_rpm, watched_for(settings, options, WATCHED), start, guide)
+    return alone(followed(model, alone(begin), settings, options))
+
+
+def followed(
+    model: Model, motion: Started, settings: Settings, options: SharingOptions
+) -> Course[SteadyState]:
+    """What comes of a motion that was watched for the first time.
 
     A body that is pushed through its backlash for long, or an orbit that is approached slowly, looks like a
     torus for a while: what seems to be one is watched on. A class that must hold for good, as that of the
     response at the nominal speed, is watched for longer.
     """
-    max_periods = settings.settle
-    state = simulate(
-        model, speed_rpm, replace(settings, settle=min(max_periods, WATCHED * options.cycles)), start, guide
-    )
+    state = yield from motion.followed()
     if state.motion is not Motion.QUASI_PERIODIC:
         return state
-    longer = replace(settings, settle=min(max_periods, TORUS_WATCHED * options.cycles))
-    again = simulate(model, speed_rpm, longer, state.state)
+    longer = watched_for(settings, options, TORUS_WATCHED)
+    again = yield from simulating(model, motion.speed_rpm, longer, state.state)
     return replace(again, periods_run=state.periods_run + again.periods_run)
+
+
+def watched_for(settings: Settings, options: SharingOptions, times: int) -> Settings:
+    """Settings with patience for so many times the cycles averaged, and no more than they had."""
+    return replace(settings, settle=min(settings.settle, times * options.cycles))
 
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:

@@ -7,7 +7,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.motion import Motion
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
-from facegear.dynamics.steady_state.simulate import SteadyState
+from facegear.dynamics.steady_state.response import SteadyState
 
 DENSE, MAX_SAMPLES_OF_RUN = 2048, 16_384
 """Samples of a mesh cycle, and of a period of many cycles."""

@@ -9,7 +9,8 @@ import pandas as pd
 from facegear.arrays import Array
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages
-from facegear.dynamics.steady_state.simulate import Model, SteadyState
+from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, tighter
 
 CONVERGED = 1e-3

@@ -18,7 +18,8 @@ from facegear.dynamics.abreast.many import run_many
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.simulate import SteadyState, steady_state
+from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.mesh_law.linear import LinearLaw
 
 FURTHER = 20_000

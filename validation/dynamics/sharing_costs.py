@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.simulate import SteadyState, build_model, simulate
+from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.run import Sharing, group_average, load_sharing
 from facegear.load_sharing.statistics import Average

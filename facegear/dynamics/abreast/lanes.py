@@ -18,16 +18,17 @@ class Tally(NamedTuple):
     """What lanes add up over a batch of periods, or over all periods of a machine; the last dimension is the
     lane.
 
-    origin, coordinates (n,), products (pairs of coordinates,), level, deflections, squared, forces (2,
-    contacts), minimum, maximum, pull (contacts,): as in the single integrator's Sums; fractions (3,
-    contacts): phase spent open, on the drive and on the back flank, rad. stiffness (kinds,) of the law at an
-    instant.
+    off, heavy (nodes, n): coordinates at the nodes of a step, from their origin, and times their weights.
+    products: of pairs of coordinates. The others are as in the single integrator's Sums; fractions (3, m) are
+    the phase spent open, on the drive and on the back flank, rad; stiffness (kinds,) is the law's now.
     """
 
     origin: Array
     level: Array
     coordinates: Array
     products: Array
+    off: Array
+    heavy: Array
     deflections: Array
     squared: Array
     forces: Array
@@ -126,7 +127,7 @@ def make_lanes(structure: Structure, order: int, nodes: Array) -> Lanes:
         turned=aligned(rows, m, WIDTH),
         was_acting=aligned(m, WIDTH),
         fresh=aligned(WIDTH),
-        tally=_tally(structure),
+        tally=_tally(structure, nodes.shape[1]),
         nodes=nodes,
         sample=aligned(n, WIDTH),
         terms=aligned(rows, WIDTH),
@@ -149,13 +150,15 @@ def make_lanes(structure: Structure, order: int, nodes: Array) -> Lanes:
     )
 
 
-def _tally(structure: Structure) -> Tally:
+def _tally(structure: Structure, nodes: int) -> Tally:
     n, m = structure.n, structure.m
     return Tally(
         origin=aligned(n, WIDTH),
         level=aligned(m, WIDTH),
         coordinates=aligned(n, WIDTH),
         products=aligned(n * (n + 1) // 2, WIDTH),
+        off=aligned(nodes, n, WIDTH),
+        heavy=aligned(nodes, n, WIDTH),
         deflections=aligned(m, WIDTH),
         squared=aligned(m, WIDTH),
         forces=aligned(2, m, WIDTH),

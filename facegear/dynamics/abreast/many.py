@@ -4,6 +4,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -19,8 +20,11 @@ from facegear.machine_code.versions import NUMBA_IS_KNOWN
 if TYPE_CHECKING:
     from facegear.dynamics.abreast.run import Queue
 
-FEWEST = 3
-"""Machines of one structure that pay for lanes: all lanes together take as long as two or three runs."""
+FEWEST = 5
+"""Machines of one structure that pay for lanes: all lanes together take as long as three to five runs."""
+
+_ROWS: WeakKeyDictionary[Integrator, Row | None] = WeakKeyDictionary()
+"""Rows of the integrators in use, which run stretch by stretch."""
 
 
 def run_many(
@@ -57,6 +61,8 @@ def run_stretches(
     what the lanes have not, and those of which there are fewer than `fewest`, run one after the other. kept:
     as in run_many().
     """
+    if len(stretches) < fewest:
+        return [_alone(stretch, kept) for stretch in stretches]
     runs: dict[int, RunResult | NotConverged] = {}
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
     rows = {id(each): _row_of(each) for each in {stretch.integrator for stretch in stretches}}
@@ -64,8 +70,8 @@ def run_stretches(
         row = rows[id(stretch.integrator)]
         if row is not None and (stretch.tangents is None or len(stretch.tangents) == 1):
             groups[(stretch.integrator.order, *row.key, *stretch.asks)].append(number)
-    for numbers in groups.values():
-        if len(numbers) >= fewest:
+    for alike in groups.values():
+        if numbers := _in_lanes(alike, fewest):
             group = [stretches[number] for number in numbers]
             of_group = [row for stretch in group if (row := rows[id(stretch.integrator)])]
             runs |= zip(numbers, _side_by_side(of_group, group, kept), strict=True)
@@ -74,11 +80,21 @@ def run_stretches(
     ]
 
 
+def _in_lanes(numbers: list[int], fewest: int) -> list[int]:
+    """Those of machines that are alike which run in lanes: fewer than `fewest` would leave too many empty."""
+    # The lanes are compiled only where they are asked for.
+    from facegear.dynamics.abreast.wide import WIDTH
+
+    left = len(numbers) % WIDTH
+    return numbers if left >= fewest else numbers[: len(numbers) - left]
+
+
 def _row_of(integrator: Integrator) -> Row | None:
     """The row of a machine, None where the lanes have not its physics."""
-    if not (NUMBA_IS_KNOWN and may_run_abreast(integrator.packed)):
-        return None
-    return row_of(integrator.packed, integrator.tolerance)
+    if integrator not in _ROWS:
+        fit = NUMBA_IS_KNOWN and may_run_abreast(integrator.packed)
+        _ROWS[integrator] = row_of(integrator.packed, integrator.tolerance) if fit else None
+    return _ROWS[integrator]
 
 
 def _alone(stretch: Stretch, kept: int | None) -> RunResult | NotConverged:
@@ -93,7 +109,6 @@ def _side_by_side(
     rows: list[Row], stretches: list[Stretch], kept: int | None
 ) -> list[RunResult | NotConverged]:
     """Runs of machines of one structure that are asked for the same."""
-    # The lanes are compiled only where they are asked for.
     from facegear.dynamics.abreast.lanes import make_lanes
     from facegear.dynamics.abreast.run import Queue, run_abreast
     from facegear.dynamics.abreast.sums import many_sums

@@ -78,8 +78,9 @@ def add_step(shape: Structure, lanes: Lanes) -> None:
         weight = multiply(length, splat(lanes.nodes[1, node]))
         store(lanes.ahead, 0, ahead)
         values(shape, lanes)
-        _add_coordinates(shape, lanes, weight)
+        _keep_coordinates(shape, lanes, node, weight)
         _add_contacts(shape, lanes, ahead, weight)
+    _add_products(shape, lanes)
     # Flanks are pulled most where they part, at the end of a step.
     _add_contacts(shape, lanes, length, splat(0.0))
     for m in range(shape.m):
@@ -101,16 +102,28 @@ def _start(shape: Structure, lanes: Lanes) -> None:
 
 
 @inlined
-def _add_coordinates(shape: Structure, lanes: Lanes, weight: Wide) -> None:
-    tally, pair = lanes.tally, 0
-    for k in range(shape.n):
+def _keep_coordinates(shape: Structure, lanes: Lanes, node: int, weight: Wide) -> None:
+    """Keep the coordinates at a node, from their origin, and the same times its weight."""
+    tally, n = lanes.tally, shape.n
+    for k in range(n):
         off = subtract(load(lanes.sample, k), load(tally.origin, k))
-        store(lanes.sample, k, off)
-        store(tally.coordinates, k, multiply_add(weight, off, load(tally.coordinates, k)))
-    for k in range(shape.n):
-        factor = multiply(weight, load(lanes.sample, k))
-        for other in range(k, shape.n):
-            total = multiply_add(factor, load(lanes.sample, other), load(tally.products, pair))
+        heavy = multiply(weight, off)
+        store(tally.off, node * n + k, off)
+        store(tally.heavy, node * n + k, heavy)
+        store(tally.coordinates, k, add(load(tally.coordinates, k), heavy))
+
+
+@inlined
+def _add_products(shape: Structure, lanes: Lanes) -> None:
+    """Add what the coordinates kept at all nodes give, each product read and written once."""
+    tally, n, pair = lanes.tally, shape.n, 0
+    for k in range(n):
+        for other in range(k, n):
+            total = load(tally.products, pair)
+            for node in range(lanes.nodes.shape[1]):
+                total = multiply_add(
+                    load(tally.heavy, node * n + k), load(tally.off, node * n + other), total
+                )
             store(tally.products, pair, total)
             pair += 1
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.courses import Course
 from facegear.dynamics.motion import State
-from facegear.dynamics.steady_state.simulate import SteadyState
+from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.sweep import Piece
 
 MIN_CHANGE = 0.1
@@ -17,7 +18,7 @@ ABRUPT = 3.0
 FLOOR = 1e-3
 """AC RMS below this fraction of the largest is not compared."""
 
-Respond = Callable[[float, State], SteadyState]
+Respond = Callable[[float, State], Course[SteadyState]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +79,10 @@ def suspects(piece: Piece) -> list[int]:
     return [int(i) for i in np.flatnonzero(abrupt.any(axis=1) & (largest > 0.0))]
 
 
-def refine(piece: Piece, position: int, respond: Respond, resolution: float) -> Jump:
+def refine(piece: Piece, position: int, respond: Respond, resolution: float) -> Course[Jump]:
     """Bisect between two speeds of a sweep, each time from the state on the branch that ends."""
     before, after = (_stored_side(piece, i) for i in (position, position + 1))
-    before, after = bracket(before, after, respond, resolution)
+    before, after = yield from bracket(before, after, respond, resolution)
     floor = np.full_like(before.ac_rms, 1e-300)
     ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
     mesh = int(np.argmax(np.abs(ratio)))
@@ -102,11 +103,12 @@ def _stored_side(piece: Piece, position: int) -> JumpSide:
 
 def bracket(
     before: JumpSide, after: JumpSide, respond: Respond, resolution: float
-) -> tuple[JumpSide, JumpSide]:
+) -> Course[tuple[JumpSide, JumpSide]]:
     """Halve the interval between two speeds with different responses down to `resolution`."""
     while abs(after.speed - before.speed) > resolution:
         middle = 0.5 * (before.speed + after.speed)
-        here = side(middle, respond(middle, before.state))
+        response = yield from respond(middle, before.state)
+        here = side(middle, response)
         if distance(here.ac_rms, before.ac_rms) <= distance(here.ac_rms, after.ac_rms):
             before = here
         else:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from facegear.dynamics.steady_state.simulate import SteadyState
+from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.whole_sweep import Direction
 
 PULLS = 1e-3

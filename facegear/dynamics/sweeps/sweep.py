@@ -2,21 +2,24 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.dynamics.courses import alone, side_by_side
+from facegear.dynamics.courses import Course, alone, side_by_side
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.simulate import Model, SteadyState, started, static_start
+from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.steady_state.simulate import Model, Started, started, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.transmission.loaded_modes import loaded_modes
 
+T = TypeVar("T")
 DEFLECTION = ("mean", "rms", "ac_rms", "minimum", "maximum", "rms_interval", "ac_rms_interval")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
-TOGETHER = 32
+TOGETHER = 64
 """Speeds whose motions are watched on side by side."""
 
 
@@ -130,11 +133,24 @@ def run_speeds(
     start: State | None,
     step: Callable[[], None] = lambda: None,
 ) -> Iterator[tuple[float, SteadyState]]:
-    """Steady states at speeds in the given order, the state carried over.
+    """Steady states at speeds in the given order, the state carried over."""
+    responses = carried_over(model, speeds, settings, start, Started.followed, step)
+    return zip(speeds.tolist(), responses, strict=True)
+
+
+def carried_over(
+    model: Model,
+    speeds: Array,
+    settings: Settings,
+    start: State | None,
+    follow: Callable[[Started], Course[T]],
+    step: Callable[[], None] = lambda: None,
+) -> Iterator[T]:
+    """What comes of the motions at speeds in the given order, the state carried over.
 
     What a motion hands on is known after its first watch: where it has settled that is a state of the motion
-    it has settled on, else the last one seen, as good as any other of an irregular motion. All that is left
-    to see of TOGETHER speeds is run side by side.
+    it has settled on, else the last one seen, as good as any other of an irregular motion. What is left to
+    see of TOGETHER speeds runs side by side.
     """
     state = static_start(model) if start is None else start
     for first in range(0, len(speeds), TOGETHER):
@@ -143,8 +159,7 @@ def run_speeds(
             motions.append(alone(started(model, float(speed), settings, state)))
             state = motions[-1].state
             step()
-        responses = side_by_side([motion.followed() for motion in motions])
-        yield from zip((motion.speed_rpm for motion in motions), responses, strict=True)
+        yield from side_by_side([follow(motion) for motion in motions])
 
 
 def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:

@@ -1,10 +1,11 @@
 """A whole sweep from its chunks: both directions, seams, refined jumps."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-from facegear.dynamics.steady_state.simulate import Model, simulate
+from facegear.dynamics.courses import Course, side_by_side
+from facegear.dynamics.steady_state.simulate import Model, simulating
 from facegear.dynamics.sweeps.assemble import Seam, assemble
 from facegear.dynamics.sweeps.jumps import Jump, refine, suspects
 from facegear.dynamics.sweeps.plan import SweepPlan
@@ -27,30 +28,31 @@ def whole_sweep(
     threads: int = 1,
     step: Callable[[], None] = lambda: None,
 ) -> dict[str, Direction]:
-    """Join the chunks of every direction and bracket their jumps to the plan's resolution."""
-    return {name: _direction(model, plan, name, parts, threads, step) for name, parts in chunks.items()}
+    """Join the chunks of every direction and bracket their jumps to the plan's resolution, side by side."""
+    whole = {name: assemble(model, plan, name, parts) for name, parts in chunks.items()}
 
-
-def _direction(
-    model: Model,
-    plan: SweepPlan,
-    name: str,
-    chunks: list[tuple[Piece, Piece]],
-    threads: int,
-    step: Callable[[], None],
-) -> Direction:
-    piece, seams = assemble(model, plan, name, chunks)
-
-    def bracket(position: int) -> Jump:
-        jump = refine(
+    def bracketed(piece: Piece, position: int) -> Course[Jump]:
+        jump = yield from refine(
             piece,
             position,
-            lambda speed, state: simulate(model, speed, plan.settings, state),
+            lambda speed, state: simulating(model, speed, plan.settings, state),
             plan.jump_resolution_rpm,
         )
         step()
         return jump
 
-    with ThreadPoolExecutor(max(threads, 1)) as pool:
-        jumps = [jump for jump in pool.map(bracket, suspects(piece)) if jump.abrupt]
-    return Direction(piece, seams, jumps)
+    where = [(name, position) for name, (piece, _) in whole.items() for position in suspects(piece)]
+    found = _on_threads([bracketed(whole[name][0], position) for name, position in where], threads)
+    abrupt = [(name, jump) for (name, _), jump in zip(where, found, strict=True) if jump.abrupt]
+    return {
+        name: Direction(piece, seams, [jump for of, jump in abrupt if of == name])
+        for name, (piece, seams) in whole.items()
+    }
+
+
+def _on_threads(courses: Sequence[Course[Jump]], threads: int) -> list[Jump]:
+    """What courses come to, dealt out to threads: the compiled part runs without the interpreter's lock."""
+    count = max(threads, 1)
+    with ThreadPoolExecutor(count) as pool:
+        dealt = list(pool.map(side_by_side, [courses[first::count] for first in range(count)]))
+    return [dealt[number % count][number // count] for number in range(len(courses))]

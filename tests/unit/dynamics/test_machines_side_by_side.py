@@ -13,11 +13,12 @@ from random_machines import frequency, machines, speeds
 from references import against, agrees
 from test_dynamics_hard_cases import CASES
 
-from facegear.dynamics.abreast.many import run_many
+from facegear.dynamics.abreast.many import run_many, run_stretches
 from facegear.dynamics.abreast.rows import may_run_abreast
 from facegear.dynamics.abreast.wide import WIDTH
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.simulate import build_model, static_start
+from facegear.dynamics.stretch import Stretch
 from facegear.errors import NotConverged
 from facegear.mesh_law.load_dependent import load_dependent_law
 from facegear.transmission.imperfections import perfect
@@ -135,3 +136,44 @@ def test_a_run_that_leaves_all_bounds_is_refused_beside_others():
     starts = [np.array([[1.0], [0.0]]) for _ in range(3)]
     with pytest.raises(NotConverged, match="beyond all bounds"):
         run_many(found, [*starts, np.full((2, 1), np.nan)], 2)
+
+
+ASKED = ("ends", "tangents", "samples", "fractions", "growth")
+
+
+def disturbance(one):
+    tangent = np.random.default_rng(3).normal(size=(1, 2, one.size))
+    return tangent / np.sqrt(((one.weights * tangent) ** 2).sum())
+
+
+@pytest.mark.parametrize("name", ["contact lost", "irregular", "damper in contact only", "backlash"])
+def test_a_disturbance_and_averages_beside_others_are_those_alone(name):
+    found, starts = integrators(name)
+    stretches = [
+        Stretch(one, start, periods, disturbance(one), samples=8, batches=2, growth=True)
+        for one, start, periods in zip(found, starts, (4, 2, 3), strict=True)
+    ]
+    for stretch, run in zip(stretches, run_stretches(stretches, fewest=1), strict=True):
+        alone, m, n = stretch.run(), stretch.integrator.rows, stretch.integrator.size
+        assert run.ends.shape == (stretch.periods, 2, n)
+        assert run.steps == alone.steps
+        for field in ASKED:
+            same(getattr(run, field), getattr(alone, field), 1e-6)
+        same(run.sums.products, np.triu(alone.sums.products[:, :n, :n]))
+        for field in ("origin", "coordinates"):
+            same(getattr(run.sums, field), getattr(alone.sums, field)[..., :n])
+        for field in ("level", "deflections", "squared", "forces", "minimum", "maximum"):
+            same(getattr(run.sums, field), getattr(alone.sums, field)[..., :m])
+        same(run.sums.pull, alone.sums.pull[:m], scale=alone.sums.forces.max() / stretch.periods)
+
+
+def same(found, expected, within=SAME, scale=0.0):
+    assert np.abs(found - expected).max() <= within * max(np.abs(expected).max(), scale)
+
+
+def test_of_machines_beside_others_only_the_one_that_leaves_all_bounds_fails():
+    one = Integrator(backlash_oscillator(0.75), 0.75)
+    starts = [np.array([[1.0], [0.0]]), np.full((2, 1), np.nan), np.array([[1.1], [0.0]])]
+    runs = run_stretches([Stretch(one, start, 2) for start in starts], fewest=1)
+    assert [isinstance(run, NotConverged) for run in runs] == [False, True, False]
+    assert np.abs(runs[2].ends - one.run(starts[2], 2).ends).max() < SAME

@@ -1,0 +1,156 @@
+"""A steady state, and the numbers that are taken from it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from facegear.arrays import Array, ComplexArray
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.system import System
+from facegear.dynamics.motion import Motion, State
+from facegear.dynamics.steady_state.averages import Averages, Moments
+from facegear.dynamics.steady_state.mesh_samples import (
+    by_mesh,
+    each_deflection,
+    mesh_forces,
+    mesh_fractions,
+    past_law,
+)
+from facegear.dynamics.steady_state.orbits import Orbit
+from facegear.dynamics.steady_state.watching import Watched
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """The response over K = periods * per_period samples, evenly spaced.
+
+    `displacements(machine)` gives all DOF.
+
+    Attributes
+    ----------
+    system
+        What was integrated.
+    motion
+        Class of motion.
+    period
+        In mesh periods where the motion is periodic, else 0.
+    frequency
+        Angular mesh frequency, rad/s.
+    residual
+        Change over the period, over the length scale.
+    periods, per_period
+        Mesh periods (the orbit's own period, else the window) and samples in each.
+    deflections : (K, meshes)
+        With e(t) taken off, m.
+    coordinates : (K, n)
+        Of the system.
+    averages
+        Over the whole response.
+    fractions : (3, meshes)
+        Of time open, on the drive flank, on the back flank.
+    orbit
+        The periodic orbit where it was refined on its own.
+    exponent
+        Largest Lyapunov exponent per mesh period with its 95 % half-width, for motions that are not periodic.
+    periods_run
+        For how many mesh periods the motion was watched in all before it was named so.
+    looks
+        Mesh periods of the motion that this start and another one came to (0: none), where the two differ
+        and the motion is called not settled for that reason alone; else None.
+    state
+        At the end.
+    """
+
+    system: System
+    motion: Motion
+    period: int
+    frequency: float
+    residual: float
+    periods: int
+    per_period: int
+    deflections: Array
+    coordinates: Array
+    averages: Averages
+    fractions: Array
+    orbit: Orbit | None
+    exponent: tuple[float, float] | None
+    periods_run: int
+    looks: tuple[int, int] | None
+    state: State
+
+    @property
+    def label(self) -> str:
+        """`period-n` or the class of motion."""
+        return f"period-{self.period}" if self.motion is Motion.PERIODIC else self.motion.value
+
+    @property
+    def multipliers(self) -> ComplexArray | None:
+        """Floquet multipliers (2 n,) of the orbit."""
+        return None if self.orbit is None else self.orbit.multipliers
+
+    @property
+    def liouville(self) -> float | None:
+        """As of the orbit."""
+        return None if self.orbit is None else self.orbit.liouville
+
+    @cached_property
+    def forces(self) -> Array:
+        """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
+        return mesh_forces(self.system, self._each, self.per_period)
+
+    @cached_property
+    def _each(self) -> Array:
+        """Deflections of each mesh or flank."""
+        if not self.system.two_flanks:
+            return self.deflections
+        return each_deflection(self.system, self.coordinates, self.per_period)
+
+    @property
+    def past_law(self) -> Array:
+        """Fraction of samples (meshes,) at which a mesh is pressed in past the last level of its law."""
+        if self.system.law.straight:
+            return np.zeros(self.deflections.shape[1])
+        return past_law(self.system, self._each)
+
+    @property
+    def moments(self) -> Moments:
+        """Mean, RMS, extremes of the mesh deflections, m, exact for the steps' polynomials."""
+        return self.averages.meshes(self.motion is Motion.PERIODIC)
+
+    @property
+    def mean_forces(self) -> Array:
+        """Mean and mean magnitude (2, meshes) of the elastic mesh forces, N."""
+        return self.averages.force
+
+    @property
+    def phases(self) -> Array:
+        """Time of each sample in mesh periods, shape (K,)."""
+        return np.arange(self.periods * self.per_period) / self.per_period
+
+
+def response_of(
+    system: System, integrator: Integrator, seen: Watched, looks: tuple[int, int] | None
+) -> SteadyState:
+    """The response that a run has been watched for, and why its class does not hold, if so."""
+    settled, window, exponent = seen.settled, seen.window, seen.exponent
+    each = each_deflection(system, window.samples, window.per_period)
+    averages, square = window.averages, integrator.frequency**2
+    return SteadyState(
+        system=system,
+        motion=seen.motion,
+        period=settled.period,
+        frequency=integrator.frequency,
+        residual=settled.residual,
+        periods=window.periods,
+        per_period=window.per_period,
+        deflections=by_mesh(system, each),
+        coordinates=window.samples,
+        averages=replace(averages, force=averages.force * square, pull=averages.pull * square),
+        fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
+        orbit=settled.orbit,
+        exponent=(exponent.value, exponent.half_width) if exponent else None,
+        periods_run=seen.periods_run,
+        looks=looks,
+        state=integrator.by_time(window.ends[-1]),
+    )

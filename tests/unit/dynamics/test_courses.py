@@ -1,0 +1,63 @@
+"""A course that asks for stretches of a motion comes to the same by itself and beside others."""
+
+import numpy as np
+import pytest
+from oscillators import backlash_oscillator
+
+from facegear.dynamics.abreast.many import FEWEST
+from facegear.dynamics.courses import alone, side_by_side
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.settle import settle, settling
+from facegear.dynamics.stretch import Stretch
+from facegear.errors import NotConverged
+
+SETTINGS = Settings(tolerance=1e-10, periodic_residual=1e-9)
+MANY = FEWEST + 2
+
+
+def oscillators():
+    """Integrators of an oscillator at speeds a little apart, and starts (2, 1)."""
+    speeds = np.linspace(0.72, 0.8, MANY)
+    found = [Integrator(backlash_oscillator(speed), speed, SETTINGS.tolerance) for speed in speeds]
+    return found, [np.array([[1.2 + 0.01 * i], [0.1]]) for i in range(MANY)]
+
+
+def test_runs_settle_beside_others_where_each_settles_alone():
+    found, starts = oscillators()
+    together = side_by_side([settling(*pair, SETTINGS) for pair in zip(found, starts, strict=True)])
+    for one, start, settled in zip(found, starts, together, strict=True):
+        expected = settle(one, start, SETTINGS)
+        assert settled.period == expected.period > 0
+        assert settled.periods_run == expected.periods_run
+        assert np.abs(settled.state - expected.state).max() < 1e-9
+
+
+def asking(integrator, start, periods):
+    """A course of stretches of one period each; what fails ends it with the number of those run before."""
+    for number in range(periods):
+        try:
+            start = (yield Stretch(integrator, start, 1)).state
+        except NotConverged:
+            return number
+        if number == 1:
+            start = start * np.nan
+    return start
+
+
+def test_a_stretch_that_fails_fails_in_its_own_course():
+    found, starts = oscillators()
+    ended = side_by_side([asking(one, start, 2) for one, start in zip(found[1:], starts[1:], strict=True)])
+    assert all(np.isnan(state).all() for state in ended)
+    courses = [asking(found[0], starts[0], 3), *(settling(one, starts[0], SETTINGS) for one in found[1:])]
+    failed, *settled = side_by_side(courses)
+    assert failed == 2
+    assert all(each.period for each in settled)
+    assert alone(asking(found[0], starts[0], 3)) == 2
+
+
+def test_what_a_course_does_not_catch_is_raised():
+    found, starts = oscillators()
+    beyond = [starts[0] * np.nan, *starts[1:]]
+    with pytest.raises(NotConverged, match="beyond all bounds"):
+        side_by_side([settling(*pair, SETTINGS) for pair in zip(found, beyond, strict=True)])
