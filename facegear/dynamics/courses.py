@@ -29,7 +29,7 @@ def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
 
     Raises NotConverged if any of the courses does.
     """
-    found: dict[int, T] = {}
+    ended: dict[int, T] = {}
     asked: dict[int, Stretch] = {}
     answers: dict[int, RunResult | NotConverged | None] = dict.fromkeys(range(len(courses)))
     while answers:
@@ -38,9 +38,9 @@ def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
             try:
                 asked[number] = _next_of(courses[number], answer)
             except StopIteration as end:
-                found[number] = end.value
+                ended[number] = end.value
         answers = dict(zip(asked, run_stretches(list(asked.values())), strict=True))
-    return [found[number] for number in range(len(courses))]
+    return [ended[number] for number in range(len(courses))]
 
 
 def _next_of(course: Course[T], answer: RunResult | NotConverged | None) -> Stretch:

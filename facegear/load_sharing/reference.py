@@ -84,8 +84,8 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
         lambda motion: followed(model, motion, settings, options),
         progress.step,
     )
-    for speed, found in zip(speeds, responses, strict=True):
-        response = densely_sampled(found)
+    for speed, motion in zip(speeds, responses, strict=True):
+        response = densely_sampled(motion)
         for group in load_groups(machine.layout):
             sharing_average = group_average(response, group, options.confidence)[2]
             rows.append(

@@ -45,8 +45,8 @@ class Lanes(NamedTuple):
     values (P,): the machines' rows. y, deflection, law, error, load (rows, coordinates, contacts or kinds):
     Taylor coefficients. force, side, level, active, acting, edge (contacts,): as in the single integrator's
     Work, with one piece of the law. scaled (rows,): terms of one contact's deflection over the step, terms:
-    of its way from a level. first: fraction of the step up to a switch. found (2 contacts, rows): the ways
-    from a level that change their sign within the step, found_changes how often, found_standing whether (1)
+    of its way from a level. first: fraction of the step up to a switch. way_terms (2 contacts, rows): ways
+    from a level that change their sign within the step, way_changes how often, way_standing whether (1)
     the zero at the start is divided out, ways (): how many a lane has, wanted: which lanes have one more.
     phase in the period and length of the step, rad, and longest that it may be; ahead: from its start to a
     sample, sample (coordinates,). turn, turned (rows, coordinates or contacts): of a disturbance and its
@@ -75,9 +75,9 @@ class Lanes(NamedTuple):
     length: Array
     ahead: Array
     first: Array
-    found: Array
-    found_changes: Array
-    found_standing: Array
+    way_terms: Array
+    way_changes: Array
+    way_standing: Array
     ways: Integers
     wanted: Array
     longest: Array
@@ -117,9 +117,9 @@ def make_lanes(structure: Structure, order: int, nodes: Array) -> Lanes:
         length=aligned(WIDTH),
         ahead=aligned(WIDTH),
         first=aligned(WIDTH),
-        found=aligned(2 * m, rows, WIDTH),
-        found_changes=aligned(2 * m, WIDTH),
-        found_standing=aligned(2 * m, WIDTH),
+        way_terms=aligned(2 * m, rows, WIDTH),
+        way_changes=aligned(2 * m, WIDTH),
+        way_standing=aligned(2 * m, WIDTH),
         ways=np.zeros(WIDTH, dtype=np.int64),
         wanted=aligned(WIDTH),
         longest=aligned(WIDTH),

@@ -116,7 +116,7 @@ def _side_by_side(
     shape, count, first = rows[0].structure, len(rows), stretches[0]
     n, m, disturbed = shape.n, shape.m, first.tangents is not None
     periods = np.array([stretch.periods for stretch in stretches])
-    most = int(periods.max())
+    longest = int(periods.max())
     queue = Queue(
         rows=np.array([row.values for row in rows]),
         starts=np.array([stretch.state for stretch in stretches]),
@@ -125,9 +125,9 @@ def _side_by_side(
         longest=np.array([_longest_step(stretch) for stretch in stretches]),
         per_period=first.samples,
         batches=first.batches,
-        ends=np.empty((count, most if kept is None else min(kept, most), 2, n)),
-        samples=np.empty((count, most * first.samples, n)),
-        growth=np.empty((count if disturbed and first.growth else 0, most)),
+        ends=np.empty((count, longest if kept is None else min(kept, longest), 2, n)),
+        samples=np.empty((count, longest * first.samples, n)),
+        growth=np.empty((count if disturbed and first.growth else 0, longest)),
         sums=many_sums(count, n, m, first.batches),
         steps=np.zeros(count, dtype=np.int64),
         status=np.zeros(count, dtype=np.int64),

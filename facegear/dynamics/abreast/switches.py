@@ -88,10 +88,10 @@ def _look_at(lanes: Lanes, level: Wide, standing: Wide, able: Wide, size: Wide) 
     for lane in range(WIDTH):
         if (candidates >> lane) & 1:
             way = lanes.ways[lane]
-            lanes.found_changes[way, lane] = lanes.wanted[lane]
-            lanes.found_standing[way, lane] = float((stands >> lane) & 1)
+            lanes.way_changes[way, lane] = lanes.wanted[lane]
+            lanes.way_standing[way, lane] = float((stands >> lane) & 1)
             for i in range(lanes.order + 1):
-                lanes.found[way, i, lane] = lanes.terms[i, lane]
+                lanes.way_terms[way, i, lane] = lanes.terms[i, lane]
             lanes.ways[lane] = way + 1
 
 
@@ -101,18 +101,18 @@ def _stop_at_first(lanes: Lanes) -> None:
 
     Lanes pass a level at different contacts: one way of each lane at a time leaves hardly a lane idle.
     """
-    most = 0
+    count = 0
     for lane in range(WIDTH):
-        most = max(most, lanes.ways[lane])
-    for way in range(most):
+        count = max(count, lanes.ways[lane])
+    for way in range(count):
         for lane in range(WIDTH):
             lanes.wanted[lane] = 1.0 if lanes.ways[lane] > way else 0.0
         wanted = load(lanes.wanted, 0)
-        several = subtract(load(lanes.found_changes, way), splat(1.5))
+        several = subtract(load(lanes.way_changes, way), splat(1.5))
         root = _refined(lanes, way, where_positive(several, splat(0.0), wanted))
         # Standing on the level, what follows at once was decided by the acceleration already.
         early = subtract(splat(SHORTEST), multiply(root, load(lanes.length, 0)))
-        spurious = where_positive(load(lanes.found_standing, way), early, splat(-1.0))
+        spurious = where_positive(load(lanes.way_standing, way), early, splat(-1.0))
         root = where_positive(spurious, splat(NEVER), root)
         store(lanes.first, 0, smaller(load(lanes.first, 0), root))
         alone = positive_lanes(where_positive(spurious, wanted, where_positive(several, wanted, splat(0.0))))
@@ -159,7 +159,7 @@ def _refined(lanes: Lanes, way: int, wanted: Wide) -> Wide:
     """The one zero before `first` of a way of wanted lanes, NEVER of the others and where it comes
     later: Newton's method kept inside a shrinking bracket.
     """
-    terms, at = lanes.found, way * (lanes.order + 1)
+    terms, at = lanes.way_terms, way * (lanes.order + 1)
     low, high = splat(0.0), load(lanes.first, 0)
     at_low = load(terms, at)
     at_high = load(terms, at + lanes.order)
@@ -201,8 +201,8 @@ def _refined(lanes: Lanes, way: int, wanted: Wide) -> Wide:
 def _look_alone(lanes: Lanes, way: int, lane: int) -> None:
     """The first of several zeros of a way of one lane, by bounds that are halved."""
     for i in range(lanes.order + 1):
-        lanes.polynomial[i] = lanes.found[way, i, lane]
+        lanes.polynomial[i] = lanes.way_terms[way, i, lane]
     root = first_root(lanes.polynomial, lanes.order, lanes.conversion, lanes.subdivision)
-    if lanes.found_standing[way, lane] > 0.0 and root * lanes.length[lane] < SHORTEST:
+    if lanes.way_standing[way, lane] > 0.0 and root * lanes.length[lane] < SHORTEST:
         root = root_after(lanes.polynomial, lanes.order, root, lanes.conversion, lanes.subdivision)
     lanes.first[lane] = min(lanes.first[lane], root)

@@ -42,8 +42,8 @@ def whole_sweep(
         return jump
 
     where = [(name, position) for name, (piece, _) in whole.items() for position in suspects(piece)]
-    found = _on_threads([bracketed(whole[name][0], position) for name, position in where], threads)
-    abrupt = [(name, jump) for (name, _), jump in zip(where, found, strict=True) if jump.abrupt]
+    jumps = _on_threads([bracketed(whole[name][0], position) for name, position in where], threads)
+    abrupt = [(name, jump) for (name, _), jump in zip(where, jumps, strict=True) if jump.abrupt]
     return {
         name: Direction(piece, seams, [jump for of, jump in abrupt if of == name])
         for name, (piece, seams) in whole.items()
