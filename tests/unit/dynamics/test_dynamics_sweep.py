@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 from scipy.signal import find_peaks
 
+from facegear.dynamics.courses import alone
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate, simulate_many
+from facegear.dynamics.steady_state.simulate import build_model, simulate, simulate_many, started
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import maxima, resonance
 from facegear.dynamics.sweeps.jump_margin import jump_margin
@@ -135,6 +136,21 @@ def test_rms_of_periodic_motions_does_not_move_when_tolerance_is_halved_and_dwel
             piece.deflection_ac_rms[position],
             atol=1e-3 * piece.deflection_ac_rms[position].max(),
         )
+
+
+def test_each_speed_starts_where_the_first_watch_of_the_one_before_has_ended(model):
+    hasty = replace(SETTINGS, settle=64, window=32)
+    speeds, state = np.array([4300.0, 15_000.0, 15_050.0]), None
+    for speed, (same, response) in zip(speeds, run_speeds(model, speeds, hasty, None), strict=True):
+        motion = alone(started(model, speed, hasty, state))
+        expected, state = alone(motion.followed()), motion.state
+        assert same == speed
+        assert response.label == expected.label
+        np.testing.assert_array_equal(response.deflections, expected.deflections)
+        if response.period:
+            np.testing.assert_array_equal(response.state.displacement, state.displacement)
+        else:
+            assert not np.array_equal(response.state.displacement, state.displacement)
 
 
 def test_tables_name_every_mesh_and_unit(model, whole):
