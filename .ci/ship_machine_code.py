@@ -12,12 +12,13 @@ from pathlib import Path
 
 FIRST_CALLS = """
 import facegear
-from facegear.dynamics.steady_state.prepare import prepare
+from facegear.dynamics.steady_state.prepare import prepare, prepare_abreast
 
 gearbox = facegear.example()
 for answer in ("modes", "statics", "response", "load_sharing", "root_stress"):
     getattr(gearbox, answer)()
 prepare(load_dependent=False)
+prepare_abreast()
 """
 
 

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 
+from facegear.dynamics.abreast.many import FEWEST, run_many
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import FlankRubbing, System
 from facegear.mesh_law.force_table import ForceTable
@@ -31,6 +32,13 @@ def prepare(clearance: bool = False, friction: bool = False, load_dependent: boo
     Integrator(_smallest(clearance, friction, load_dependent), 1.0, 1e-2, 6).run(
         np.zeros((2, 1)), 1, fine=True
     )
+
+
+@cache
+def prepare_abreast() -> None:
+    """The same for machines that run side by side."""
+    one = Integrator(_smallest(False, False, False), 1.0, 1e-2, 6)
+    run_many([one] * FEWEST, [np.zeros((2, 1))] * FEWEST, 1)
 
 
 def _smallest(clearance: bool, friction: bool, load_dependent: bool = False) -> System:
