@@ -177,3 +177,114 @@ def newton(
             break
         active[:] = following
     return 0, force, 0.0, 0.0, 0.0
+
+
+@compiled
+def solved(
+    compliance: Array,
+    gap: Array,
+    lever_arm: Array,
+    torque: float,
+    start: Mask,
+    limits: tuple[int, float],
+) -> tuple[int, Array, float, float, float]:
+    """`newton` and, where that fails, an exchange of one point at a time; steps are 0 if both fail."""
+    begin = start
+    if not _drives(start, lever_arm):
+        begin = _first_guess(gap, lever_arm)
+    solution = newton(compliance, gap, lever_arm, torque, begin, limits)
+    if solution[0]:
+        return solution
+    pressing = feasible(gap, lever_arm, torque, solution[1])
+    return _exchanged(compliance, gap, lever_arm, torque, pressing, limits)
+
+
+@for_callers()
+def _drives(active: Mask, lever_arm: Array) -> bool:
+    drives = False
+    for i in range(active.size):
+        drives |= active[i] and lever_arm[i] > 0.0
+    return drives
+
+
+@for_callers()
+def _turns(gap: Array, lever_arm: Array) -> Array:
+    """Turns (n,) that close the gaps, inf where none does."""
+    turns = np.full(gap.size, np.inf)
+    for i in range(gap.size):
+        if lever_arm[i] > 0.0:
+            turns[i] = gap[i] / lever_arm[i]
+    return turns
+
+
+@for_callers()
+def _first_guess(gap: Array, lever_arm: Array) -> Mask:
+    """The quarter of the points whose gaps close first."""
+    turns = _turns(gap, lever_arm)
+    rising = np.sort(turns)
+    last = 0
+    for i in range(rising.size):
+        last += rising[i] < np.inf
+    return turns <= rising[(last - 1) // 4]
+
+
+@compiled
+def feasible(gap: Array, lever_arm: Array, torque: float, force: Array) -> Array:
+    """Forces without tension that carry the torque: those given, or one where the gap closes first."""
+    pressing = np.maximum(force, 0.0)
+    carried = (lever_arm * pressing).sum()
+    if carried > 0.0:
+        return pressing * (torque / carried)
+    first = int(np.argmin(_turns(gap, lever_arm)))
+    alone = np.zeros(gap.size)
+    alone[first] = torque / lever_arm[first]
+    return alone
+
+
+@compiled
+def _exchanged(
+    compliance: Array,
+    gap: Array,
+    lever_arm: Array,
+    torque: float,
+    start: Array,
+    limits: tuple[int, float],
+) -> tuple[int, Array, float, float, float]:
+    """One point at a time from feasible forces, energy falling at every step, hence finite. As `newton`."""
+    force, active = start.copy(), start > 0.0
+    for step in range(exchanges(gap.size)):
+        touching = bonded(compliance, gap, lever_arm, torque, active)
+        index, rotation = touching[0], touching[5]
+        target = np.zeros(gap.size)
+        _put(touching[4], index, target)
+        fraction = np.inf
+        for i in index:
+            if target[i] <= 0.0:
+                fraction = min(fraction, force[i] / (force[i] - target[i]))
+        if fraction < np.inf:
+            force += fraction * (target - force)
+            for i in index:
+                if target[i] <= 0.0 and force[i] <= 1e-14 * force.max():
+                    active[i] = False
+            continue
+        force = target
+        distance = distances(compliance, gap, lever_arm, force, rotation)
+        turned = nearest = 0.0
+        worst = -1
+        for i in range(gap.size):
+            turned = max(turned, abs(rotation * lever_arm[i]))
+            if active[i]:
+                nearest = max(nearest, abs(gap[i]))
+            elif worst < 0 or distance[i] < distance[worst]:
+                worst = i
+        if worst < 0 or distance[worst] >= -limits[1] * (turned + nearest):
+            force, rotation, residual = refined(compliance, gap, lever_arm, torque, touching)
+            return limits[0] + step, force, rotation, touching[6], residual
+        active[worst] = True
+    return 0, force, 0.0, 0.0, 0.0
+
+
+@for_callers()
+def exchanges(count: int) -> int:
+    """Exchanges of single points after which many points count as not solved."""
+    return 20 * count + 100

@@ -1,6 +1,6 @@
 """Averages over points under hats, and the nodal loads that unit forces spread by them make; compiled."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,10 +29,6 @@ class NodalLoads:
 
     rows: Rows
     nodes: int
-
-    def only(self, keep: Mask) -> "NodalLoads":
-        """Those of the rows marked (m,)."""
-        return replace(self, rows=rows_of(*self.rows, keep))
 
     def by(self, forces: Array) -> Array:
         """Forces (nodes,) N on the nodes by forces (m,) N."""
@@ -93,40 +89,60 @@ def _by(pointer: Integers, index: Integers, weight: Array, forces: Array, nodes:
     return total
 
 
-@inlined
-def _facing(points: HatPoints) -> Mask:
-    on = np.empty(points.gap.size, np.bool_)
-    for q in range(on.size):
-        sum_of_all = points.pinion[q, 0] + points.pinion[q, 1] + points.gear[q, 0] + points.gear[q, 1]
-        on[q] = np.isfinite(points.gap[q]) and np.isfinite(sum_of_all)
-    return on
+class Hats(NamedTuple):
+    """Hats (m,) of the pairs of teeth of a position that may touch, pair by pair.
+
+    `pair` (m,) numbers them; lattice `node` (m,) of each, gap (m,) m, lever_arm (m,) m, whether it presses on
+    a `fillet` (m,); `rows`: averages over the points of all pairs.
+    """
+
+    pair: Integers
+    node: Integers
+    gap: Array
+    lever_arm: Array
+    fillet: Mask
+    rows: Rows
 
 
 @inlined
-def _hat_averages(points: HatPoints, min_area: Array) -> tuple[Rows, Integers]:
-    """Averages by area over the points under each hat, and the hats (m,) of which enough is covered."""
-    hats, values, area, on = points.hats, points.values, points.area, _facing(points)
-    covered, count = np.zeros(min_area.size), np.zeros(min_area.size, np.int64)
-    for q in range(hats.shape[0]):
-        for h in range(hats.shape[1] if on[q] else 0):
-            if values[q, h] != 0.0:
-                covered[hats[q, h]] += values[q, h] * area[q]
-                count[hats[q, h]] += 1
-    chosen = np.flatnonzero(covered > min_area)
-    pointer = np.zeros(chosen.size + 1, np.int64)
-    pointer[1:] = np.cumsum(count[chosen])
-    slot = np.full(min_area.size, -1)
-    for m in range(chosen.size):
-        slot[chosen[m]] = pointer[m]
-    index, weight = np.empty(pointer[-1], np.int64), np.empty(pointer[-1])
-    for q in range(hats.shape[0]):
-        for h in range(hats.shape[1] if on[q] else 0):
-            hat = hats[q, h]
-            if values[q, h] != 0.0 and slot[hat] >= 0:
-                index[slot[hat]] = q
-                weight[slot[hat]] = values[q, h] * area[q] / covered[hat]
-                slot[hat] += 1
-    return (pointer, index, weight), chosen
+def _facing(points: HatPoints, q: int) -> bool:
+    sum_of_all = points.pinion[q, 0] + points.pinion[q, 1] + points.gear[q, 0] + points.gear[q, 1]
+    return bool(np.isfinite(points.gap[q] + sum_of_all))
+
+
+@inlined
+def _hat_averages(points: HatPoints, starts: Integers, min_area: Array) -> tuple[Rows, Integers]:
+    """Averages by area over the points under each hat, and the hats (m,) of which enough is covered, those of
+    pair k numbered from k times the number of hats on.
+    """
+    hats, values, area = points.hats, points.values, points.area
+    size, pairs = min_area.size, starts.size - 1
+    covered, count = np.zeros(pairs * size), np.zeros(pairs * size, np.int64)
+    on = np.empty(area.size, np.bool_)
+    for pair in range(pairs):
+        for q in range(starts[pair], starts[pair + 1]):
+            on[q] = _facing(points, q)
+            for h in range(hats.shape[1] if on[q] else 0):
+                if values[q, h] != 0.0:
+                    covered[pair * size + hats[q, h]] += values[q, h] * area[q]
+                    count[pair * size + hats[q, h]] += 1
+    chosen, slot = np.empty(covered.size, np.int64), np.full(covered.size, -1)
+    pointer, filled = np.zeros(covered.size + 1, np.int64), 0
+    for hat in range(covered.size):
+        if covered[hat] > min_area[hat % size]:
+            chosen[filled], slot[hat] = hat, pointer[filled]
+            pointer[filled + 1] = pointer[filled] + count[hat]
+            filled += 1
+    index, weight = np.empty(pointer[filled], np.int64), np.empty(pointer[filled])
+    for pair in range(pairs):
+        for q in range(starts[pair], starts[pair + 1]):
+            for h in range(hats.shape[1] if on[q] else 0):
+                hat = pair * size + hats[q, h]
+                if values[q, h] != 0.0 and slot[hat] >= 0:
+                    index[slot[hat]] = q
+                    weight[slot[hat]] = values[q, h] * area[q] / covered[hat]
+                    slot[hat] += 1
+    return (pointer[: filled + 1], index, weight), chosen[:filled]
 
 
 @inlined
@@ -144,21 +160,21 @@ def _nearest_node(rows: Rows, row: int, at: Array, columns: int) -> int:
 @compiled
 def closing(
     points: HatPoints,
+    starts: Integers,
     min_area: Array,
     first: int,
     shape: tuple[int, int],
     flank_ends: tuple[float, float],
     limit: float,
-) -> tuple[Rows, Integers, Array, Array, Mask]:
-    """The hats that a turn by `limit` (rad) closes: averages over points, lattice node (m,) of each, gap
-    (m,), lever arm (m,), and whether it presses on a fillet (m,).
+) -> Hats:
+    """The hats that a turn by `limit` (rad) closes, of pairs whose points begin at `starts` (p + 1,).
 
-    The hats from `first` on are those of the nodes of the lattice of that shape, before and after them those
-    of edges. flank_ends: the refined rows beyond which the fillets of both gears begin.
+    Of each pair the hats from `first` on are those of the nodes of the lattice of that shape, before and
+    after them those of edges. flank_ends: the refined rows beyond which the fillets of both gears begin.
     """
-    rows, chosen = _hat_averages(points, min_area)
+    rows, chosen = _hat_averages(points, starts, min_area)
     pointer, index, weight = rows
-    node = np.empty(chosen.size, np.int64)
+    pair, node = chosen // min_area.size, chosen % min_area.size - first
     gap, lever_arm = np.zeros(chosen.size), np.zeros(chosen.size)
     fillet, near = np.zeros(chosen.size, np.bool_), np.zeros(chosen.size, np.bool_)
     for i in range(chosen.size):
@@ -171,11 +187,10 @@ def closing(
                 beyond += w
         fillet[i] = beyond > 0.5
         near[i] = gap[i] < limit * lever_arm[i]
-        node[i] = chosen[i] - first
-        if not 0 <= node[i] < shape[0] * shape[1]:
+        if near[i] and not 0 <= node[i] < shape[0] * shape[1]:
             node[i] = _nearest_node(rows, i, points.pinion, shape[1])
     kept = rows_of(pointer, index, weight, near)
-    return kept, node[near], gap[near], lever_arm[near], fillet[near]
+    return Hats(pair[near], node[near], gap[near], lever_arm[near], fillet[near], kept)
 
 
 class Faces(NamedTuple):
@@ -189,47 +204,57 @@ class Faces(NamedTuple):
 
 
 @compiled
-def _spread(rows: Rows, at: Array, faces: Faces) -> Rows:
-    """Rows over points at lattice coordinates (q, 2) as rows over the nodes of faces."""
+def spread(rows: Rows, which: Integers, at: Array, faces: Faces) -> Rows:
+    """Rows `which` (r,) over points at lattice coordinates (q, 2) as rows (r,) over the nodes of faces."""
     shape, steps = faces.shape, faces.steps
     pointer, index, weight = rows
     width, columns = steps.shape[0], shape[1]
-    base, values = functions_at(index, at, faces)
-    nodes, load = np.empty(width * index.size, np.int64), np.empty(width * index.size)
-    ends, slot = np.zeros(pointer.size, np.int64), np.full(shape[0] * columns, -1)
-    offset, filled = steps[:, 0] * columns + steps[:, 1], 0
-    for row in range(pointer.size - 1):
-        first = filled
+    base, values = functions_at(rows, which, at, faces)
+    offset, room = steps[:, 0] * columns + steps[:, 1], 0
+    for row in which:
+        room += width * (pointer[row + 1] - pointer[row])
+    nodes, load = np.empty(room, np.int64), np.empty(room)
+    ends, slot = np.zeros(which.size + 1, np.int64), np.full(shape[0] * columns, -1)
+    on_face, filled = np.zeros(width), 0
+    for number in range(which.size):
+        row, first = which[number], filled
         for k in range(pointer[row], pointer[row + 1]):
             point, w = index[k], weight[k]
             for a in range(width):
-                node = base[point] + offset[a]
-                at_node = slot[node]
-                if at_node < first:
-                    at_node = slot[node] = filled
-                    nodes[filled], load[filled] = node, 0.0
-                    filled += 1
-                load[at_node] += w * values[point, a]
-        ends[row + 1] = filled
+                on_face[a] += w * values[point, a]
+            if k + 1 == pointer[row + 1] or base[index[k + 1]] != base[point]:
+                for a in range(width):
+                    node = base[point] + offset[a]
+                    at_node = slot[node]
+                    if at_node < first:
+                        at_node = slot[node] = filled
+                        nodes[filled], load[filled] = node, 0.0
+                        filled += 1
+                    load[at_node] += on_face[a]
+                    on_face[a] = 0.0
+        ends[number + 1] = filled
     return ends, nodes[:filled].copy(), load[:filled].copy()
 
 
 @inlined
-def functions_at(index: Integers, at: Array, faces: Faces) -> tuple[Integers, Array]:
-    """First node (q,) of the face that each point in `index` lies on, -1 of other points, and the face's
-    functions (q, a) there.
+def functions_at(rows: Rows, which: Integers, at: Array, faces: Faces) -> tuple[Integers, Array]:
+    """First node (q,) of the face that each point of the rows `which` lies on, -1 of other points, and the
+    face's functions (q, a) there.
     """
     scale, shape, steps = faces
-    size = steps.max()
+    pointer, index, _ = rows
+    size, columns = steps.max(), shape[1]
     base, values = np.full(at.shape[0], -1), np.empty((at.shape[0], steps.shape[0]))
     value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
     corner = np.empty(2, np.int64)
-    for point in index:
-        if base[point] < 0:
-            locate(at[point, 0] / scale[0], at[point, 1] / scale[1], shape, size, corner, value, slope)
-            base[point] = corner[0] * shape[1] + corner[1]
-            for a in range(steps.shape[0]):
-                values[point, a] = value[0, steps[a, 0]] * value[1, steps[a, 1]]
+    for row in which:
+        for k in range(pointer[row], pointer[row + 1]):
+            point = index[k]
+            if base[point] < 0:
+                locate(at[point, 0] / scale[0], at[point, 1] / scale[1], shape, size, corner, value, slope)
+                base[point] = corner[0] * columns + corner[1]
+                for a in range(steps.shape[0]):
+                    values[point, a] = value[0, steps[a, 0]] * value[1, steps[a, 1]]
     return base, values
 
 
@@ -277,4 +302,6 @@ class Lattice:
     def loads(self, rows: Rows, at: Array, refined: bool = True) -> NodalLoads:
         """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2)."""
         faces = self.faces(refined)
-        return NodalLoads(_spread(rows, at, faces), faces.shape[0] * faces.shape[1])
+        return NodalLoads(
+            spread(rows, np.arange(rows[0].size - 1), at, faces), faces.shape[0] * faces.shape[1]
+        )

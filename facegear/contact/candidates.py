@@ -13,14 +13,13 @@ class Candidates:
     """Loads of one tooth pair that may act: a unit force each, spread over a hat's covered area or along an
     edge.
 
-    hats (m,) lattice nodes and their `column` along the width; gap (m,) m and lever_arm (m,) m averaged over
+    hats (m,) lattice nodes; gap (m,) m and lever_arm (m,) m averaged over
     the hat; whether it presses on a `fillet` (m,) of either gear; `averages` over the points under each hat,
     which stand at refined coordinates `at` (q, 2) on the `lattices` of pinion and gear.
     """
 
     tooth: int
     hats: Integers
-    column: Integers
     gap: Array
     lever_arm: Array
     fillet: Mask
@@ -35,12 +34,6 @@ class Candidates:
             self._made[side, refined] = self.lattices[side].loads(self.averages, self.at[side], refined)
         return self._made[side, refined]
 
-    @property
-    def overlap(self) -> float:
-        """Turn (rad) of the pinion that would part the teeth where they stand in each other; 0 if nowhere."""
-        forward = self.lever_arm > 0
-        return float(np.max(-self.gap[forward] / self.lever_arm[forward], initial=0.0))
-
     def only(self, keep: Mask) -> "Candidates":
         """Those marked (m,)."""
         if keep.all():
@@ -48,7 +41,6 @@ class Candidates:
         return replace(
             self,
             hats=self.hats[keep],
-            column=self.column[keep],
             gap=self.gap[keep],
             lever_arm=self.lever_arm[keep],
             fillet=self.fillet[keep],
@@ -71,9 +63,11 @@ def candidates_of(
     the others are hats of edges.
     """
     ends = pinion.flank_end, gear.flank_end
-    rows, node, gap, lever_arm, fillet = closing(points, min_area, first, pinion.shape, ends, limit)
+    starts = np.array([0, points.gap.size])
+    _, node, gap, lever_arm, fillet, rows = closing(
+        points, starts, min_area, first, pinion.shape, ends, limit
+    )
     if node.size == 0:
         return []
-    column = node % pinion.shape[1]
     at = points.pinion, points.gear
-    return [Candidates(tooth, node, column, gap, lever_arm, fillet, rows, at, (pinion, gear))]
+    return [Candidates(tooth, node, gap, lever_arm, fillet, rows, at, (pinion, gear))]

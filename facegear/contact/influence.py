@@ -1,19 +1,19 @@
 """Compliance between candidate hats of a position: both bodies, own teeth and neighbours."""
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact import averages
-from facegear.contact.averages import Faces, NodalLoads, Rows, functions_at
+from facegear.contact.averages import Faces, Lattice, NodalLoads, Rows
 from facegear.contact.bodies import surface
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
 from facegear.machine_code.compiler import compiler, for_callers
 
-compiled, inlined = compiler(), for_callers()
+compiled, inlined = compiler(Path(averages.__file__), Path(surface.__file__)), for_callers()
 compiled_sums = compiler(
     Path(averages.__file__), Path(surface.__file__), fastmath={"contract", "reassoc"}, error_model="numpy"
 )
@@ -36,126 +36,24 @@ def influence_matrix(
     ends = np.cumsum([0] + [len(pair.hats) for pair in pairs])
     matrix = np.zeros((ends[-1], ends[-1]))
     for i, first in enumerate(pairs):
-        own = slice(ends[i], ends[i + 1])
         for side, body in enumerate((pinion, gear)):
-            _add_symmetric(matrix, int(ends[i]), first.loads(side, True).rows, body.own, body.scale)
+            add_own(matrix, int(ends[i]), first.loads(side, True).rows, body.own, body.scale)
         for j in range(i) if coupled else ():
             second = pairs[j]
-            other = slice(ends[j], ends[j + 1])
-            teeth_apart = first.tooth - second.tooth
-            block = np.zeros((len(first.hats), len(second.hats)))
             for side, body in enumerate((pinion, gear)):
                 seen, loads = first.loads(side, False), second.loads(side, False)
-                block += body.scale * product(seen, body.block(teeth_apart), loads)
-            matrix[own, other] = block
-            matrix[other, own] = block.T
+                block = body.scale * product(seen, body.block(first.tooth - second.tooth), loads)
+                matrix[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] += block
+    mirror(matrix)
     return matrix
 
 
-def displacement(
-    seen: list[Candidates],
-    pairs: list[Candidates],
-    forces: Array,
-    pinion: FlankCompliance,
-    gear: FlankCompliance,
-    coupled: bool = True,
-) -> Array:
-    """Approach (k, t) m at the hats of `seen` by forces (m, t) N on those of `pairs`, t load cases."""
-    ends = np.cumsum([len(pair.hats) for pair in pairs])[:-1]
-    loads = list(zip(pairs, np.split(forces, ends), strict=True))
-    return np.concatenate([_approach(here, loads, pinion, gear, coupled) for here in seen])
-
-
-def _approach(
-    here: Candidates,
-    loads: Sequence[tuple[Candidates, Array]],
-    pinion: FlankCompliance,
-    gear: FlankCompliance,
-    coupled: bool,
-) -> Array:
-    total = np.zeros((len(here.hats), loads[0][1].shape[1]))
-    for side, body in enumerate((pinion, gear)):
-        for refined in (True, False) if coupled and len(loads) > 1 else (True,):
-            faces = here.lattices[side].faces(refined)
-            base, values, used, slot = _functions(here.averages[1], here.at[side], faces)
-            moved = np.zeros((used.size, total.shape[1]))
-            for pair, force in loads:
-                teeth_apart = here.tooth - pair.tooth
-                compliance = body.own if refined else body.block(teeth_apart)
-                if (teeth_apart == 0) == refined and compliance is not None:
-                    pushed = np.ascontiguousarray(body.scale * force.T)
-                    _move(moved, used, compliance, pair.loads(side, refined).rows, pushed)
-            _add_averages(total, here.averages, base, values, faces, slot, moved)
-    return total
-
-
-@compiled_sums
-def _functions(index: Integers, at: Array, faces: Faces) -> tuple[Integers, Array, Integers, Integers]:
-    """`functions_at` points at coordinates (q, 2), the nodes (u,) of their faces, and the number of each node
-    of the lattice among those.
-    """
-    base, values = functions_at(index, at, faces)
-    offset = faces.steps[:, 0] * faces.shape[1] + faces.steps[:, 1]
-    mark = np.zeros(faces.shape[0] * faces.shape[1], np.bool_)
-    for first in base:
-        for a in range(offset.size if first >= 0 else 0):
-            mark[first + offset[a]] = True
-    used, slot = _listed(mark)
-    return base, values, used, slot
-
-
-@compiled_sums
-def _move(moved: Array, used: Integers, compliance: Array, loads: Rows, forces: Array) -> None:
-    """Add to displacements (u, t) of nodes (u,) those by load cases (t, m) of rows of nodal loads."""
-    loaded, nodal = _nodal(loads, forces, compliance.shape[1])
-    line = np.empty(loaded.size)
-    for a in range(used.size):
-        row = compliance[used[a]]
-        for b in range(loaded.size):
-            line[b] = row[loaded[b]]
-        for t in range(forces.shape[0]):
-            total = 0.0
-            for b in range(loaded.size):
-                total += line[b] * nodal[t, b]
-            moved[a, t] += total
-
-
-@compiled_sums
-def _add_averages(
-    total: Array, rows: Rows, base: Integers, values: Array, faces: Faces, slot: Integers, moved: Array
-) -> None:
-    """Add to rows (k, t) over points the displacements (u, t) of the faces' nodes, numbered by `slot`."""
-    pointer, index, weight = rows
-    cases = total.shape[1]
-    offset = faces.steps[:, 0] * faces.shape[1] + faces.steps[:, 1]
-    there = np.zeros((base.size, cases))
-    for point in range(base.size):
-        for a in range(offset.size if base[point] >= 0 else 0):
-            node, value = slot[base[point] + offset[a]], values[point, a]
-            for t in range(cases):
-                there[point, t] += value * moved[node, t]
-    for i in range(pointer.size - 1):
-        for k in range(pointer[i], pointer[i + 1]):
-            for t in range(cases):
-                total[i, t] += weight[k] * there[index[k], t]
-
-
-@inlined
-def _nodal(loads: Rows, forces: Array, nodes: int) -> tuple[Integers, Array]:
-    """The nodes (l,) that load cases (t, m) of rows load, and the loads (t, l) on them."""
-    pointer, index, weight = loads
-    every = np.zeros((nodes, forces.shape[0]))
-    mark = np.zeros(nodes, np.bool_)
-    for i in range(forces.shape[1]):
-        pushes = False
-        for t in range(forces.shape[0]):
-            pushes |= forces[t, i] != 0.0
-        for k in range(pointer[i], pointer[i + 1] if pushes else pointer[i]):
-            mark[index[k]] = True
-            for t in range(forces.shape[0]):
-                every[index[k], t] += weight[k] * forces[t, i]
-    loaded = np.flatnonzero(mark)
-    return loaded, np.ascontiguousarray(every[loaded].T)
+@compiled
+def mirror(matrix: Array) -> None:
+    """Fill in what is above the diagonal by what is below it."""
+    for i in range(len(matrix)):
+        for j in range(i):
+            matrix[j, i] = matrix[i, j]
 
 
 def product(first: NodalLoads, compliance: Array | None, second: NodalLoads) -> Array:
@@ -167,29 +65,29 @@ def product(first: NodalLoads, compliance: Array | None, second: NodalLoads) -> 
     return _product(first.rows, compliance, second.rows)
 
 
-@compiled
+@compiled_sums
 def _product(first: Rows, compliance: Array, second: Rows) -> Array:
     half, slot = _half(first, compliance, second[1])
     pointer, index, weight = second
-    result = np.zeros((pointer.size - 1, half.shape[1]))
-    for j in range(result.shape[0]):
-        for k in range(pointer[j], pointer[j + 1]):
-            row, w = slot[index[k]], weight[k]
-            for i in range(half.shape[1]):
-                result[j, i] += w * half[row, i]
-    return np.ascontiguousarray(result.T)
+    at = slot[index]
+    result, line = np.empty((first[0].size - 1, pointer.size - 1)), np.empty(half.shape[1])
+    for j in range(result.shape[1]):
+        _sum_of_rows((pointer[j], pointer[j + 1]), at, weight, half, line, line.size)
+        for i in range(line.size):
+            result[i, j] = line[i]
+    return result
 
 
 @compiled_sums
-def _add_symmetric(matrix: Array, origin: int, rows: Rows, compliance: Array, scale: float) -> None:
+def add_own(matrix: Array, origin: int, rows: Rows, compliance: Array, scale: float) -> None:
     """Add `_product` of rows with themselves by a symmetric compliance times a scale, from row and column
-    `origin` on.
+    `origin` on, below the diagonal.
 
     Rows are taken in the order of their first nodes, so that each meets those after it, and of the first
     product only the columns from its own first node on.
     """
     pointer, index, weight = rows
-    used, slot = _used(index, compliance.shape[0])
+    used, slot = used_of(index, compliance.shape[0])
     at, count = slot[index], pointer.size - 1
     order, first, end = _by_first(pointer, at, used.size)
     half, part = np.empty((used.size, count)), np.empty((used.size, BLOCK))
@@ -210,10 +108,8 @@ def _add_symmetric(matrix: Array, origin: int, rows: Rows, compliance: Array, sc
     for j in range(count):
         row = order[j]
         _sum_of_rows((pointer[row], pointer[row + 1]), at, weight, half, line, j + 1)
-        for i in range(j):
-            matrix[origin + row, origin + order[i]] += line[i]
-            matrix[origin + order[i], origin + row] += line[i]
-        matrix[origin + row, origin + row] += line[j]
+        for i in range(j + 1):
+            matrix[origin + max(row, order[i]), origin + min(row, order[i])] += line[i]
 
 
 @inlined
@@ -260,9 +156,9 @@ def _by_first(pointer: Integers, index: Integers, columns: int) -> tuple[Integer
 def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Integers]:
     """Rows times a compliance at the distinct `columns` (c, m), and the number (n,) of each column there."""
     pointer, index, weight = rows
-    used, slot = _used(index, compliance.shape[0])
-    wanted, number = _used(columns, compliance.shape[1])
-    count = pointer.size - 1
+    used, slot = used_of(index, compliance.shape[0])
+    wanted, number = used_of(columns, compliance.shape[1])
+    at, count = slot[index], pointer.size - 1
     half = np.empty((wanted.size, count))
     part, line = np.empty((used.size, BLOCK)), np.empty(BLOCK)
     for start in range(0, wanted.size, BLOCK):
@@ -271,29 +167,88 @@ def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Inte
             for b in range(size):
                 part[a, b] = compliance[used[a], wanted[start + b]]
         for i in range(count):
-            line[:size] = 0.0
-            for k in range(pointer[i], pointer[i + 1]):
-                row, w = slot[index[k]], weight[k]
-                for b in range(size):
-                    line[b] += w * part[row, b]
+            _sum_of_rows((pointer[i], pointer[i + 1]), at, weight, part, line, size)
             for b in range(size):
                 half[start + b, i] = line[b]
     return half, number
 
 
 @inlined
-def _used(indices: Integers, count: int) -> tuple[Integers, Integers]:
+def used_of(indices: Integers, count: int) -> tuple[Integers, Integers]:
     """The distinct indices, rising, and the index of each among them."""
     mark = np.zeros(count, np.bool_)
     for index in indices:
         mark[index] = True
-    return _listed(mark)
+    return listed(mark)
 
 
 @inlined
-def _listed(mark: Mask) -> tuple[Integers, Integers]:
+def listed(mark: Mask) -> tuple[Integers, Integers]:
     """The indices that are marked (n,), rising, and the index of each among them."""
     used = np.flatnonzero(mark)
     slot = np.full(mark.size, -1)
     slot[used] = np.arange(used.size)
     return used, slot
+
+
+@inlined
+def part_of(rows: Rows, begin: int, end: int) -> Rows:
+    """Rows from `begin` to `end`."""
+    pointer, index, weight = rows
+    first, last = pointer[begin], pointer[end]
+    return pointer[begin : end + 1] - first, index[first:last], weight[first:last]
+
+
+class Surface(NamedTuple):
+    """Contact surface of a gear: its elements' `faces` on the refined nodes and on the `coarse` ones before
+    refinement, and `own`, `others` and `scale` of its `FlankCompliance`.
+    """
+
+    faces: Faces
+    coarse: Faces
+    own: Array
+    others: Array
+    scale: float
+
+
+@compiled
+def influence(
+    ends: Integers,
+    teeth: Integers,
+    surfaces: tuple[Surface, Surface],
+    loads: tuple[Rows, Rows],
+    coarse: tuple[Rows, Rows],
+    coupled: bool,
+) -> Array:
+    """`influence_matrix` of the hats of pairs `teeth` (p,) that end at `ends` (p + 1,), 0 first.
+
+    Loads of all of them on the nodes of both surfaces, and on those before refinement.
+    """
+    matrix = np.zeros((ends[-1], ends[-1]))
+    for i in range(teeth.size):
+        for side in range(2):
+            body = surfaces[side]
+            own = part_of(loads[side], ends[i], ends[i + 1])
+            add_own(matrix, ends[i], own, body.own, body.scale)
+            reach = len(body.others) // 2
+            for j in range(i if coupled else 0):
+                if abs(teeth[i] - teeth[j]) <= reach:
+                    seen = part_of(coarse[side], ends[i], ends[i + 1])
+                    other = part_of(coarse[side], ends[j], ends[j + 1])
+                    block = _product(seen, body.others[teeth[i] - teeth[j] + reach], other)
+                    matrix[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] += body.scale * block
+    mirror(matrix)
+    return matrix
+
+
+def surface_of(lattice: Lattice, body: FlankCompliance) -> Surface:
+    """Of nodes and compliance of one gear, whose arrays are those of the other in kind."""
+    own, others = (
+        np.require(array, requirements=["C", "W"]) for array in (_rows_first(body.own), body.others)
+    )
+    return Surface(lattice.faces(True), lattice.faces(False), own, others, body.scale)
+
+
+def _rows_first(symmetric: Array) -> Array:
+    """A symmetric matrix in the order of its rows, without a copy where it is in that of its columns."""
+    return symmetric.T if symmetric.flags.f_contiguous else symmetric

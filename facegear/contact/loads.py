@@ -5,12 +5,16 @@ grows by micrometres within a node distance, so that averages over the surface b
 therefore carry loads of their own, hats along the edge with gaps taken on it.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.contact.averages import HatPoints
-from facegear.contact.bodies.surface import edge_hats
-from facegear.contact.flanks import OF_AN_EDGE, PinionSurface
+from facegear.contact.flanks import OF_AN_EDGE, PinionPoints, PinionSurface
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
 
 SMALLEST_COVER = 0.02
 """Part of a hat's area below which it is left out: the tooth opposite ends there."""
@@ -29,32 +33,55 @@ def flank_points(
     )
 
 
-def edge_points(columns: int, gap: Array, lever_arm: Array, pinion: Array, gear: Array) -> HatPoints:
-    """All points (q,) of `edge_hats` of the gear's tip edge of `columns` nodes in p placements: (p q,).
+class EdgePoints(NamedTuple):
+    """Points (e,) of the gear's tip edge in p placements.
 
-    gap, lever_arm (p, q) m; refined lattice coordinates `pinion` (p, q, 2) and `gear` (q, 2).
+    gap, lever_arm (p, e) m; refined lattice coordinates `pinion` (p, e, 2) and `gear` (e, 2); `hats` and
+    `values` (e, 2): those of `edge_hats`.
     """
-    _, under, values = edge_hats(columns)
-    times = len(gap)
-    return HatPoints(
-        gap.ravel(),
-        lever_arm.ravel(),
-        pinion.reshape(-1, 2),
-        np.tile(gear, (times, 1)),
-        np.tile(under, (times, 2)),
-        np.tile(np.pad(values, ((0, 0), (0, 2))), (times, 1)),
-        np.full(gap.size, OF_AN_EDGE),
-    )
+
+    gap: Array
+    lever_arm: Array
+    pinion: Array
+    gear: Array
+    hats: Integers
+    values: Array
 
 
-def merged(first: HatPoints, at: Integers, second: HatPoints, beside: Integers) -> HatPoints:
-    """Points of both, those of the first at rows `at` and those of the second at rows `beside`."""
-    columns = []
-    for upper, lower in zip(first, second, strict=True):
-        column = np.empty((len(upper) + len(lower), *upper.shape[1:]), upper.dtype)
-        column[at], column[beside] = upper, lower
-        columns.append(column)
-    return HatPoints(*columns)
+@compiled
+def gathered(
+    points: PinionPoints, first: int, hits: tuple[Integers, Integers, Array, Array], edge: EdgePoints
+) -> tuple[HatPoints, Integers]:
+    """Points of p pairs of teeth, and where those of each begin (p + 1,): those of the gear's tip edge, then
+    those of the pinion, whose hats are numbered from `first` on.
+
+    hits: numbers (q,) of points of the pinion, where those of each pair end (p + 1,), 0 first, their gaps
+    (q,) m and refined lattice coordinates (q, 2) opposite.
+    """
+    number, ends, gap, gear = hits
+    pairs, beside = edge.gap.shape
+    size = number.size + pairs * beside
+    lever_arm, area = np.empty(size), np.empty(size)
+    gaps, at_pinion, at_gear = np.empty(size), np.empty((size, 2)), np.empty((size, 2))
+    hats, values = np.zeros((size, 4), np.int64), np.zeros((size, 4))
+    starts, row = np.zeros(pairs + 1, np.int64), 0
+    for pair in range(pairs):
+        for e in range(beside):
+            gaps[row], lever_arm[row], area[row] = edge.gap[pair, e], edge.lever_arm[pair, e], OF_AN_EDGE
+            for i in range(2):
+                at_pinion[row, i], at_gear[row, i] = edge.pinion[pair, e, i], edge.gear[e, i]
+                hats[row, i], values[row, i] = edge.hats[e, i], edge.values[e, i]
+            row += 1
+        for q in range(ends[pair], ends[pair + 1]):
+            point = number[q]
+            gaps[row], lever_arm[row], area[row] = gap[q], points.lever_arm[point], points.area[point]
+            for i in range(2):
+                at_pinion[row, i], at_gear[row, i] = points.at[point, i], gear[q, i]
+            for h in range(4):
+                hats[row, h], values[row, h] = points.hats[point, h] + first, points.values[point, h]
+            row += 1
+        starts[pair + 1] = row
+    return HatPoints(gaps, lever_arm, at_pinion, at_gear, hats, values, area), starts
 
 
 def flank_cover(surface: PinionSurface) -> Array:

@@ -2,18 +2,31 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from threadpoolctl import threadpool_limits
 
 from facegear.arrays import Array
 from facegear.contact.bodies.compliance import FlankCompliance
-from facegear.contact.candidates import Candidates
 from facegear.contact.flanks import FlankPair
-from facegear.contact.influence import displacement, influence_matrix
+from facegear.contact.influence import Surface, surface_of
 from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
-from facegear.contact.search import find_all
+from facegear.contact.search import cover_of, facing_points
+from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
+from facegear.contact.touching import (
+    BAND,
+    GAP,
+    START_GAP,
+    START_WIDTH,
+    WIDER,
+    Cover,
+    Facing,
+    Strip,
+    Touching,
+    touching,
+)
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import pinion_angle
 from facegear.geometry.unloaded import unloaded_motion
@@ -88,18 +101,30 @@ class _Searched:
     model: ContactModel
     options: ContactOptions
     placements: list[tuple[float, float]]
-    ahead: dict[int, list[Candidates]] = field(default_factory=dict)
+    ahead: dict[int, Facing] = field(default_factory=dict)
     limit: float = 0.0
 
-    def at(self, row: int, limit: float) -> list[Candidates]:
-        """Candidates of a position that a turn by `limit` (rad) would close, and perhaps a little more."""
+    def at(self, row: int, limit: float) -> Facing:
+        """Points of a position that a turn by `limit` (rad) would close, and perhaps a few more."""
         if row not in self.ahead or limit > self.limit:
             last = row + (AT_ONCE if row else 1)  # the first position says how far teeth give way
             some, self.limit = self.placements[row:last], ROOM * limit
             teeth = [pairs_to_try(self.model.design, phi1, self.options) for phi1, _ in some]
-            seen = find_all(self.model.flanks, some, teeth, self.limit, self.options)
+            seen = facing_points(self.model.flanks, some, teeth, self.limit, self.options)
             self.ahead = dict(enumerate(seen, row))
         return self.ahead[row]
+
+    @cached_property
+    def cover(self) -> Cover:
+        """The hats of the pair."""
+        return cover_of(self.model.flanks, self.options)
+
+    @cached_property
+    def surfaces(self) -> tuple[Surface, Surface]:
+        """Those of pinion and gear."""
+        model = self.model
+        pinion, gear = model.flanks.pinion.lattice, model.flanks.gear.lattice
+        return surface_of(pinion, model.pinion), surface_of(gear, model.gear)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,27 +135,14 @@ class _PairAtPosition:
     row: int
     position: float
     unloaded: float
-    in_strip = True
-
-    @property
-    def model(self) -> ContactModel:
-        return self.searched.model
-
-    @property
-    def options(self) -> ContactOptions:
-        return self.searched.options
 
     @property
     def base_radius(self) -> float:
-        return self.model.design.pinion_base_radius
+        return self.searched.model.design.pinion_base_radius
 
-    def candidates(self, limit: float) -> list[Candidates]:
-        return self.searched.at(self.row, limit)
-
-    def influence(self, pairs: list[Candidates]) -> Array:
-        return influence_matrix(pairs, self.model.pinion, self.model.gear, self.options.coupled)
-
-    def approach(self, seen: list[Candidates], pairs: list[Candidates], forces: Array) -> Array:
-        return displacement(
-            seen, pairs, forces, self.model.pinion, self.model.gear, coupled=self.options.coupled
-        )
+    def touching(self, torques: Array, limit: float) -> Touching:
+        searched = self.searched
+        facing, coupled = searched.at(self.row, limit), searched.options.coupled
+        parts = Strip(GAP, BAND, WIDER, START_GAP, START_WIDTH)
+        accuracy = NEWTON_STEPS, TOLERANCE
+        return touching(facing, searched.cover, searched.surfaces, torques, limit, parts, coupled, accuracy)

@@ -7,9 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.candidates import Candidates
-from facegear.contact.solver import ContactSolution
-from facegear.contact.strip import Bodies, only, parts_of, solve_torques
+from facegear.contact.solver import check_solved
+from facegear.contact.touching import Touching
 from facegear.errors import NotConverged
 from facegear.geometry.unloaded import PAIRS
 
@@ -25,7 +24,7 @@ UNKNOWN_REFERENCE = 0.01
 counts from where the flanks alone would touch, and teeth that overlap there never stand so."""
 
 
-class PairAtPosition(Bodies, Protocol):
+class PairAtPosition(Protocol):
     """Two gears at one position: what the solution of their contact has to know about them.
 
     `position` 0..1 of a pitch; `unloaded` transmission error (m) there; the pinion's `base_radius` (m).
@@ -40,8 +39,8 @@ class PairAtPosition(Bodies, Protocol):
     @property
     def base_radius(self) -> float: ...
 
-    def candidates(self, limit: float) -> list[Candidates]:
-        """Loads of all pairs of teeth that a turn of the pinion by `limit` (rad) would close."""
+    def touching(self, torques: Array, limit: float) -> Touching:
+        """Contact of what a turn of the pinion by `limit` (rad) would close, as `touching` has it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,73 +115,62 @@ def solve_position(
     `guess` is a first guess of the largest turn (rad); the largest turn found is returned with the results,
     as the next guess. Raises NotConverged naming position and torque.
     """
-    limit = MARGIN * guess
-    order = np.argsort(torques)[::-1]
+    limit, order = MARGIN * guess, np.argsort(torques)[::-1]
+    loads = np.array([float(torques[index]) for index in order])
 
     def where(torque: float) -> str:
         return f"position {pair.position:.6f}, torque {torque:g} N m"
 
     for _ in range(ENLARGEMENTS):
-        candidates = pair.candidates(limit)
-        if not candidates:
+        contact = pair.touching(loads, limit)
+        if not contact.candidates:
             limit *= 4.0
             continue
-        loads = [float(torques[index]) for index in order]
-        contacts = solve_torques(candidates, limit, loads, pair, where)
-        if contacts[0].rotation <= limit:
-            break
-        limit = MARGIN * contacts[0].rotation
-    else:
-        tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
-        raise NotConverged("contact", where(max(torques)), tried)
-    loaded = np.any([contact.force > 0.0 for contact in contacts], axis=0)
-    overlap = pair.base_radius * max(loads.overlap for loads in candidates)
-    carrying = only(candidates, loaded)
-    results = [_result(pair, carrying, overlap, contacts[i], loaded) for i in np.argsort(order)]
-    return results, contacts[0].rotation
+        if not contact.forward:
+            raise NotConverged("contact", where(loads[0]), "no candidate point can carry the torque")
+        if contact.rotation[0] > limit:
+            limit = MARGIN * float(contact.rotation[0])
+            continue
+        for torque, steps, residual in zip(loads, contact.steps, contact.residual, strict=True):
+            check_solved(int(steps), float(residual), contact.sought, where(torque))
+        return [_result(pair, contact, loads, row) for row in np.argsort(order)], float(contact.rotation[0])
+    tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
+    raise NotConverged("contact", where(max(torques)), tried)
 
 
-def _result(
-    pair: PairAtPosition,
-    carrying: list[Candidates],
-    overlap: float,
-    contact: ContactSolution,
-    loaded: Mask,
-) -> LoadedPosition:
-    """Of the candidates that carry load at any torque, those marked among all (n,)."""
-    base = pair.base_radius
+def _result(pair: PairAtPosition, contact: Touching, torques: Array, row: int) -> LoadedPosition:
+    """That of the torque in a row of what was found."""
+    base, torque, force, hats = pair.base_radius, float(torques[row]), contact.force[row], contact.hats
+    part = force * hats.lever_arm / torque
     load_share = np.zeros(len(PAIRS))
-    in_fillets = 0.0
-    spots, forces = [], contact.force[loaded]
-    for loads, force in zip(carrying, parts_of(carrying, forces), strict=True):
-        part = force * loads.lever_arm / contact.torque
-        load_share[np.searchsorted(PAIRS, loads.tooth)] = part.sum()
-        in_fillets += float(part[loads.fillet].sum())
-        on = force > 0.0
-        if on.any():
+    load_share[np.searchsorted(PAIRS, contact.teeth)] = np.bincount(hats.pair, part, contact.teeth.size)
+    ends, spots = np.searchsorted(hats.pair, np.arange(contact.teeth.size + 1)), []
+    for number, tooth in enumerate(contact.teeth.tolist()):
+        on = ends[number] + np.flatnonzero(force[ends[number] : ends[number + 1]] > 0.0)
+        if on.size:
             spots.append(
                 Spot(
-                    tooth=loads.tooth,
-                    hats=loads.hats[on],
+                    tooth=tooth,
+                    hats=hats.node[on],
                     force=force[on],
-                    fillet=loads.fillet[on],
-                    on_pinion=loads.loads(0, False).by(force),
-                    on_gear=loads.loads(1, False).by(force),
+                    fillet=hats.fillet[on],
+                    on_pinion=contact.on_pinion[row, number],
+                    on_gear=contact.on_gear[row, number],
                 )
             )
-    approach = base * contact.rotation
+    approach, overlap = base * float(contact.rotation[row]), base * contact.overlap
     return LoadedPosition(
         position=pair.position,
-        torque=contact.torque,
+        torque=torque,
         ste=pair.unloaded + approach,
         unloaded=pair.unloaded,
-        k_average=contact.torque / base / approach if overlap <= UNKNOWN_REFERENCE * approach else np.nan,
-        k_local=1.0 / (base**2 * contact.slope),
+        k_average=torque / base / approach if overlap <= UNKNOWN_REFERENCE * approach else np.nan,
+        k_local=1.0 / (base**2 * float(contact.slope[row])),
         load_share=load_share,
-        fillet_share=in_fillets,
+        fillet_share=float(part[hats.fillet].sum()),
         overlap=overlap,
-        residual=contact.residual,
-        steps=contact.steps,
-        candidates=len(contact.force),
+        residual=float(contact.residual[row]),
+        steps=int(contact.steps[row]),
+        candidates=contact.candidates,
         spots=tuple(spots),
     )

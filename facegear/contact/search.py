@@ -8,11 +8,13 @@ import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.averages import HatPoints
+from facegear.contact.bodies.surface import edge_hats
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import FlankPair
-from facegear.contact.loads import edge_cover, edge_points, flank_cover, merged
+from facegear.contact.loads import EdgePoints, edge_cover, flank_cover, gathered
 from facegear.contact.options import ContactOptions
-from facegear.geometry.opposite import EdgeFeet, located, tip_edge_feet
+from facegear.contact.touching import Cover, Facing
+from facegear.geometry.opposite import located, tip_edge_feet
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.separation import separation, separation_each
 
@@ -51,46 +53,55 @@ def find_candidates(
 
     placement: angles phi1, phi2 (rad) of the unloaded gears. Pairs without any are left out.
     """
-    return find_all(pair, [placement], [teeth], limit, options)[0]
+    cover, lattices = cover_of(pair, options), (pair.pinion.lattice, pair.gear.lattice)
+    points, starts, _ = facing_points(pair, [placement], [teeth], limit, options)[0]
+    parts = [points.part(slice(*ends)) for ends in pairwise(starts.tolist())]
+    return list(
+        chain(
+            *(
+                candidates_of(*lattices, tooth, part, cover.min_area, limit, cover.first)
+                for tooth, part in zip(teeth.tolist(), parts, strict=True)
+            )
+        )
+    )
 
 
-def find_all(
+def cover_of(pair: FlankPair, options: ContactOptions) -> Cover:
+    """The hats of the gear's tip edge, the pinion's flank, and the pinion's tip edge."""
+    pinion, gear = pair.pinion, pair.gear.lattice
+    area, first = flank_cover(pinion), gear.shape[1] if options.edges else 0
+    if options.edges:
+        area = np.concatenate([edge_cover(first), area, edge_cover(pinion.shape[1])])
+    return Cover(area, first, pinion.shape, (pinion.lattice.flank_end, gear.flank_end))
+
+
+def facing_points(
     pair: FlankPair,
     placements: Sequence[tuple[float, float]],
     teeth: Sequence[Integers],
     limit: float,
     options: ContactOptions,
-) -> list[list[Candidates]]:
-    """`find_candidates` at several placements, each with its own teeth."""
+) -> list[Facing]:
+    """Points near the flank opposite, and those of both tip edges, at several placements, each with its own
+    teeth: those under all hats that a turn by `limit` (rad) would close.
+
+    placements: angles phi1, phi2 (rad) of the unloaded gears.
+    """
     counts = [len(numbers) for numbers in teeth]
     phi1, phi2 = (np.repeat(part, counts) for part in np.array(placements).T)
     all_pairs = Placements(phi1, phi2, np.concatenate(teeth))
-    points = _facing_points(pair, all_pairs, limit * pair.design.pinion_base_radius + SAG, options)
-    first, cover = _hats(pair, options)
-    candidates = []
-    for tooth, part in zip(all_pairs.tooth.tolist(), points, strict=True):
-        lattices = pair.pinion.lattice, pair.gear.lattice
-        candidates.append(
-            candidates_of(*lattices, tooth, part, cover, limit, first) if part is not None else []
-        )
-    ends = np.cumsum([0, *counts])
-    return [list(chain(*candidates[start:end])) for start, end in pairwise(ends)]
+    points, starts = _facing(pair, all_pairs, limit * pair.design.pinion_base_radius + SAG, options)
+    parts = []
+    for (begin, end), numbers in zip(pairwise(np.cumsum([0, *counts])), teeth, strict=True):
+        begun = starts[begin : end + 1]
+        parts.append(Facing(points.part(slice(begun[0], begun[-1])), begun - begun[0], numbers))
+    return parts
 
 
-def _hats(pair: FlankPair, options: ContactOptions) -> tuple[int, Array]:
-    """The number of the flank's first hat, and the area that must be covered of each hat: those of the gear's
-    tip edge, the pinion's flank, the pinion's tip edge.
-    """
-    if not options.edges:
-        return 0, flank_cover(pair.pinion)
-    gear, pinion = pair.gear.lattice.shape[1], pair.pinion.shape[1]
-    return gear, np.concatenate([edge_cover(gear), flank_cover(pair.pinion), edge_cover(pinion)])
-
-
-def _facing_points(
+def _facing(
     pair: FlankPair, placements: Placements, depth: float, options: ContactOptions
-) -> list[HatPoints | None]:
-    """Points of each pair of teeth near the flank opposite, and those of both tip edges; None without any."""
+) -> tuple[HatPoints, Integers]:
+    """Points of all pairs of teeth, and where those of each begin (p + 1,)."""
     design, gear = pair.design, pair.gear
     points, flank_count = pair.pinion.facing, len(pair.pinion.area)
     first = gear.lattice.shape[1] if options.edges else 0
@@ -103,37 +114,26 @@ def _facing_points(
     each = np.repeat(np.arange(len(near)), counts)
     hits = located(design, separation_each(design, seen, placements.all, each, FARTHEST))
     beside = np.where(number < flank_count, BESIDE * design.module, 0.0)
-    on_gear, gap, at = gear.coordinates(hits, options.fillet, beside), hits.gap, points.at[number]
+    on_gear, gap = gear.coordinates(hits, options.fillet, beside), hits.gap
     if not options.fillet:
-        gap = np.where(pair.pinion.lattice.in_fillet(at), np.inf, gap)
-    on_flank = HatPoints(
-        gap,
-        points.lever_arm[number],
-        at,
-        on_gear,
-        points.hats[number] + first,
-        points.values[number],
-        points.area[number],
-    )
-    feet, feet_at = _feet(pair, placements, options)
-    if feet is None:
-        every, starts = on_flank, np.cumsum([0, *counts])
-    else:
-        size = feet.gap.shape[1]
-        on_edge = edge_points(gear.lattice.shape[1], feet.gap, feet.lever_arm, feet_at, gear.tip[0])
-        starts = np.cumsum([0, *(counts + size)])
-        at_edge = (starts[:-1, None] + np.arange(size)).ravel()
-        every = merged(on_edge, at_edge, on_flank, np.arange(number.size) + size * (each + 1))
-    return [every.part(slice(*ends)) if ends[1] > ends[0] else None for ends in pairwise(starts)]
+        gap = np.where(pair.pinion.lattice.in_fillet(points.at[number]), np.inf, gap)
+    feet = _feet(pair, placements, options)
+    return gathered(points, first, (number, np.cumsum([0, *counts]), gap, on_gear), feet)
 
 
-def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> tuple[EdgeFeet | None, Array]:
-    """Of the gear's tip edge, (p, n), and where they stand on the pinion's lattice (p, n, 2)."""
+def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> EdgePoints:
+    """Points (e,) of the gear's tip edge in p placements; none without edges."""
+    columns = pair.gear.lattice.shape[1]
+    _, under, values = edge_hats(columns)
     if not options.edges:
-        return None, np.zeros((len(placements.tooth), 0, 2))
+        nothing = np.zeros((len(placements.tooth), 0))
+        at = np.zeros((*nothing.shape, 2))
+        return EdgePoints(nothing, nothing, at, np.zeros((0, 2)), under[:0], values[:0])
     curve = pair.pinion.fillet_curve if options.fillet else None
-    feet = tip_edge_feet(pair.design, pair.gear.tip[1], placements.all, curve, FARTHEST)
-    return feet, pair.pinion.coordinates(feet.flank, feet.fillet, feet.y)
+    on_gear, points = pair.gear.tip
+    feet = tip_edge_feet(pair.design, points, placements.all, curve, FARTHEST)
+    at = pair.pinion.coordinates(feet.flank, feet.fillet, feet.y)
+    return EdgePoints(feet.gap, feet.lever_arm, at, on_gear, under, values)
 
 
 def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integers]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.contact.active_set import bonded, distances, newton, refined, violation
+from facegear.contact.active_set import exchanges, solved, violation
 from facegear.errors import NotConverged
 
 NEWTON_STEPS = 40
@@ -68,30 +68,22 @@ def solve_contact(
         raise ValueError(f"torque = {torque}: must be positive")
     if not (lever_arm > 0.0).any():
         raise NotConverged("contact", where, "no candidate point can carry the torque")
-    cold = start is None or not (start & (lever_arm > 0)).any()
-    compliance, gap, lever_arm = (np.ascontiguousarray(part) for part in (compliance, gap, lever_arm))
-    problem = compliance, gap, lever_arm, float(torque)
-    steps, force, rotation, slope, residual = newton(
-        *problem, _first_guess(gap, lever_arm) if cold else start, (NEWTON_STEPS, TOLERANCE)
-    )
-    if not steps:
-        return _exchange(*problem, _feasible(gap, lever_arm, torque, force), where)
-    return _checked(torque, force, rotation, slope, residual, steps, where)
-
-
-def _first_guess(gap: Array, lever_arm: Array) -> Mask:
-    turns = np.where(lever_arm > 0, gap / np.where(lever_arm > 0, lever_arm, 1.0), np.inf)
-    return turns <= np.quantile(turns[np.isfinite(turns)], 0.25)
-
-
-def _checked(
-    torque: float, force: Array, rotation: float, slope: float, residual: float, steps: int, where: str
-) -> ContactSolution:
-    if not residual < TOLERANCE * 10:
-        raise NotConverged("contact", where, f"KKT residual {residual:.1e} after {steps} steps")
+    problem = (*map(np.ascontiguousarray, (compliance, gap, lever_arm)), float(torque))
+    begin = np.zeros(gap.size, bool) if start is None else start
+    steps, force, rotation, slope, residual = solved(*problem, begin, (NEWTON_STEPS, TOLERANCE))
+    check_solved(steps, residual, gap.size, where)
     return ContactSolution(
         torque=torque, force=force, rotation=rotation, slope=slope, residual=residual, steps=steps
     )
+
+
+def check_solved(steps: int, residual: float, points: int, where: str) -> None:
+    """Raise NotConverged naming `where` if no solution among so many points was found."""
+    if not steps:
+        tried = f"{NEWTON_STEPS} Newton and {exchanges(points)} exchange steps"
+        raise NotConverged("contact", where, tried)
+    if not residual < TOLERANCE * 10:
+        raise NotConverged("contact", where, f"KKT residual {residual:.1e} after {steps} steps")
 
 
 def kkt_residual(
@@ -105,44 +97,3 @@ def kkt_residual(
     """Largest relative violation of balance, no tension, no penetration and complementarity."""
     given = (np.ascontiguousarray(part) for part in (compliance, gap, lever_arm))
     return violation(*given, float(torque), np.ascontiguousarray(force), float(rotation))
-
-
-def _feasible(gap: Array, lever_arm: Array, torque: float, force: Array) -> Array:
-    """Forces without tension that carry the torque: those given, or one where the gap closes first."""
-    pressing = np.maximum(force, 0.0)
-    if lever_arm @ pressing > 0.0:
-        return pressing * (torque / (lever_arm @ pressing))
-    turns = np.where(lever_arm > 0, gap / np.where(lever_arm > 0, lever_arm, 1.0), np.inf)
-    first = int(np.argmin(turns))
-    alone = np.zeros_like(gap)
-    alone[first] = torque / lever_arm[first]
-    return alone
-
-
-def _exchange(
-    compliance: Array, gap: Array, lever_arm: Array, torque: float, force: Array, where: str
-) -> ContactSolution:
-    """One point at a time from feasible forces, energy falling at every step, hence finite."""
-    active = force > 0.0
-    limit = 20 * gap.size + 100
-    for step in range(limit):
-        touching = bonded(compliance, gap, lever_arm, torque, active)
-        index, rotation, slope = touching[0], touching[5], touching[6]
-        target = np.zeros_like(force)
-        target[index] = touching[4]
-        falling = active & (target <= 0.0)
-        if falling.any():
-            fraction = np.min(force[falling] / (force[falling] - target[falling]))
-            force = force + fraction * (target - force)
-            leaving = falling & (force <= 1e-14 * force.max())
-            active &= ~leaving
-            continue
-        force = target
-        distance = distances(compliance, gap, lever_arm, force, rotation)
-        scale = np.abs(rotation * lever_arm).max() + np.abs(gap[active]).max()
-        worst = int(np.argmin(np.where(active, np.inf, distance)))
-        if active.all() or distance[worst] >= -TOLERANCE * scale:
-            force, rotation, residual = refined(compliance, gap, lever_arm, torque, touching)
-            return _checked(torque, force, rotation, slope, residual, NEWTON_STEPS + step, where)
-        active[worst] = True
-    raise NotConverged("contact", where, f"{NEWTON_STEPS} Newton and {limit} exchange steps")

@@ -23,10 +23,12 @@ from facegear.contact.pair import BUILDERS
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.search import find_candidates
 from facegear.contact.teeth import LOADED_SIDE, contact_side, elastic_tooth
+from facegear.contact.touching import Touching
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import FeTooth
+from validation.contact.all_candidates import touching
 
 Blocks = dict[tuple[int, int], Array]
 
@@ -55,23 +57,21 @@ class _SectorAtPosition:
     sectors: SectorPair
     position: float
     unloaded = 0.0
-    in_strip = False
 
     @property
     def base_radius(self) -> float:
         return self.sectors.flanks.design.pinion_base_radius
 
-    def candidates(self, limit: float) -> list[Candidates]:
-        flanks = self.sectors.flanks
-        loaded = np.array(sorted({seen for seen, _ in self.sectors.pinion}))
+    def touching(self, torques: Array, limit: float) -> Touching:
+        sectors, flanks = self.sectors, self.sectors.flanks
+        loaded = np.array(sorted({seen for seen, _ in sectors.pinion}))
         placement = angles_at(flanks.design, self.position)
-        return find_candidates(flanks, placement, loaded, limit, ContactOptions())
+        pairs = find_candidates(flanks, placement, loaded, limit, ContactOptions())
 
-    def influence(self, pairs: list[Candidates]) -> Array:
-        return _influence(pairs, self.sectors.pinion, self.sectors.gear)
+        def influence() -> Array:
+            return _influence(pairs, sectors.pinion, sectors.gear)
 
-    def approach(self, seen: list[Candidates], pairs: list[Candidates], forces: Array) -> Array:
-        return _approach(seen, pairs, self.sectors.pinion, self.sectors.gear) @ forces
+        return touching(pairs, influence, torques, f"position {self.position:.6f}")
 
 
 def angles_at(design: PairDesign, position: float) -> tuple[float, float]:
@@ -128,19 +128,15 @@ def sector_blocks(
 
 
 def _influence(pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> Array:
-    matrix = _approach(pairs, pairs, pinion, gear)
-    return 0.5 * (matrix + matrix.T)
-
-
-def _approach(seen: list[Candidates], pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> Array:
-    """Approach (k, m) at the first candidates by unit forces on the second, m/N."""
-    return np.block(
+    """Approach (m, m) of all candidates by unit forces on each, m/N."""
+    matrix = np.block(
         [
             [
                 product(first.loads(0, True), pinion[first.tooth, second.tooth], second.loads(0, True))
                 + product(first.loads(1, True), gear[first.tooth, second.tooth], second.loads(1, True))
                 for second in pairs
             ]
-            for first in seen
+            for first in pairs
         ]
     )
+    return 0.5 * (matrix + matrix.T)

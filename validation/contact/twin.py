@@ -15,17 +15,19 @@ from facegear.contact.averages import Lattice
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import PinionSurface
-from facegear.contact.influence import displacement, influence_matrix
+from facegear.contact.influence import influence_matrix
 from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.options import Ends, Refinement
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.teeth import ContactSide, elastic_tooth
+from facegear.contact.touching import Touching
 from facegear.geometry import pinion
 from facegear.geometry.design import Material, PairDesign, involute
 from facegear.geometry.placement import body_rotation
 from facegear.geometry.unloaded import PAIRS
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import FeTooth, pinion_tooth
+from validation.contact.all_candidates import touching
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,21 +126,20 @@ class _TwinAtPosition:
     model: TwinModel
     position: float
     unloaded = 0.0
-    in_strip = False
 
     @property
     def base_radius(self) -> float:
         return self.model.pinion.pinion_base_radius
 
-    def candidates(self, limit: float) -> list[Candidates]:
-        phi1 = (self.position - 0.5) * 2 * pi / self.model.pinion.pinion.teeth
-        return _candidates(self.model, phi1, limit)
+    def touching(self, torques: Array, limit: float) -> Touching:
+        model = self.model
+        phi1 = (self.position - 0.5) * 2 * pi / model.pinion.pinion.teeth
+        pairs = _candidates(model, phi1, limit)
 
-    def influence(self, pairs: list[Candidates]) -> Array:
-        return influence_matrix(pairs, self.model.pinion_compliance, self.model.gear_compliance)
+        def influence() -> Array:
+            return influence_matrix(pairs, model.pinion_compliance, model.gear_compliance)
 
-    def approach(self, seen: list[Candidates], pairs: list[Candidates], forces: Array) -> Array:
-        return displacement(seen, pairs, forces, self.model.pinion_compliance, self.model.gear_compliance)
+        return touching(pairs, influence, torques, f"position {self.position:.6f}")
 
 
 def involute_separation(

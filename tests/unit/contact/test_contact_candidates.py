@@ -6,15 +6,16 @@ import scipy.sparse as sp
 from skfem import ElementQuad1, ElementQuad2
 from test_pair_contact import misaligned
 
-from facegear.contact import strip
-from facegear.contact.averages import Lattice
+from facegear.contact import ltca
+from facegear.contact.averages import Lattice, closing, spread
 from facegear.contact.bodies.surface import face_functions, interpolation
 from facegear.contact.candidates import candidates_of
-from facegear.contact.influence import displacement, influence_matrix
+from facegear.contact.displacement import displacement
+from facegear.contact.influence import influence, influence_matrix, surface_of
 from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
-from facegear.contact.search import find_candidates
+from facegear.contact.search import cover_of, facing_points, find_candidates
 from facegear.geometry.opposite import located
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
@@ -58,8 +59,8 @@ def test_contact_sought_in_a_strip_is_that_among_all_candidates(model_of, errors
     model = misaligned(model_of(), **errors)
     positions, torques = [0.05, 0.4, 0.7], [50.0, 300.0, 1000.0]
     narrow = loaded_contact(model, positions, torques)
-    monkeypatch.setattr(strip, "GAP", np.inf)
-    monkeypatch.setattr(strip, "BAND", np.inf)
+    monkeypatch.setattr(ltca, "GAP", np.inf)
+    monkeypatch.setattr(ltca, "BAND", np.inf)
     for one, other in zip(narrow, loaded_contact(model, positions, torques), strict=True):
         assert one.candidates == other.candidates
         assert one.ste == pytest.approx(other.ste, rel=1e-9)
@@ -70,21 +71,40 @@ def test_contact_sought_in_a_strip_is_that_among_all_candidates(model_of, errors
 def test_strip_that_is_too_narrow_is_found_out_and_widened(model_of, monkeypatch):
     model = model_of()
     expected = loaded_contact(model, [0.3], [600.0])[0]
-    monkeypatch.setattr(strip, "BAND", 0.02)
+    monkeypatch.setattr(ltca, "BAND", 0.02)
     widened = loaded_contact(model, [0.3], [600.0])[0]
     assert widened.ste == pytest.approx(expected.ste, rel=1e-9)
     assert widened.residual < 1e-10
 
 
 def test_displacements_without_the_matrix_are_those_with_it(model_of):
-    model = model_of()
-    pairs = find_candidates(model.flanks, placed(model, 0.3), PAIRS, 4e-4, ContactOptions())
-    count = sum(len(pair.hats) for pair in pairs)
-    forces = np.random.default_rng(0).uniform(0, 10, (count, 2))
-    bodies = {"pinion": model.pinion, "gear": model.gear}
-    with_matrix = influence_matrix(pairs, **bodies) @ forces
-    without = displacement(pairs, pairs, forces, **bodies)
-    np.testing.assert_allclose(without, with_matrix, rtol=1e-9)
+    """Of all hats at a position, and of some of them where only the first load cases are asked for."""
+    model, options, limit = model_of(), ContactOptions(), 4e-4
+    flanks, angles = model.flanks, placed(model, 0.3)
+    facing = facing_points(flanks, [angles], [PAIRS], limit, options)[0]
+    cover, at = cover_of(flanks, options), (facing.points.pinion, facing.points.gear)
+    first, shape, flank_ends = cover.first, cover.shape, cover.flank_ends
+    hats = closing(facing.points, facing.starts, cover.min_area, first, shape, flank_ends, limit)
+    lattices = flanks.pinion.lattice, flanks.gear.lattice
+    bodies = tuple(map(surface_of, lattices, (model.pinion, model.gear)))
+    every, ends = np.arange(hats.gap.size), np.searchsorted(hats.pair, np.arange(PAIRS.size + 1))
+    fine, coarse = (
+        tuple(spread(hats.rows, every, place, faces) for place, faces in zip(at, both, strict=True))
+        for both in ([body.faces for body in bodies], [body.coarse for body in bodies])
+    )
+    forces = np.random.default_rng(0).uniform(0, 10, (2, every.size))
+    with_matrix = forces @ influence(ends, PAIRS, bodies, fine, coarse, True)
+    pairs = find_candidates(flanks, angles, PAIRS, limit, options)
+    by_pair = influence_matrix(pairs, model.pinion, model.gear)
+    np.testing.assert_allclose(with_matrix, forces @ by_pair, rtol=1e-9)
+    loaded, cases = (ends, fine, coarse), np.full(every.size, 2)
+    given = hats.rows, at, bodies, PAIRS, loaded, forces, True
+    np.testing.assert_allclose(displacement((every, ends, cases), *given).T, with_matrix, rtol=1e-9)
+    some, cases = every[::3], 1 + every[::3] % 2
+    of_some = np.searchsorted(hats.pair[some], np.arange(PAIRS.size + 1))
+    moved = displacement((some, of_some, cases), *given).T
+    np.testing.assert_allclose(moved[0], with_matrix[0, some], rtol=1e-9)
+    np.testing.assert_allclose(moved[1], np.where(cases == 2, with_matrix[1, some], 0.0), rtol=1e-9)
 
 
 @pytest.mark.parametrize("linear", [False, True])
@@ -95,12 +115,16 @@ def test_loads_spread_in_one_pass_are_the_sparse_product(linear):
     rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
     loads = Lattice(shape, Refinement(), linear).loads(rows, points)
     pointer, index, weight = loads.rows
-    spread = sp.csr_matrix((weight, index, pointer), shape=(12, 63)).toarray()
+    made = sp.csr_matrix((weight, index, pointer), shape=(12, 63)).toarray()
     expected = (matrix @ interpolation(points, shape, linear)).toarray()
-    np.testing.assert_allclose(spread, expected, atol=1e-14)
-    keep, forces = np.arange(12) % 3 == 0, rng.uniform(0, 1, 12)
+    np.testing.assert_allclose(made, expected, atol=1e-14)
+    forces = rng.uniform(0, 1, 12)
     np.testing.assert_allclose(loads.by(forces), forces @ expected, atol=1e-14)
-    np.testing.assert_allclose(loads.only(keep).by(forces[keep]), forces[keep] @ expected[keep], atol=1e-14)
+    pointer, index, weight = spread(
+        rows, np.array([7, 2]), points, Lattice(shape, Refinement(), linear).faces()
+    )
+    some = sp.csr_matrix((weight, index, pointer), shape=(2, 63)).toarray()
+    np.testing.assert_allclose(some, expected[[7, 2]], atol=1e-14)
 
 
 @pytest.mark.parametrize(("element", "linear"), [(ElementQuad1(), True), (ElementQuad2(), False)])

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.contact import solver
+from facegear.contact import active_set, solver
 from facegear.contact.solver import kkt_residual, solve_contact
 from facegear.errors import NotConverged
 
@@ -134,7 +134,7 @@ def test_forces_that_the_exchange_starts_from_push_and_carry_the_torque(seed, si
     lever_arm[0] = -0.5
     force = np.random.default_rng(seed).uniform(-3.0, 0.5, size)
     for given_forces in (force, -np.ones(size)):
-        start = solver._feasible(gap, lever_arm, torque, given_forces)
+        start = active_set.feasible(gap, lever_arm, torque, given_forces)
         assert start.min() >= 0.0
         assert lever_arm @ start == pytest.approx(torque, rel=1e-12)
 

@@ -56,7 +56,7 @@ def test_contact_sees_the_interference_that_the_geometry_finds(teeth, radius):
     seen, expected = [], []
     for first, second in zip(phi1, unloaded_contact(design, phi1).phi2, strict=True):
         found = find_candidates(pair, (first, second), PAIRS, 1e-9, ContactOptions())
-        deepest = max((one.overlap for one in found), default=0.0)
+        deepest = max((float(np.max(-one.gap / one.lever_arm)) for one in found), default=0.0)
         seen.append(design.pinion_base_radius * deepest)
         gaps = smallest_gaps(design, [first], [second])
         expected.append(max(-gap.approach for gap in gaps.values() if gap.side == "drive"))

@@ -1,0 +1,262 @@
+"""Contact of all pairs of teeth at a position under all torques, compiled as one: what may touch, the strip
+that can be expected to, its influence and solution, and the check of the rest.
+
+A load at a hat moves all hats away from the other gear, so that only hats whose gap a rigid turn would close
+can touch. Most of those do not: the bodies give way around the strip that does. The influence matrix of the
+strip alone is many times cheaper, and one product shows whether the rest stays clear.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from facegear.arrays import Array, Integers, Mask
+from facegear.contact import active_set, averages, displacement, influence
+from facegear.contact.active_set import solved
+from facegear.contact.averages import HatPoints, Hats, Rows, closing, spread
+from facegear.contact.bodies import surface
+from facegear.contact.displacement import displacement as displaced
+from facegear.contact.influence import Surface
+from facegear.contact.influence import influence as influence_of
+from facegear.machine_code.compiler import compiler, for_callers
+
+SOURCES = (
+    Path(active_set.__file__),
+    Path(averages.__file__),
+    Path(displacement.__file__),
+    Path(influence.__file__),
+    Path(surface.__file__),
+)
+compiled, inlined = compiler(*SOURCES), for_callers()
+
+GAP, BAND = 0.8, 0.15
+"""Parts of the rigid approach within which contact is sought: the least gap of a column of hats (the bodies
+give way by the rest) and, above that, the gap of the others in it (the strip's half-width)."""
+
+WIDER = 1.6
+"""Factor on the second part where contact is missed beside the strip."""
+
+START_GAP, START_WIDTH = 0.6, 0.055
+"""The same parts for the first guess of what touches."""
+
+Loads = tuple[tuple[Rows, Rows], tuple[Rows, Rows]]
+"""Loads of hats on the nodes of both surfaces, and on those before refinement."""
+
+
+class Strip(NamedTuple):
+    """How wide a strip contact is sought in: GAP, BAND, WIDER, START_GAP and START_WIDTH."""
+
+    gap: float
+    band: float
+    wider: float
+    start_gap: float
+    start_width: float
+
+
+class Cover(NamedTuple):
+    """Which hats there are, as `closing` takes them: the area (n,) m2 to be covered of each, the number of
+    the `first` of the pinion's nodes, the `shape` of their lattice, and where the flanks of both gears end.
+    """
+
+    min_area: Array
+    first: int
+    shape: tuple[int, int]
+    flank_ends: tuple[float, float]
+
+
+class Facing(NamedTuple):
+    """Points of the pairs `teeth` (p,) of a position that face each other; each pair's begin at `starts`
+    (p + 1,).
+    """
+
+    points: HatPoints
+    starts: Integers
+    teeth: Integers
+
+
+class Touching(NamedTuple):
+    """Contact under torques (t,), the largest first.
+
+    `teeth` (p,) numbers of the pairs; rotation, slope, residual, steps (t,) as in `ContactSolution`; steps 0
+    where there is no solution. `candidates`: how many hats the turn closes; `forward` how many of them can
+    carry the torque; `sought` among how many the solution is; overlap: turn (rad) that would part the teeth
+    where they stand in each other. Of the m hats that are loaded by any torque: `hats`, and the force (t, m)
+    N. Loads (t, p, n) N of pairs on the nodes of both surfaces before refinement.
+    """
+
+    teeth: Integers
+    rotation: Array
+    slope: Array
+    residual: Array
+    steps: Integers
+    candidates: int
+    forward: int
+    sought: int
+    overlap: float
+    hats: Hats
+    force: Array
+    on_pinion: Array
+    on_gear: Array
+
+
+@compiled
+def touching(
+    facing: Facing,
+    cover: Cover,
+    surfaces: tuple[Surface, Surface],
+    torques: Array,
+    limit: float,
+    strip: Strip,
+    coupled: bool,
+    limits: tuple[int, float],
+) -> Touching:
+    """Contact of hats that a turn by `limit` (rad) closes, under torques (t,) N m, the largest first.
+
+    If the first torque turns further, only its rotation is of use. `limits`: steps and tolerance of the
+    active set.
+    """
+    hats = closing(
+        facing.points, facing.starts, cover.min_area, cover.first, cover.shape, cover.flank_ends, limit
+    )
+    at = facing.points.pinion, facing.points.gear
+    own, column_min = _turns(hats, cover.shape[1], facing.teeth.size)
+    gap, arm, band = hats.gap, hats.lever_arm, strip.band * limit
+    keep = _within(own, column_min, strip.gap * limit, band)
+    forward, overlap, longest = 0, 0.0, 0.0
+    drives = False
+    for i in range(gap.size):
+        longest = max(longest, abs(arm[i]))
+        if arm[i] > 0.0:
+            forward += 1
+            overlap = max(overlap, -gap[i] / arm[i])
+            drives |= keep[i]
+    if not drives:
+        keep[:] = True
+    cases = np.zeros(gap.size, np.int64)
+    rotation, slope, residual = np.zeros(torques.size), np.zeros(torques.size), np.zeros(torques.size)
+    steps, tried = np.zeros(torques.size, np.int64), forward > 0
+    which, force = np.zeros(0, np.int64), np.zeros((torques.size, 0))
+    ends = np.zeros(facing.teeth.size + 1, np.int64)
+    loads = _loads(hats.rows, which, at, surfaces)
+    while tried:
+        which = np.flatnonzero(keep)
+        ends = _ends(hats.pair[which], facing.teeth.size)
+        loads = _loads(hats.rows, which, at, surfaces)
+        matrix = influence_of(ends, facing.teeth, surfaces, loads[0], loads[1], coupled)
+        force = np.zeros((torques.size, which.size))
+        turn = limit
+        for t in range(torques.size):
+            if t:
+                turn = rotation[t - 1] * torques[t] / torques[t - 1]
+            start = _within(own, column_min, strip.start_gap * turn, strip.start_width * turn)[which]
+            steps[t], force[t], rotation[t], slope[t], residual[t] = solved(
+                matrix, gap[which], arm[which], torques[t], start, limits
+            )
+            tried = steps[t] > 0 and not rotation[0] > limit
+            if not tried:
+                break
+        if not tried:
+            break
+        for i in range(gap.size):
+            cases[i] = 0
+            for t in range(0 if keep[i] else torques.size):
+                if gap[i] < rotation[t] * arm[i]:
+                    cases[i] = t + 1
+        others = np.flatnonzero(cases)
+        if not others.size:
+            break
+        seen = others, _ends(hats.pair[others], facing.teeth.size), cases[others]
+        loaded = ends, loads[0], loads[1]
+        moved = displaced(seen, hats.rows, at, surfaces, facing.teeth, loaded, force, coupled)
+        tried = False
+        for number, hat in enumerate(others):
+            inside = 0.0
+            for t in range(cases[hat]):
+                apart = gap[hat] + moved[number, t] - rotation[t] * arm[hat]
+                part = -apart / (abs(rotation[t]) * longest)
+                inside, residual[t] = max(inside, part), max(residual[t], part)
+            keep[hat] = inside > limits[1]
+            tried |= keep[hat]
+        if tried:
+            band *= strip.wider
+            wider = _within(own, column_min, strip.gap * limit, band)
+            for hat in others:
+                keep[hat] |= wider[hat]
+    on_any = np.zeros(which.size, np.bool_)
+    for t in range(torques.size):
+        on_any |= force[t] > 0.0
+    chosen = which[on_any]
+    carrying = Hats(
+        hats.pair[chosen], hats.node[chosen], gap[chosen], arm[chosen], hats.fillet[chosen], hats.rows
+    )
+    return Touching(
+        facing.teeth,
+        rotation,
+        slope,
+        residual,
+        steps,
+        gap.size,
+        forward,
+        which.size,
+        overlap,
+        carrying,
+        np.ascontiguousarray(force[:, on_any]),
+        _on_nodes(loads[1][0], ends, force, surfaces[0]),
+        _on_nodes(loads[1][1], ends, force, surfaces[1]),
+    )
+
+
+@inlined
+def _turns(hats: Hats, columns: int, pairs: int) -> tuple[Array, Array]:
+    """Turn (n,) of the pinion that closes each hat's gap, and the least (n,) in its column of hats."""
+    count = hats.gap.size
+    own, of_column = np.full(count, np.inf), np.full(pairs * columns, np.inf)
+    for i in range(count):
+        if hats.lever_arm[i] > 0.0:
+            own[i] = hats.gap[i] / hats.lever_arm[i]
+            column = hats.pair[i] * columns + hats.node[i] % columns
+            of_column[column] = min(of_column[column], own[i])
+    column_min = np.empty(count)
+    for i in range(count):
+        column_min[i] = of_column[hats.pair[i] * columns + hats.node[i] % columns]
+    return own, column_min
+
+
+@inlined
+def _within(own: Array, column_min: Array, min_turn: float, band: float) -> Mask:
+    within = np.empty(own.size, np.bool_)
+    for i in range(own.size):
+        within[i] = own[i] < column_min[i] + band and column_min[i] < min_turn
+    return within
+
+
+@inlined
+def _ends(pair: Integers, pairs: int) -> Integers:
+    """Where those of each pair end (p + 1,), 0 first, among hats whose pair (n,) rises."""
+    ends = np.zeros(pairs + 1, np.int64)
+    for number in pair:
+        ends[number + 1] += 1
+    return np.cumsum(ends)
+
+
+@inlined
+def _loads(rows: Rows, which: Integers, at: tuple[Array, Array], surfaces: tuple[Surface, Surface]) -> Loads:
+    fine = spread(rows, which, at[0], surfaces[0].faces), spread(rows, which, at[1], surfaces[1].faces)
+    coarse = spread(rows, which, at[0], surfaces[0].coarse), spread(rows, which, at[1], surfaces[1].coarse)
+    return fine, coarse
+
+
+@inlined
+def _on_nodes(loads: Rows, ends: Integers, force: Array, body: Surface) -> Array:
+    """Forces (t, p, n) N of pairs on nodes by forces (t, m) on hats."""
+    pointer, index, weight = loads
+    nodes = body.coarse.shape[0] * body.coarse.shape[1]
+    total = np.zeros((force.shape[0], ends.size - 1, nodes))
+    for pair in range(ends.size - 1):
+        for i in range(ends[pair], ends[pair + 1]):
+            for t in range(force.shape[0]):
+                if force[t, i] != 0.0:
+                    for k in range(pointer[i], pointer[i + 1]):
+                        total[t, pair, index[k]] += weight[k] * force[t, i]
+    return total

@@ -1,0 +1,63 @@
+"""Contact among all candidates, with an influence matrix of any origin: no strip, no check of others."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.contact.averages import Hats
+from facegear.contact.candidates import Candidates
+from facegear.contact.solver import solve_contact
+from facegear.contact.touching import Touching
+
+
+def touching(
+    pairs: Sequence[Candidates], influence: Callable[[], Array], torques: Array, where: str
+) -> Touching:
+    """Contact of candidates under torques (t,) N m, the largest first, as `facegear.contact.touching` has it.
+
+    `influence` (m, m) of all of them, m/N. Raises NotConverged naming `where`.
+    """
+    gap, lever_arm, node, fillet = (
+        np.concatenate([np.zeros(0), *(getattr(pair, name) for pair in pairs)])
+        for name in ("gap", "lever_arm", "hats", "fillet")
+    )
+    number = np.repeat(np.arange(len(pairs)), [len(pair.hats) for pair in pairs])
+    forward = lever_arm > 0
+    matrix = influence() if len(pairs) else np.zeros((0, 0))
+    contacts = [
+        solve_contact(matrix, gap, lever_arm, torque, None, where) for torque in torques if forward.any()
+    ]
+    force = np.array([contact.force for contact in contacts]).reshape(-1, gap.size)
+    on_pinion, on_gear = (
+        np.array(
+            [
+                [pair.loads(side, False).by(row[number == order]) for order, pair in enumerate(pairs)]
+                for row in force
+            ]
+        )
+        for side in range(2)
+    )
+    ends = np.cumsum([0, *(len(pair.hats) for pair in pairs)])
+    none = np.zeros(0, np.int64)
+    rotation, slope, residual = (
+        np.array([getattr(contact, name) for contact in contacts])
+        for name in ("rotation", "slope", "residual")
+    )
+    return Touching(
+        teeth=np.array([pair.tooth for pair in pairs], dtype=np.int64),
+        rotation=rotation,
+        slope=slope,
+        residual=residual,
+        steps=np.array([contact.steps for contact in contacts], dtype=np.int64),
+        candidates=int(ends[-1]),
+        forward=int(forward.sum()),
+        sought=int(ends[-1]),
+        overlap=float(np.max(-gap[forward] / lever_arm[forward], initial=0.0)),
+        hats=Hats(
+            number, node.astype(np.int64), gap, lever_arm, fillet.astype(bool), (none, none, np.zeros(0))
+        ),
+        force=force,
+        on_pinion=on_pinion,
+        on_gear=on_gear,
+    )
