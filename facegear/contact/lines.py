@@ -15,10 +15,13 @@ from facegear.geometry.curvature import opposite_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, flank_points
 from facegear.geometry.placement import conjugate_angle, pinion_angle, to_left_flank
-from facegear.geometry.separation import FLANK, separation
+from facegear.geometry.separation import FLANK, separation, separation_each
 
 SAMPLES = 25
 """Points looked at along a profile before the parabola through the minimum and its neighbours."""
+
+EVERY = 4
+"""Which of them are looked at in any case."""
 
 BEYOND = 0.1
 """Part of the flank's height that the involute is followed beyond its tip, to see which lines leave it."""
@@ -127,7 +130,7 @@ def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: 
     top, bottom = design.pinion_tip_roll**2, _min_roll(design) ** 2
     roll_squared = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
     step = roll_squared[1] - roll_squared[0]
-    gap = _gaps(design, placement, np.broadcast_to(roll_squared[:, None], (SAMPLES, y.size)), y)
+    gap = _sampled_gaps(design, placement, roll_squared, y)
     nearest = np.clip(np.argmin(gap, axis=1), 1, SAMPLES - 2)
     square = roll_squared[nearest] + step * _vertex(
         *(np.take_along_axis(gap, (nearest + side)[:, None], 1)[:, 0] for side in (-1, 0, 1))
@@ -136,6 +139,29 @@ def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: 
         around = square[:, None] + part * step * np.array([-1.0, 0.0, 1.0])[:, None]
         square = square + part * step * _vertex(*np.moveaxis(_gaps(design, placement, around, y), 1, 0))
     return np.sqrt(np.clip(square, bottom, None))
+
+
+def _sampled_gaps(
+    design: PairDesign, placement: tuple[Array, Array, Array], roll_squared: Array, y: Array
+) -> Array:
+    """Gaps (p, k, n) of `_gaps` at squares (k,) of the roll, as many as show the least in each plane; inf
+    elsewhere.
+
+    Every EVERY-th is looked at first. Gaps fall towards the least and rise beyond it, so that it stands
+    between the neighbours of the least of these. Where none of a plane is seen, all are looked at, but for
+    pairs of which none is.
+    """
+    number = np.arange(roll_squared.size)[:, None]
+    gap = np.full((placement[0].size, number.size, y.size), np.inf)
+    first = np.broadcast_to(roll_squared[::EVERY, None], (number[::EVERY].size, y.size))
+    gap[:, ::EVERY] = _gaps(design, placement, first, y)
+    seen = np.isfinite(gap).any(axis=1, keepdims=True)
+    near = np.abs(number - np.argmin(gap, axis=1)[:, None]) < EVERY
+    wanted = (number % EVERY > 0) & np.where(seen, near, seen.any(axis=2, keepdims=True))
+    pair, sample, plane = np.nonzero(wanted)
+    points = flank_points(design, np.sqrt(np.maximum(roll_squared[sample], 0.0)), y[plane])
+    gap[wanted] = separation_each(design, points, placement, pair, design.module).continued
+    return gap
 
 
 def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], roll_squared: Array, y: Array) -> Array:
