@@ -19,7 +19,7 @@ from workflow.process.engine import Script
 VARIABLE = "FACEGEAR_FORK"
 """Environment variable; with the value `no` Python is started for each job."""
 SERVER = ("-P", "-m", "workflow.process.job_server")
-"""How Python is told to be the server; its copies are known by the same command line."""
+"""How Python is started as the server; its copies are known by the same words."""
 THREADS = (
     *("OMP_NUM_THREADS", "GOTO_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"),
     *("VECLIB_MAXIMUM_THREADS", "NUMEXPR_NUM_THREADS"),
@@ -52,7 +52,7 @@ class ForkedJobs:
     def run(self, script: Script) -> int | None:
         """The exit code of a script, run by a copy of the server; None where it has not been begun.
 
-        A job on several threads is none for a copy, whose libraries were told one.
+        A job on several threads is none for a copy, whose libraries use one.
         """
         if self._control is None or script.threads != 1:
             return None
