@@ -18,29 +18,47 @@ tools: $(TOOLS)
 # uv fetches and unpacks in parallel; pip does it where only pip knows the package index.
 define install
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $(1) \
-		|| $(BIN)/python -m pip install --quiet --require-hashes -r $(1)
+		|| $(call pip,install --quiet --require-hashes -r $(1))
+endef
+
+# The pip of the Python that makes .venv: one inside takes longer to install than all that a run needs.
+define pip
+	if $(PYTHON) -c 'import pip' 2>/dev/null; then $(PYTHON) -m pip --python $(BIN)/python $(1); \
+		else $(BIN)/python -m ensurepip && $(BIN)/python -m pip $(1); fi
+endef
+
+# Nothing is imported from folders named in IDLE.
+define compile
 	$(BIN)/python -m compileall -q -j $(CORES) -x '/($(IDLE))/' $(VENV)/lib
 endef
 
-# What a run needs. Without compiled modules every job would compile the libraries anew where Python may not write
-# them (PYTHONDONTWRITEBYTECODE). A run imports nothing from folders named in IDLE.
+# Python keeps what it has compiled, as it does by itself: a first run compiles what it imports and no more.
+all: export PYTHONDONTWRITEBYTECODE =
+
+# What a run needs. Where Python may not keep what it compiles (PYTHONDONTWRITEBYTECODE) all is compiled here, else
+# every start would compile the libraries anew.
 # The repository installs itself editable, so that notebooks and scripts find it from any folder.
 $(READY): requirements-run.lock pyproject.toml
-	$(PYTHON) -m venv $(VENV)
-	awk '/^[^ ]/ {wanted = /^(uv|setuptools|setuptools-scm|packaging)==/} wanted' requirements.lock > $(VENV)/installers.lock
-	$(BIN)/python -m pip install --quiet --require-hashes -r $(VENV)/installers.lock
-	$(call install,requirements-run.lock)
+	$(PYTHON) -m venv --without-pip $(VENV)
+	awk '/^[^ ]/ {wanted = /^uv==/} wanted' requirements.lock > $(VENV)/uv.lock
+	awk '/^[^ ]/ {wanted = /^(setuptools|setuptools-scm|packaging)==/} wanted' requirements.lock > $(VENV)/installers.lock
+	$(call pip,install --quiet --no-compile --require-hashes -r $(VENV)/uv.lock)
+	$(call install,requirements-run.lock -r $(VENV)/installers.lock)
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
+	test -z "$$PYTHONDONTWRITEBYTECODE" || $(compile)
 	touch $@
 
 # What tests, checks, documentation and benchmarks need beside it.
 $(TOOLS): requirements.lock $(READY)
 	$(call install,requirements.lock)
+	$(BIN)/python -m ensurepip > $(VENV)/pip.log
+	$(compile)
 	touch $@
 
 # Submission to Slurm: apart, since Snakemake imports every plugin at each start, this one with pandas.
 $(CLUSTER): requirements-cluster.lock $(TOOLS)
 	$(call install,requirements-cluster.lock)
+	$(compile)
 	touch $@
 
 check: env
