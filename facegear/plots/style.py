@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
@@ -10,6 +11,7 @@ from matplotlib.figure import Figure
 
 from facegear.io.atomic import atomic_path
 from facegear.plots import interactive
+from facegear.plots.once import found_once
 
 STYLE = {
     "figure.dpi": 110,
@@ -30,6 +32,11 @@ COLOURS = ("black", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B
 """That people tell apart who see no red or no green (Okabe and Ito)."""
 GEAR_LINES = {"lower": "-", "upper": "--"}
 """Lines of the meshes with each gear; the colour is the pinion's."""
+WRITING: dict[str, dict[str, Any]] = {
+    ".svg": {"metadata": {"Date": None}},
+    ".png": {"pil_kwargs": {"compress_level": 3}},  # half the time of 6 for 5 % more bytes
+}
+"""How matplotlib writes a format."""
 NARROW = 4.7
 """Width in inches of figures that a telephone shows whole: at 500 px their 9 pt text is 12 px high."""
 
@@ -47,7 +54,7 @@ def save(figure: Figure, *paths: str | Path) -> None:
     The same figure gives the same bytes: without a date, names inside a svg by a fixed salt. Its parts are
     laid out once for all formats; matplotlib would do so, and draw the whole figure, before each of them.
     """
-    with styled(), plt.rc_context({"figure.constrained_layout.use": False}):
+    with styled(), plt.rc_context({"figure.constrained_layout.use": False}), found_once():
         lay_out(figure)
         drawn = False
         for path in paths:
@@ -55,8 +62,7 @@ def save(figure: Figure, *paths: str | Path) -> None:
                 if str(path).endswith(".json"):
                     interactive.write(figure, temporary, drawn)
                 else:
-                    dates = {"Date": None} if str(path).endswith(".svg") else None
-                    figure.savefig(temporary, metadata=dates)
+                    figure.savefig(temporary, **WRITING.get(Path(path).suffix, {}))
                     drawn = True
     plt.close(figure)
 

@@ -291,11 +291,13 @@ def even_rows(y: Array, values: Array) -> tuple[Array, Array]:
         raise StillOnly("cells without straight rows")
     heights = np.linspace(y.min(), y.max(), ROWS)
     even = np.full((ROWS, y.shape[1]), np.nan)
-    for column, (height, value) in enumerate(zip(y.T, values.T, strict=True)):
-        for ends, known in zip(pairwise(height), pairwise(value), strict=True):
-            order = np.argsort(ends)
-            inside = (heights >= min(ends)) & (heights <= max(ends)) & np.isfinite(known).all()
-            even[inside, column] = np.interp(heights[inside], np.take(ends, order), np.take(known, order))
+    at = heights[:, None]
+    for ends, known in zip(pairwise(y), pairwise(values), strict=True):
+        order = np.argsort(ends, axis=0)
+        (low, high), (below, above) = (np.take_along_axis(np.array(rows), order, 0) for rows in (ends, known))
+        slope = np.divide(above - below, high - low, out=np.zeros_like(low), where=high > low)
+        inside = (at >= low) & (at <= high) & np.isfinite(known).all(axis=0)
+        even = np.where(inside, np.where(at == high, above, slope * (at - low) + below), even)
     return heights, even
 
 
