@@ -87,16 +87,16 @@ class Table:
 
     def numeric(self) -> list[bool]:
         """Of each column whether it holds numbers."""
-        frame = self.frame
-        types = [frame.iloc[:, i].dtype for i in range(frame.shape[1])]
         return [
-            pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind) for kind in types
+            pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind)
+            for kind in self.frame.dtypes
         ]
 
     def rows(self) -> list[list[str]]:
         """Cells as text."""
         units = [ending_of(str(name)) for name in self.frame.columns]
-        zero = [ROUNDING * self._largest(unit, units) for unit in units]
+        largest = {unit: self._largest(unit, units) for unit in set(units)}
+        zero = [ROUNDING * largest[unit] for unit in units]
         return [
             [self._cell(*cell) for cell in zip(row, units, zero, strict=True)]
             for row in self.frame.itertuples(index=False)

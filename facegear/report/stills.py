@@ -3,14 +3,15 @@
 import base64
 import re
 from pathlib import Path
+from string import ascii_letters, digits
 from urllib.parse import quote
 
 DECIMALS = 2
 """Of a coordinate (1/72 inch) of a drawing on the page: a hundredth is not seen."""
-KEPT = ' !"$()*+,/:;=?@[]^`{|}'
-"""Characters that a data URI between single quotes may hold as they are, letters and digits aside."""
+KEPT = frozenset(f"{ascii_letters}{digits}_.-~" ' !"$()*+,/:;=?@[]^`{|}')
+"""Characters that a data URI between single quotes may hold as they are."""
 GAPS = re.compile(r"\s+")
-NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")
+NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
 
 
 def data_uri(path: Path) -> str:
@@ -20,7 +21,10 @@ def data_uri(path: Path) -> str:
     """
     if path.suffix == ".png":
         return f"data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"
-    return f"data:image/svg+xml,{quote(shortened(path.read_text(encoding='utf-8')), safe=KEPT)}"
+    drawing = shortened(path.read_text(encoding="utf-8")).replace("%", quote("%"))
+    for letter in set(drawing) - KEPT - {"%"}:
+        drawing = drawing.replace(letter, quote(letter, safe=""))
+    return f"data:image/svg+xml,{drawing}"
 
 
 def shortened(svg: str) -> str:
@@ -31,5 +35,6 @@ def shortened(svg: str) -> str:
 
 
 def _rounded(attribute: re.Match[str]) -> str:
-    numbers = NUMBER.sub(lambda written: f"{round(float(written[0]), DECIMALS):g}", attribute[2])
-    return f'{attribute[1]}="{GAPS.sub(" ", numbers).strip()}"'
+    parts = NUMBER.split(attribute[2])
+    parts[1::2] = [f"{round(float(written), DECIMALS):g}" for written in parts[1::2]]
+    return f'{attribute[1]}="{GAPS.sub(" ", "".join(parts)).strip()}"'
