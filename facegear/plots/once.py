@@ -1,7 +1,8 @@
 """What matplotlib works out many times while it lays out and writes a figure, found once.
 
 Each pass over a figure asks for the ticks of an axis some six times, and for the layout of a text as often.
-Neither changes as long as the size of the axis, its limits and the resolution are the same.
+Neither changes as long as the size of the axis, its limits and the resolution are the same, nor the files
+of a font ever.
 """
 
 from collections.abc import Callable, Iterator
@@ -10,6 +11,7 @@ from typing import Any
 from unittest.mock import patch
 
 from matplotlib.axis import Axis
+from matplotlib.font_manager import FontManager, FontProperties
 from matplotlib.text import Text
 
 Method = Callable[..., Any]
@@ -17,12 +19,12 @@ Method = Callable[..., Any]
 
 @contextmanager
 def found_once() -> Iterator[None]:
-    """Let matplotlib keep ticks and text layouts while the body runs, in which no artist is changed.
+    """Let matplotlib keep ticks, text layouts and fonts while the body runs, in which no artist is changed.
 
     The names are matplotlib's own, found in 3.11; where one is missing, that is found as often as before.
     """
     with ExitStack() as stack:
-        for kind, name, keep in ((Axis, "_update_ticks", _kept_ticks), (Text, "_get_layout", _kept_layouts)):
+        for kind, name, keep in KEPT:
             method = getattr(kind, name, None)
             if method is not None:
                 stack.enter_context(patch.object(kind, name, keep(method)))
@@ -66,6 +68,26 @@ def _kept_layouts(find: Method) -> Method:
         return kept[look]
 
     return layout
+
+
+def _kept_fonts(find: Method) -> Method:
+    """The files of a font."""
+    kept: dict[FontProperties, Any] = {}
+
+    def fonts(manager: FontManager, font: FontProperties) -> Any:
+        if font not in kept:
+            kept[font.copy()] = find(manager, font)
+        return kept[font]
+
+    return fonts
+
+
+KEPT = (
+    (Axis, "_update_ticks", _kept_ticks),
+    (Text, "_get_layout", _kept_layouts),
+    (FontManager, "_find_fonts_by_props", _kept_fonts),
+)
+"""Kind of object, its method, and what makes from the method one that keeps its answers."""
 
 
 def _resolution(artist: Axis | Text) -> float:

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
@@ -11,6 +10,7 @@ from matplotlib.figure import Figure
 
 from facegear.io.atomic import atomic_path
 from facegear.plots import interactive
+from facegear.plots.both import draw_both, read_formulas_once
 from facegear.plots.once import found_once
 
 STYLE = {
@@ -32,11 +32,6 @@ COLOURS = ("black", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B
 """That people tell apart who see no red or no green (Okabe and Ito)."""
 GEAR_LINES = {"lower": "-", "upper": "--"}
 """Lines of the meshes with each gear; the colour is the pinion's."""
-WRITING: dict[str, dict[str, Any]] = {
-    ".svg": {"metadata": {"Date": None}},
-    ".png": {"pil_kwargs": {"compress_level": 3}},  # half the time of 6 for 5 % more bytes
-}
-"""How matplotlib writes a format."""
 NARROW = 4.7
 """Width in inches of figures that a telephone shows whole: at 500 px their 9 pt text is 12 px high."""
 
@@ -52,24 +47,29 @@ def save(figure: Figure, *paths: str | Path) -> None:
     """Write a figure to each path (the suffix names the format; json: its interactive form) and close it.
 
     The same figure gives the same bytes: without a date, names inside a svg by a fixed salt. Its parts are
-    laid out once for all formats; matplotlib would do so, and draw the whole figure, before each of them.
+    laid out once for all formats, and drawn once for svg and png; matplotlib would do so before each of them.
     """
+    by_ending = {Path(path).suffix: path for path in paths}
+    both = [by_ending.pop(ending) for ending in (".svg", ".png")] if {".svg", ".png"} <= {*by_ending} else []
     with styled(), plt.rc_context({"figure.constrained_layout.use": False}), found_once():
         lay_out(figure)
-        drawn = False
-        for path in paths:
+        figure.set_dpi(STYLE["savefig.dpi"])
+        if both:
+            with atomic_path(both[0]) as svg, atomic_path(both[1]) as png:
+                draw_both(figure, svg, png)
+        for ending, path in by_ending.items():
             with atomic_path(path) as temporary:
-                if str(path).endswith(".json"):
-                    interactive.write(figure, temporary, drawn)
+                if ending == ".json":
+                    interactive.write(figure, temporary, bool(both))
                 else:
-                    figure.savefig(temporary, **WRITING.get(Path(path).suffix, {}))
-                    drawn = True
+                    figure.savefig(temporary, metadata={"Date": None} if ending == ".svg" else None)
     plt.close(figure)
 
 
 def lay_out(figure: Figure) -> None:
     """Give all parts of a figure their places, which it keeps from then on."""
     if (engine := figure.get_layout_engine()) is not None:
+        read_formulas_once(figure)
         engine.execute(figure)
         figure.set_layout_engine(None)
 

@@ -1,0 +1,68 @@
+"""Drawing and picture of a figure, made at once, are those that matplotlib makes one after the other."""
+
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from PIL import Image
+
+from facegear.plots import style
+
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+MADE_UP = re.compile(r'base64,[^"]*|id="[^"]*"|url\([^)]*\)|href="[^"]*"|(?s:<metadata>.*?</metadata>)')
+
+
+def curves():
+    """Lines, marks, areas, bars, a formula, turned text and a legend; a height that is no whole pixel."""
+    with style.styled():
+        figure, (axis, below) = plt.subplots(2, 1, figsize=(4.7, 1.2 + 1.7 * 3 + 0.003))
+        x = np.linspace(0.0, 1.0, 200)
+        axis.plot(x, np.sin(20.0 * x), "o--", markevery=9, label="10$^{-4}$ s")
+        axis.fill_between(x, 0.1, 0.3, alpha=0.2)
+        axis.set(ylabel="turned", ylim=(-0.5, 0.5))
+        axis.annotate("a note", (0.5, 0.2), rotation=30)
+        axis.legend()
+        below.bar(["one", "two"], [1.0, 2.0])
+        below.scatter([0, 1], [0.5, 0.7], s=20)
+    return figure
+
+
+def maps():
+    """A map kept as pixels in the drawing, one of areas, and a bar of colours."""
+    with style.styled():
+        figure, axes = plt.subplots(2, 1, figsize=(4.0, 5.0))
+        x, y = np.meshgrid(np.arange(9.0), np.arange(7.0))
+        smooth = axes[0].pcolormesh(x, y, x * y, shading="gouraud", rasterized=True)
+        axes[0].plot(x[0], x[0] / 2, "s", rasterized=True)
+        axes[1].pcolormesh(x, y, (x * y)[:-1, :-1])
+        figure.colorbar(smooth, ax=axes)
+    return figure
+
+
+def drawing():
+    """A drawing in space."""
+    with style.styled():
+        figure, axis = plt.subplots(subplot_kw={"projection": "3d"})
+        axis.bar3d([0.0, 1.0], [0.0, 1.0], 0.0, 0.5, 0.5, [1.0, 2.0])
+    return figure
+
+
+@pytest.mark.parametrize("made", [curves, maps, drawing])
+def test_both_are_what_matplotlib_draws_one_by_one(made, tmp_path):
+    """Texts of the drawing are as wide as those of the picture, whose letters stand on whole pixels."""
+    style.save(made(), tmp_path / "both.svg", tmp_path / "both.png")
+    style.save(made(), tmp_path / "alone.png")
+    style.save(made(), tmp_path / "alone.svg")
+    pictures = [np.asarray(Image.open(tmp_path / f"{name}.png").convert("RGB")) for name in ("both", "alone")]
+    np.testing.assert_array_equal(*pictures)
+    texts = [MADE_UP.sub("", (tmp_path / f"{name}.svg").read_text()) for name in ("both", "alone")]
+    parts = [NUMBER.sub("#", text).splitlines() for text in texts]
+    assert parts[0] == parts[1], "the same parts, and no curve is coarser"
+    curves = [
+        np.array(
+            [float(number) for line in re.findall(r' d="([^"]*)"', text) for number in NUMBER.findall(line)]
+        )
+        for text in texts
+    ]
+    np.testing.assert_allclose(*curves, atol=0.6)
