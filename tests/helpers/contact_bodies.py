@@ -115,9 +115,8 @@ def pressed(body, refinement, gap_of, force, reach=None):
     centres.
     """
     system = tied_system(body, refinement)
-    flank = condense(system).flank
+    compliance = condense(system).flank
     shape = system.surface.shape[:2]
-    compliance = system.spread @ flank @ system.spread.T
     points, weight, area = hats_of(system.surface)
     matrix = weight @ interpolation(points, shape)
     surface = system.surface.reshape(-1, 3)

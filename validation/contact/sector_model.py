@@ -11,7 +11,6 @@ from math import pi
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.contact.bodies.compliance import on_lattice
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.ring import plane_compliance
 from facegear.contact.bodies.substructure import condense
@@ -112,11 +111,9 @@ def sector_blocks(
     Equal to that of the sector meshed whole, from one condensed tooth.
     """
     elastic, _ = elastic_tooth(design, tooth, material, LOADED_SIDE[tooth.body])
-    system = tied_system(elastic, refinement)
-    condensed = condense(system)
+    condensed = condense(tied_system(elastic, refinement))
     planes = plane_compliance(condensed.faces, teeth)
-    seen = system.spread @ condensed.influence
-    own = on_lattice(system.spread, condensed.flank)
+    seen, own = condensed.influence, condensed.flank
     size = seen.shape[1]
     starts = {number: size // 2 * (number + teeth // 2) for number in loaded}
     faces = {number: slice(start, start + size) for number, start in starts.items()}

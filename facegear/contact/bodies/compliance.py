@@ -5,12 +5,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import scipy.sparse as sp
 
-from facegear.arrays import AnyArray, Array, Arrays
+from facegear.arrays import AnyArray, Array, Arrays, Integers
 from facegear.contact.bodies.body import ElasticBody
+from facegear.contact.bodies.dense import backward, cholesky, forward, plus_square
 from facegear.contact.bodies.layer import TiedSystem, tied_system
 from facegear.contact.bodies.mirror import halves, unfolded
-from facegear.contact.bodies.ring import moved_faces, rest_stiffness
-from facegear.contact.bodies.substructure import Superelement, condense, held_by
+from facegear.contact.bodies.ring import LEFT, RIGHT, moved_faces, rest_stiffness
+from facegear.contact.bodies.substructure import Superelement, condense
 from facegear.contact.options import Element, Ends, Refinement
 from facegear.progress import Progress
 
@@ -119,18 +120,11 @@ def coupled_compliance(
     """
     shape = system.surface.shape[:2]
     nodes = np.arange(shape[0] * shape[1]).reshape(shape)[:: refinement.profile, :: refinement.width]
-    others, rest = np.zeros((1, nodes.size, nodes.size)), np.zeros((0, 0))
-    spread = system.spread[nodes.ravel()]
-    readings = (spread @ tooth.gauge_flank.T).T[None]
+    coarse = nodes.ravel()
+    own, others = tooth.flank, np.zeros((1, coarse.size, coarse.size))
+    readings = tooth.gauge_flank[None, :, coarse]
     if system.left.size:
-        rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
-        seen = spread @ tooth.influence
-        moved = moved_faces(tooth.faces, rests, seen.T)
-        others = seen @ moved
-        own, readings = readings[0], -(tooth.gauge_faces @ moved)
-        readings[neighbours] += own
-        rest = rests[0][0]
-    own = on_lattice(system.spread, held_by(tooth, rest))
+        own, others, readings = _among_others(tooth, coarse, teeth, neighbours, ends)
     return FlankCompliance(
         own=own,
         others=others,
@@ -142,12 +136,29 @@ def coupled_compliance(
     )
 
 
-def on_lattice(spread: sp.csr_matrix, flank: Array) -> Array:
-    """Bring the masters' compliance (k, k) by `spread` (n, k) to the n lattice nodes, mostly masters."""
-    if spread.nnz == spread.shape[0] and (spread.data == 1.0).all():
-        return flank[np.ix_(spread.indices, spread.indices)]
-    half = spread @ flank
-    return np.ascontiguousarray((spread @ half.T).T)
+def _among_others(
+    tooth: Superelement, coarse: Integers, teeth: int, neighbours: int, ends: Ends
+) -> tuple[Array, Array, Array]:
+    """`own`, `others` and `readings` of a FlankCompliance, for nodes `coarse` (c,) of the refined lattice.
+
+    In a ring one tooth moves another as it is moved by it, so that one side stands for both.
+    """
+    rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
+    around = cholesky(tooth.faces + rests[0][0])
+    half = forward(around, tooth.influence.T)
+    own = plus_square(tooth.flank, half)
+    half = half[:, coarse]
+    seen, moved = tooth.influence[coarse], backward(around, half)
+    after = moved_faces(tooth.faces, rests, moved, RIGHT)
+    further = [seen @ faces for faces in after]
+    if ends == "ring" and not len(tooth.gauge_faces):
+        others = np.stack([*(each.T for each in further[::-1]), half.T @ half, *further])
+        return own, others, np.zeros((len(others), 0, coarse.size))
+    before = moved_faces(tooth.faces, rests, moved, LEFT)[::-1]
+    others = np.stack([*(seen @ faces for faces in before), half.T @ half, *further])
+    readings = np.stack([-(tooth.gauge_faces @ faces) for faces in (*before, moved, *after)])
+    readings[neighbours] += tooth.gauge_flank[:, coarse]
+    return own, others, readings
 
 
 def to_arrays(compliance: FlankCompliance) -> dict[str, AnyArray]:

@@ -1,10 +1,15 @@
-"""Stiffness matrices of linear elastic elements from scikit-fem's bases."""
+"""Stiffness matrices of linear elastic elements, contracted in batches from gradients of their functions."""
+
+from functools import cache
 
 import numpy as np
 from skfem import Basis
 from skfem.models.elasticity import lame_parameters
+from skfem.quadrature import get_quadrature
 
 from facegear.arrays import Array
+from facegear.contact.bodies.elements import KINDS
+from facegear.contact.options import Element as Kind
 from facegear.geometry.design import Material
 
 
@@ -14,17 +19,61 @@ def element_stiffness(basis: Basis, material: Material) -> Array:
     Dof 3 n + i is the displacement of local node n along axis i. Raises ValueError for an element that is
     turned inside out anywhere.
     """
-    turned = np.sign(basis.mapping.detDF(basis.X, basis.tind))
+    _require_right_side_out(basis.mapping.detDF(basis.X, basis.tind))
+    gradient = np.stack([function[0].grad for function in basis.basis])
+    nodes, axes, elements, points = gradient.shape
+    scaled = (gradient * np.sqrt(basis.dx)).transpose(3, 2, 1, 0).reshape(points, elements, axes, nodes)
+    stiffness = _contracted(scaled, material)
+    return stiffness.transpose(0, 2, 1, 4, 3).reshape(elements, nodes * axes, nodes * axes)
+
+
+def isoparametric_stiffness(points: Array, element: Kind, material: Material) -> Array:
+    """Stiffness (m, 3 a, 3 a) of elements in space whose a nodes at `points` (m, a, 3) carry their functions.
+
+    Dof a i + n is the displacement of local node n along axis i. Raises ValueError for an element that is
+    turned inside out anywhere.
+    """
+    weights, local = _at_quadrature(element)
+    # tangents (3, 3, q, m): derivative along local axis j, then component i
+    tangents = np.einsum("qja,mai->jiqm", local, points, optimize=True)
+    normals = np.stack([np.cross(tangents[j - 2], tangents[j - 1], axis=0) for j in range(3)])
+    volume = np.einsum("iqm,iqm->qm", tangents[0], normals[0])
+    _require_right_side_out(volume.T)
+    normals *= np.sqrt(weights[:, None] * np.abs(volume)) / volume
+    scaled = normals.transpose(2, 3, 1, 0).reshape(len(weights), -1, 3) @ local
+    stiffness = _contracted(scaled.reshape(len(weights), len(points), 3, -1), material)
+    return stiffness.reshape(len(points), 3 * points.shape[1], -1)
+
+
+@cache
+def _at_quadrature(element: Kind) -> tuple[Array, Array]:
+    """Weights (q,) of the element's quadrature and gradients (q, d, a) of its functions at the points."""
+    make, degree = KINDS[element]
+    kind = make()
+    at, weights = get_quadrature(kind.refdom, degree)
+    local = np.stack([kind.lbasis(at, node)[1] for node in range(len(kind.doflocs))])
+    return weights, np.ascontiguousarray(local.transpose(2, 1, 0))
+
+
+def _contracted(scaled: Array, material: Material) -> Array:
+    """Stiffness (m, d, a, d, a) from gradients (q, m, d, a) times the root of the volume of each point."""
+    points, elements, axes, nodes = scaled.shape
+    flat = scaled.reshape(points, elements, axes * nodes).transpose(1, 0, 2)
+    outer = (flat.transpose(0, 2, 1) @ flat).reshape(elements, axes, nodes, axes, nodes)
+    lame, shear = lame_parameters(material.young_modulus, material.poisson_ratio)
+    stiffness = lame * outer
+    outer *= shear
+    trace = sum(outer[:, axis, :, axis] for axis in range(axes))
+    for axis in range(axes):
+        stiffness[:, axis, :, axis] += trace
+        for other in range(axes):
+            stiffness[:, axis, :, other] += outer[:, other, :, axis]
+    return stiffness
+
+
+def _require_right_side_out(volume: Array) -> None:
+    """Raise ValueError for elements of which the volume (m, q) of a point has another sign than the first."""
+    turned = np.sign(volume)
     inverted = (turned != turned[:, :1]).any(axis=1)
     if inverted.any():
         raise ValueError(f"{np.count_nonzero(inverted)} elements are inverted")
-    gradient = np.stack([function[0].grad for function in basis.basis])
-    nodes, axes, elements, points = gradient.shape
-    scaled = (gradient * np.sqrt(basis.dx)).transpose(2, 3, 0, 1).reshape(elements, points, nodes * axes)
-    outer = (scaled.transpose(0, 2, 1) @ scaled).reshape(elements, nodes, axes, nodes, axes)
-    lame, shear = lame_parameters(material.young_modulus, material.poisson_ratio)
-    stiffness = lame * outer + shear * outer.transpose(0, 1, 4, 3, 2)
-    trace = shear * np.einsum("maibi->mab", outer)
-    for axis in range(axes):
-        stiffness[:, :, axis, :, axis] += trace
-    return stiffness.reshape(elements, nodes * axes, nodes * axes)

@@ -26,26 +26,32 @@ SINGULAR = "the stiffness matrix is singular: the body is not held or its mesh i
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """A front with the places in the elimination of its own dof (p,) and of those it is coupled to (m,).
+    """A front with the places in the elimination of its own dof, p in a row, and of those and of the readings
+    (m,) that it is coupled to.
 
     It comes after the fronts `before`. `base` and `left` say where in the stack the front begins, and where
     its remainder is put afterwards.
     """
 
-    own: Integers
+    own: slice
     outside: Integers
     before: tuple[int, ...]
     base: int
     left: int
 
+    @property
+    def size(self) -> int:
+        """Number of its own dof."""
+        return int(self.own.stop - self.own.start)
+
     def columns(self, stack: Array) -> tuple[Array, Array]:
         """Of its own dof: the block (p, p) on the diagonal and the one below it (m, p)."""
-        p, m = self.own.size, self.outside.size
+        p, m = self.size, self.outside.size
         return _block(stack, self.base, p, p), _block(stack, self.base + p * p, m, p)
 
     def rest(self, stack: Array) -> Array:
         """Of the dof it is coupled to (m, m)."""
-        p, m = self.own.size, self.outside.size
+        p, m = self.size, self.outside.size
         return _block(stack, self.base + p * (p + m), m, m)
 
     def remainder(self, stack: Array) -> Array:
@@ -58,30 +64,39 @@ def _block(stack: Array, start: int, rows: int, columns: int) -> Array:
     return stack[start : start + rows * columns].reshape((rows, columns), order="F")
 
 
-def schur_complement(parts: Sequence[Part], kept: Integers, centres: Array) -> Array:
-    """Dense A_kk - A_kr A_rr^-1 A_rk with k the `kept` dof and r the others, shape (k, k), ordered as `kept`.
+def schur_complement(parts: Sequence[Part], kept: Integers, centres: Array, readings: sp.csr_matrix) -> Array:
+    """Lower triangle of the dense Schur complement onto the `kept` dof k and g `readings` of all n dof.
 
-    A, the sum of `parts`, is symmetric and positive definite on r; its cells lie around `centres` (m, 3).
-    It holds on to the memory that its making took. Raises FacegearError if A is not positive definite: the
-    body is not held or its mesh is broken.
+    With r the other dof and R the `readings` (g, n), of the matrix A bordered by R it is (k + g, k + g)
+
+        [ A_kk - A_kr A_rr^-1 A_rk              .           ]
+        [ R_k - R_r A_rr^-1 A_rk      - R_r A_rr^-1 R_r^T   ]
+
+    What is above the diagonal has no meaning. A, the sum of `parts`, is symmetric and positive definite on r;
+    its cells lie around `centres` (m, 3). The result holds on to the memory that its making took. Raises
+    FacegearError if A is not positive definite: the body is not held or its mesh is broken.
     """
     cells = coupled(parts, len(centres))
     fronts = dissection(cells, centres, kept)
     order = np.concatenate([*(front.dof for front in fronts), kept])
     number = np.empty(len(order), dtype=np.int64)
     number[order] = np.arange(len(order))
-    steps, size = _steps(cells, number, fronts, kept.size)
+    read = readings.tocsc()[:, order]
+    steps, size = _steps(cells, number, fronts, kept.size, read)
     del cells
-    stack, row_of = np.empty(size), np.empty(order.size, dtype=np.int64)
+    stack, row_of = np.empty(size), np.empty(sum(read.shape), dtype=np.int64)
     rest = stack[:0].reshape(0, 0)
     for step, added in zip(steps, _added(parts, number, fronts, len(centres)), strict=True):
         (pivot, below), rest = step.columns(stack), step.rest(stack)
         _sum_up(added, step, steps, stack, row_of, (pivot, below, rest))
+        _add_readings(read, step.own, row_of[number.size :] - step.size, below)
+        if step is steps[-1]:
+            ends = slice(number.size - kept.size, number.size)
+            _add_readings(read, ends, row_of[number.size :] - step.size, rest)
         _eliminate(pivot, below, rest)
         if step is not steps[-1]:
             _move_down(rest.ravel(order="F"), step.remainder(stack).ravel(order="F"))
-    _mirror(rest)
-    if not np.isfinite(rest).all():
+    if not np.isfinite(rest.diagonal()).all():
         raise FacegearError(SINGULAR)
     return rest
 
@@ -99,27 +114,31 @@ def _added(
         yield [(*small, *by) for small, by in zip(turn, moved, strict=True)]
 
 
-def _steps(cells: sp.csr_matrix, number: Integers, fronts: list[Front], kept: int) -> tuple[list[Step], int]:
-    """What each front is coupled to among the dof that are eliminated after it or kept, and its memory.
+def _steps(
+    cells: sp.csr_matrix, number: Integers, fronts: list[Front], kept: int, read: sp.csc_matrix
+) -> tuple[list[Step], int]:
+    """What each front is coupled to among the dof that are eliminated after it or kept, and the readings.
 
-    Also the size of the stack. The last front is coupled to all that is kept.
+    `read` (g, n) are the readings by the dof in the order of elimination. The last front is coupled to all
+    that is kept and read. Also the size of the stack.
     """
     steps: list[Step] = []
-    top = size = 0
+    top = size = start = 0
     for which, front in enumerate(fronts):
         last = which == len(fronts) - 1
-        own = number[front.dof]
-        touched = np.zeros(number.size, dtype=np.bool_)
+        own = slice(start, start + front.dof.size)
+        touched = np.zeros(sum(read.shape), dtype=np.bool_)
         for other in front.before:
             touched[steps[other].outside] = True
         touched[number[cells[front.cells].indices]] = True
+        touched[number.size + read.indices[read.indptr[own.start] : read.indptr[own.stop]]] = True
         touched[number.size - kept :] |= last
         touched[own] = False
         outside = np.flatnonzero(touched)
         left = steps[front.before[0]].left if front.before else top
         steps.append(Step(own, outside, front.before, top, left))
-        size = max(size, top + own.size * (own.size + outside.size) + outside.size**2)
-        top = left + outside.size**2
+        size = max(size, top + front.dof.size * (front.dof.size + outside.size) + outside.size**2)
+        top, start = left + outside.size**2, own.stop
     return steps, size
 
 
@@ -137,8 +156,8 @@ def _sum_up(
     """
     pivot, below, rest = parts
     row_of[:] = -1
-    row_of[step.own] = np.arange(step.own.size)
-    row_of[step.outside] = step.own.size + np.arange(step.outside.size)
+    row_of[step.own] = np.arange(step.size)
+    row_of[step.outside] = step.size + np.arange(step.outside.size)
     _clear(pivot)
     _clear(rest)
     below[:] = 0.0
@@ -146,6 +165,13 @@ def _sum_up(
         _add_entries(*entries, row_of, *parts)
     for other in step.before:
         _add_front(steps[other].remainder(stack), row_of[steps[other].outside], *parts)
+
+
+def _add_readings(read: sp.csc_matrix, dof: slice, rows: Integers, block: Array) -> None:
+    """Add the readings by some dof in a row, the columns of a block in which each reading has its row."""
+    at = slice(read.indptr[dof.start], read.indptr[dof.stop])
+    columns = np.repeat(np.arange(dof.stop - dof.start), np.diff(read.indptr[dof.start : dof.stop + 1]))
+    block[rows[read.indices[at]], columns] += read.data[at]
 
 
 def _eliminate(pivot: Array, below: Array, rest: Array) -> None:
@@ -197,24 +223,16 @@ def _add_front(added: Array, at: Integers, pivot: Array, below: Array, rest: Arr
     """Add the lower triangle of a front before to the places (m,), ascending, of its dof in this one."""
     size, count = pivot.shape[0], added.shape[0]
     inside = np.searchsorted(at, size)
-    start = 0
-    while start < count:
-        stop = start + 1
-        limit = inside if start < inside else count
-        while stop < limit and at[stop] == at[stop - 1] + 1:
-            stop += 1
-        row = at[start]
-        for j in range(stop):
-            column, begin = at[j], max(start, j)
-            if column >= size:
-                target = rest[row + begin - start - size : row + stop - start - size, column - size]
-            elif row >= size:
-                target = below[row + begin - start - size : row + stop - start - size, column]
-            else:
-                target = pivot[row + begin - start : row + stop - start, column]
-            for i in range(begin, stop):
-                target[i - begin] += added[i, j]
-        start = stop
+    for j in range(inside):
+        column = at[j]
+        for i in range(j, inside):
+            pivot[at[i], column] += added[i, j]
+        for i in range(inside, count):
+            below[at[i] - size, column] += added[i, j]
+    for j in range(inside, count):
+        column = at[j] - size
+        for i in range(j, count):
+            rest[at[i] - size, column] += added[i, j]
 
 
 @compiled
@@ -230,14 +248,3 @@ def _move_down(source: Array, target: Array) -> None:
     """Copy numbers (n,) to where they may overlap with themselves, from the first to the last."""
     for i in range(source.size):
         target[i] = source[i]
-
-
-@compiled
-def _mirror(square: Array) -> None:
-    """Copy the lower triangle of a square to its upper one, block by block."""
-    size, block = square.shape[0], 64
-    for top in range(0, size, block):
-        for left in range(0, top + 1, block):
-            for j in range(left, min(left + block, size)):
-                for i in range(max(top, j + 1), min(top + block, size)):
-                    square[j, i] = square[i, j]

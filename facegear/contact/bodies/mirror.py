@@ -64,7 +64,8 @@ def _before_the_plane(system: TiedSystem) -> tuple[tuple[Part, ...], Array]:
     plane = system.points[:, 1].min() + 0.5 * width
     chosen = []
     for part in system.parts:
-        beyond = (part.moved @ system.points.ravel())[part.rows[:, 1::3]].mean(axis=1) - plane
+        along = part.rows[:, part.rows.shape[1] // 3 : 2 * part.rows.shape[1] // 3]
+        beyond = (part.moved @ system.points.ravel())[along].mean(axis=1) - plane
         members = np.flatnonzero(beyond <= ON_THE_PLANE * width)
         weights = np.where(beyond[members] < -ON_THE_PLANE * width, 1.0, 0.5)
         chosen.append((part, members, weights))

@@ -6,38 +6,36 @@ of teeth. Matrices (2s, 2s) hold the left face first, then the right one.
 """
 
 import numpy as np
-import scipy.linalg as sl
 
 from facegear.arrays import Array
-from facegear.contact.bodies.dense import cholesky, inverse, solved
+from facegear.contact.bodies.dense import cholesky, forward, inverse, plus_square, solved
 from facegear.contact.options import Ends
 
-APART = 1e-14
-"""Stiffness between the ends of a chain, over the largest of it, that is rounding."""
+APART = 3e-9
+"""Stiffness between the ends of a chain, over the largest of it, whose square is rounding."""
+LEFT, RIGHT = 0, 1
 
 
 def joined(first: Array, second: Array) -> Array:
     """Stiffness (2s, 2s) of two chains in series, right face of the first on the left face of the second."""
     s = len(first) // 2
-    middle = cholesky(first[s:, s:] + second[:s, :s])
-    coupling = np.concatenate([first[:s, s:].T, second[:s, s:]], axis=1)
-    half = sl.solve_triangular(middle, coupling, lower=True, check_finite=False)
-    chain = half.T @ half
-    np.negative(chain, out=chain)
-    chain[:s, :s] += first[:s, :s]
-    chain[s:, s:] += second[s:, s:]
-    return chain
+    coupling, ends = np.empty((s, 2 * s), order="F"), np.zeros((2 * s, 2 * s), order="F")
+    coupling[:, :s], coupling[:, s:] = first[:s, s:].T, second[:s, s:]
+    ends[:s, :s], ends[s:, s:] = first[:s, :s], second[s:, s:]
+    half = forward(cholesky(first[s:, s:] + second[:s, :s]), coupling)
+    return plus_square(ends, half, -1.0)
 
 
 def chain(faces: Array, teeth: int) -> Array:
     """Stiffness (2s, 2s) of `teeth` >= 1 equal teeth in series, by binary powers.
 
-    Once the ends of a power do not feel each other, those of all longer chains are its own to rounding.
+    What the ends of a chain twice as long feel of each other, and what they feel of its length, is of the
+    second order in what those of a power do: once that is rounding, all longer chains have the power's ends.
     """
     powers = [faces]
     while 2 ** len(powers) <= teeth:
-        if apart(powers[-1]):
-            return powers[-1]
+        if _almost_apart(powers[-1]):
+            return _ends(powers[-1])
         powers.append(joined(powers[-1], powers[-1]))
     result = powers[-1]
     for doublings in range(len(powers) - 1):
@@ -47,15 +45,28 @@ def chain(faces: Array, teeth: int) -> Array:
 
 
 def apart(stiffness: Array) -> bool:
-    """Whether the two ends of a chain feel each other less than rounding, as those of a long one do."""
+    """Whether the two ends of a chain do not feel each other, as those of a long one."""
+    s = len(stiffness) // 2
+    return not stiffness[:s, s:].any()
+
+
+def _almost_apart(stiffness: Array) -> bool:
     s = len(stiffness) // 2
     return bool(np.abs(stiffness[:s, s:]).max(initial=0.0) <= APART * np.abs(stiffness.diagonal()).max())
+
+
+def _ends(stiffness: Array) -> Array:
+    """The stiffness without what its ends feel of each other."""
+    s = len(stiffness) // 2
+    alone = np.zeros_like(stiffness)
+    alone[:s, :s], alone[s:, s:] = stiffness[:s, :s], stiffness[s:, s:]
+    return alone
 
 
 def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> list[tuple[Array, Array]]:
     """What the faces of 1 + k adjoining teeth feel from the others, k = 0..neighbours.
 
-    For k further teeth to the right, and for k to the left, the stiffness (2s, 2s) that joins the row's left
+    For k further teeth to the left, and for k to the right, the stiffness (2s, 2s) that joins the row's left
     and right face from outside. Raises ValueError if no tooth would be left outside.
     """
     s = len(faces) // 2
@@ -75,7 +86,7 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
     after = teeth - 1 - before
     for k in range(neighbours + 1):
         sides = []
-        for left, right in ((before, after - k), (before - k, after)):
+        for left, right in ((before - k, after), (before, after - k)):
             rest = np.zeros((2 * s, 2 * s))
             rest[:s, :s] = _seen_from_end(chain(faces, left), slice(s, None), slice(0, s), ends)
             rest[s:, s:] = _seen_from_end(chain(faces, right), slice(0, s), slice(s, None), ends)
@@ -84,24 +95,23 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
     return rests
 
 
-def moved_faces(faces: Array, rests: list[tuple[Array, Array]], force: Array) -> Array:
-    """Displacements of the cut faces of a tooth and its neighbours by forces on the tooth's own faces.
+def moved_faces(faces: Array, rests: list[tuple[Array, Array]], held: Array, side: int) -> list[Array]:
+    """Displacements (2s, m) of the cut faces of each of n teeth on one side of a tooth, from it outwards.
 
     `faces` (2s, 2s) is one tooth's stiffness, `rests` from `rest_stiffness` for n neighbours on each side,
-    `force` (2s, m) on the left and right face of the middle tooth. Returns (2 n + 1, 2s, m): block t holds
-    the faces of the tooth t - n places further.
+    `held` (2s, m) the displacements of the tooth's own faces. Nothing else is loaded.
     """
     s = len(faces) // 2
-    low, high = slice(0, s), slice(s, None)
-    held = solved(cholesky(faces + rests[0][0]), force)
-    left, right = [held[low]], [held[high]]
-    for to_right, to_left in rests[1:]:
-        push = faces[high, low] @ right[-1] + to_right[high, low] @ held[low]
-        right.append(-solved(cholesky(faces[high, high] + to_right[high, high]), push))
-        push = faces[low, high] @ left[-1] + to_left[low, high] @ held[high]
-        left.append(-solved(cholesky(faces[low, low] + to_left[low, low]), push))
-    planes = left[::-1] + right
-    return np.stack([np.concatenate(planes[tooth : tooth + 2]) for tooth in range(len(planes) - 1)])
+    halves = slice(0, s), slice(s, None)
+    near, far = halves[1 - side], halves[side]
+    planes = [held[far]]
+    for rest in (sides[side] for sides in rests[1:]):
+        push = faces[far, near] @ planes[-1]
+        if not apart(rest):
+            push += rest[far, near] @ held[near]
+        planes.append(-solved(cholesky(faces[far, far] + rest[far, far]), push))
+    order = slice(None) if side == RIGHT else slice(None, None, -1)
+    return [np.concatenate(planes[tooth : tooth + 2][order]) for tooth in range(len(planes) - 1)]
 
 
 def plane_compliance(faces: Array, teeth: int) -> Array:

@@ -4,18 +4,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import solve_triangular
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.bodies.cellwise import Part
-from facegear.contact.bodies.dense import cholesky, inverse
+from facegear.contact.bodies.dense import mirrored
 from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.layer import TiedSystem
 
 
 @dataclass(frozen=True, eq=False)
 class Superelement:
-    """A tooth seen from its loaded flank and its two cut faces, each face in its own turned frame.
+    """A tooth seen from the k nodes of its refined flank and its two cut faces, each in its own turned frame.
 
     `flank` (k, k), m/N: normal displacements by unit normal forces with both faces clamped;
     `influence` (k, 2 s), s the free dof of a face: minus the normal displacement by unit face displacements
@@ -32,68 +30,28 @@ class Superelement:
 
 
 def condense(system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superelement:
-    """Eliminate everything but the normal displacements of the flank and the cut faces.
+    """Eliminate everything but the cut faces, and read the normal displacements of the flank.
 
     `gauges` (g, 3 n): readings by the displacements of the system's masters; they cost as much as so many
     more flank nodes.
     Raises FacegearError if the body is not held, ValueError if the flank touches a held or a cut face.
     """
     turn, flank, faces = _turned(system)
-    kept = np.concatenate([flank, faces])
-    parts, centres = [part.seen_by(turn.T) for part in system.parts], system.centres
+    parts = [part.seen_by(turn.T) for part in system.parts]
+    normal = (np.ones(flank.size), (np.arange(flank.size), flank))
+    read = (system.spread @ sp.csr_matrix(normal, (flank.size, turn.shape[0]))).tocsr()
+    last = faces.size + read.shape[0]
     if gauges is not None:
-        kept = np.concatenate([kept, turn.shape[0] + np.arange(gauges.shape[0])])
-        read = (gauges @ turn.T).tocsr()
-        at = system.points[turn.indices[turn.indptr[:-1]] // 3]
-        parts, centres = _with_gauges(parts, centres, read, at)
-    schur = schur_complement(parts, kept, centres)
-    k, ends = flank.size, flank.size + faces.size
-    readings, schur = schur[ends:, :ends].copy(), schur[:ends, :ends]
-    lower = cholesky(schur[:k, :k])
-    half = solve_triangular(lower, schur[:k, k:], lower=True, check_finite=False)
-    outer = schur[k:, k:] - half.T @ half
-    del schur
-    influence = solve_triangular(lower, half, trans="T", lower=True, check_finite=False)
-    own = inverse(lower)
+        read = sp.vstack([read, gauges @ turn.T], format="csr")
+    schur = schur_complement(parts, faces, system.centres, read)
+    loads, beyond = slice(faces.size, last), slice(last, None)
     return Superelement(
-        flank=own,
-        influence=influence,
-        faces=outer,
-        gauge_flank=readings[:, :k] @ own,
-        gauge_faces=readings[:, k:] - readings[:, :k] @ influence,
+        flank=mirrored(np.negative(schur[loads, loads])),
+        influence=np.negative(schur[loads, : faces.size]),
+        faces=mirrored(schur[: faces.size, : faces.size].copy(order="F")),
+        gauge_flank=np.negative(schur[beyond, loads]),
+        gauge_faces=schur[beyond, : faces.size].copy(),
     )
-
-
-def _with_gauges(
-    parts: list[Part], centres: Array, read: sp.csr_matrix, points: Array
-) -> tuple[list[Part], Array]:
-    """The stiffness bordered by gauges, whose own part of a Schur complement has no meaning.
-
-    `read` (g, n) are their readings by the n free dof at `points` (n, 3). Each gauge has a cell of its own.
-    """
-    count, free = read.shape
-    reads = (read != 0.0).astype(float)
-    number = np.maximum(reads.sum(axis=1), 1.0)
-    middle = np.asarray((reads @ points) / np.asarray(number).reshape(-1, 1))
-    moved = sp.block_array([[None, sp.eye(count)], [read, None]], format="csr")
-    rows = np.arange(count)[:, None] + np.array([0, count])
-    crossed = np.array([[0.0, 1.0], [1.0, 0.0]])
-
-    def bordering(members: Integers) -> Array:
-        return np.tile(crossed, (len(members), 1, 1))
-
-    wider = [part.seen_by(sp.eye(free, free + count, format="csr")) for part in parts]
-    return [*wider, Part(bordering, rows, moved, len(centres) + np.arange(count))], np.concatenate(
-        [centres, middle]
-    )
-
-
-def held_by(tooth: Superelement, rest: Array) -> Array:
-    """Normal displacements (k, k), m/N, of the flank by unit normal forces, faces held by `rest` (2s, 2s)."""
-    if rest.size == 0:
-        return tooth.flank
-    half = solve_triangular(cholesky(tooth.faces + rest), tooth.influence.T, lower=True, check_finite=False)
-    return tooth.flank + half.T @ half
 
 
 def frames_of(normals: Array, held: Mask) -> Array:

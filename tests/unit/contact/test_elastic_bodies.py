@@ -18,7 +18,7 @@ from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.elements import mesh_of
 from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.layer import tied_system
-from facegear.contact.bodies.ring import apart, chain, joined
+from facegear.contact.bodies.ring import LEFT, RIGHT, apart, chain, joined, moved_faces, rest_stiffness
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.gear_flank import GearFlank, from_arrays, to_arrays
 from facegear.contact.options import Refinement
@@ -195,13 +195,17 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
     matrix = stiffness(parts)
     kept = np.arange(90, 0, -3)
     rest = np.setdiff1d(np.arange(matrix.shape[0]), kept)
-    across = matrix[rest][:, kept].toarray()
-    expected = matrix[kept][:, kept] - across.T @ spl.splu(matrix[rest][:, rest].tocsc()).solve(across)
-    computed = schur_complement(parts, kept, system.centres)
+    readings = sp.random_array((4, matrix.shape[0]), density=0.2, rng=np.random.default_rng(0), format="csr")
+    readings *= 1e-2 * matrix.max()
+    bordered = sp.block_array([[matrix, readings.T], [readings, None]], format="csr")
+    seen = np.concatenate([kept, matrix.shape[0] + np.arange(4)])
+    across = bordered[rest][:, seen].toarray()
+    expected = bordered[seen][:, seen] - across.T @ spl.splu(matrix[rest][:, rest].tocsc()).solve(across)
+    computed = schur_complement(parts, kept, system.centres, readings)
     agrees(
         "Schur complement, N/m",
-        computed,
-        expected,
+        np.tril(computed),
+        np.tril(expected),
         relative=1e-7,
         absolute=1e-11 * np.abs(expected).max(),
     )
@@ -313,14 +317,17 @@ def test_a_chain_of_teeth_is_the_one_joined_tooth_by_tooth(slab, teeth):
     "analytic",
     "Maxwell's reciprocity between teeth",
     capability="compliance",
-    module="facegear.contact.bodies.compliance",
+    module="facegear.contact.bodies.ring",
 )
 def test_neighbouring_refined_teeth_move_each_other_alike(slab):
-    """Maxwell's reciprocity between teeth, at the unrefined nodes."""
+    """Maxwell's reciprocity between teeth, by which a tooth's neighbours on one side stand for both."""
     tooth, elastic = slab
-    compliance = flank_compliance(elastic, CUTS, tooth.teeth, 2)
-    for places in (1, 2):
-        there, back = compliance.block(places), compliance.block(-places)
+    condensed = condense(tied_system(elastic, CUTS))
+    rests = rest_stiffness(condensed.faces, 2, tooth.teeth, "ring")
+    held = np.linalg.solve(condensed.faces + rests[0][0], condensed.influence.T)
+    left, right = (moved_faces(condensed.faces, rests, held, side) for side in (LEFT, RIGHT))
+    for back, there in zip(left, right, strict=True):
+        there, back = condensed.influence @ there, condensed.influence @ back
         agrees(
             "influence of one tooth on another, m/N",
             there,
