@@ -144,7 +144,7 @@ def _among_others(
     In a ring one tooth moves another as it is moved by it, so that one side stands for both.
     """
     rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
-    around = cholesky(tooth.faces + rests[0][0])
+    around = cholesky(tooth.faces + rests[0][0], overwrite=True)
     half = forward(around, tooth.influence.T)
     own = plus_square(tooth.flank, half)
     half = half[:, coarse]

@@ -1,4 +1,7 @@
-"""Dense symmetric positive definite matrices."""
+"""Dense symmetric positive definite matrices.
+
+Where `overwrite` is set, the result may take the place of the argument.
+"""
 
 import numpy as np
 from scipy.linalg import blas, lapack
@@ -10,9 +13,9 @@ BLOCK = 256
 """Rows and columns that are mirrored together, so that both fit into a cache."""
 
 
-def cholesky(matrix: Array) -> Array:
+def cholesky(matrix: Array, overwrite: bool = False) -> Array:
     """Lower factor (n, n) of a symmetric matrix. Raises FacegearError if it is not positive definite."""
-    lower, failed = lapack.dpotrf(matrix, lower=1, clean=1)
+    lower, failed = lapack.dpotrf(matrix, lower=1, clean=1, overwrite_a=overwrite)
     if failed:
         raise FacegearError("a condensed stiffness is not positive definite: the body is not held")
     return lower
@@ -24,24 +27,24 @@ def inverse(factor: Array) -> Array:
     return mirrored(lower)
 
 
-def solved(factor: Array, rhs: Array) -> Array:
+def solved(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
     """Solution (n, m) of a system given by its lower factor."""
-    return lapack.dpotrs(factor, rhs, lower=1)[0]
+    return lapack.dpotrs(factor, rhs, lower=1, overwrite_b=overwrite)[0]
 
 
-def forward(factor: Array, rhs: Array) -> Array:
+def forward(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
     """Inverse of a lower factor times (n, m)."""
-    return blas.dtrsm(1.0, factor, rhs, lower=1)
+    return blas.dtrsm(1.0, factor, rhs, lower=1, overwrite_b=overwrite)
 
 
-def backward(factor: Array, rhs: Array) -> Array:
+def backward(factor: Array, rhs: Array, overwrite: bool = False) -> Array:
     """Inverse of a lower factor's transpose times (n, m)."""
-    return blas.dtrsm(1.0, factor, rhs, lower=1, trans_a=1)
+    return blas.dtrsm(1.0, factor, rhs, lower=1, trans_a=1, overwrite_b=overwrite)
 
 
-def plus_square(matrix: Array, half: Array, sign: float = 1.0) -> Array:
+def plus_square(matrix: Array, half: Array, sign: float = 1.0, overwrite: bool = False) -> Array:
     """Symmetric (n, n), of which the lower triangle is read, plus `sign` times half.T @ half (m, n)."""
-    return mirrored(blas.dsyrk(sign, half, beta=1.0, c=matrix, trans=1, lower=1))
+    return mirrored(blas.dsyrk(sign, half, beta=1.0, c=matrix, trans=1, lower=1, overwrite_c=overwrite))
 
 
 def mirrored(square: Array) -> Array:

@@ -1,7 +1,8 @@
 """Schur complements of sparse positive definite matrices, front by front (Duff and Reid 1983).
 
 Each front is a small dense matrix, and goes as soon as it is added to the next: no factor is kept. All of
-them lie in one piece of memory, a stack, whose pages are asked of the system once.
+them lie in one piece of memory, whose pages are asked of the system once: two stacks that grow from its ends
+towards each other. A front stands on one of them, those that it takes from on top of the other.
 """
 
 from collections.abc import Iterator, Sequence
@@ -11,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies.cellwise import Part, coupled, in_turn
 from facegear.contact.bodies.dissection import Front, dissection
 from facegear.errors import FacegearError
@@ -29,14 +30,14 @@ class Step:
     """A front with the places in the elimination of its own dof, p in a row, and of those and of the readings
     (m,) that it is coupled to.
 
-    It comes after the fronts `before`. `base` and `left` say where in the stack the front begins, and where
-    its remainder is put afterwards.
+    It comes after the fronts `before`. In the memory of all fronts, counted from its end where negative, what
+    it leaves begins at `left` and its own columns at `start`.
     """
 
     own: slice
     outside: Integers
     before: tuple[int, ...]
-    base: int
+    start: int
     left: int
 
     @property
@@ -44,24 +45,20 @@ class Step:
         """Number of its own dof."""
         return int(self.own.stop - self.own.start)
 
-    def columns(self, stack: Array) -> tuple[Array, Array]:
+    def columns(self, memory: Array) -> tuple[Array, Array]:
         """Of its own dof: the block (p, p) on the diagonal and the one below it (m, p)."""
         p, m = self.size, self.outside.size
-        return _block(stack, self.base, p, p), _block(stack, self.base + p * p, m, p)
+        return _block(memory, self.start, p, p), _block(memory, self.start + p * p, m, p)
 
-    def rest(self, stack: Array) -> Array:
-        """Of the dof it is coupled to (m, m)."""
-        p, m = self.size, self.outside.size
-        return _block(stack, self.base + p * (p + m), m, m)
-
-    def remainder(self, stack: Array) -> Array:
-        """What it adds to the front after it (m, m)."""
-        return _block(stack, self.left, self.outside.size, self.outside.size)
+    def rest(self, memory: Array) -> Array:
+        """Of what it is coupled to (m, m): what it adds to the front after it."""
+        return _block(memory, self.left, self.outside.size, self.outside.size)
 
 
-def _block(stack: Array, start: int, rows: int, columns: int) -> Array:
-    """A matrix of the stack, its columns contiguous."""
-    return stack[start : start + rows * columns].reshape((rows, columns), order="F")
+def _block(memory: Array, start: int, rows: int, columns: int) -> Array:
+    """A matrix in memory, its columns contiguous."""
+    start %= max(memory.size, 1)
+    return memory[start : start + rows * columns].reshape((rows, columns), order="F")
 
 
 def schur_complement(parts: Sequence[Part], kept: Integers, centres: Array, readings: sp.csr_matrix) -> Array:
@@ -84,18 +81,16 @@ def schur_complement(parts: Sequence[Part], kept: Integers, centres: Array, read
     read = readings.tocsc()[:, order]
     steps, size = _steps(cells, number, fronts, kept.size, read)
     del cells
-    stack, row_of = np.empty(size), np.empty(sum(read.shape), dtype=np.int64)
-    rest = stack[:0].reshape(0, 0)
+    memory, row_of = np.empty(size), np.empty(sum(read.shape), dtype=np.int64)
+    rest = memory[:0].reshape(0, 0)
     for step, added in zip(steps, _added(parts, number, fronts, len(centres)), strict=True):
-        (pivot, below), rest = step.columns(stack), step.rest(stack)
-        _sum_up(added, step, steps, stack, row_of, (pivot, below, rest))
+        (pivot, below), rest = step.columns(memory), step.rest(memory)
+        _sum_up(added, step, steps, memory, row_of, (pivot, below, rest))
         _add_readings(read, step.own, row_of[number.size :] - step.size, below)
         if step is steps[-1]:
             ends = slice(number.size - kept.size, number.size)
             _add_readings(read, ends, row_of[number.size :] - step.size, rest)
         _eliminate(pivot, below, rest)
-        if step is not steps[-1]:
-            _move_down(rest.ravel(order="F"), step.remainder(stack).ravel(order="F"))
     if not np.isfinite(rest.diagonal()).all():
         raise FacegearError(SINGULAR)
     return rest
@@ -120,13 +115,14 @@ def _steps(
     """What each front is coupled to among the dof that are eliminated after it or kept, and the readings.
 
     `read` (g, n) are the readings by the dof in the order of elimination. The last front is coupled to all
-    that is kept and read. Also the size of the stack.
+    that is kept and read. Also the size of the memory for all of them.
     """
     steps: list[Step] = []
-    top = size = start = 0
+    on_first = _on_first_stack(fronts)
+    tops, size, begin = [0, 0], 0, 0
     for which, front in enumerate(fronts):
         last = which == len(fronts) - 1
-        own = slice(start, start + front.dof.size)
+        own = slice(begin, begin + front.dof.size)
         touched = np.zeros(sum(read.shape), dtype=np.bool_)
         for other in front.before:
             touched[steps[other].outside] = True
@@ -135,18 +131,32 @@ def _steps(
         touched[number.size - kept :] |= last
         touched[own] = False
         outside = np.flatnonzero(touched)
-        left = steps[front.before[0]].left if front.before else top
-        steps.append(Step(own, outside, front.before, top, left))
-        size = max(size, top + front.dof.size * (front.dof.size + outside.size) + outside.size**2)
-        top, start = left + outside.size**2, own.stop
+        columns, rest = front.dof.size * (front.dof.size + outside.size), outside.size**2
+        side = 0 if on_first[which] else 1
+        size = max(size, sum(tops) + columns + rest)
+        left, start = tops[side], tops[side] + rest
+        if side:
+            left, start = -left - rest, -start - columns
+        steps.append(Step(own, outside, front.before, start, left))
+        tops[side] += rest
+        tops[1 - side] -= sum(steps[other].outside.size ** 2 for other in front.before)
+        begin = own.stop
     return steps, size
+
+
+def _on_first_stack(fronts: list[Front]) -> Mask:
+    """Which fronts stand on the first of two stacks, so that those before a front stand on the other."""
+    first = np.ones(len(fronts), dtype=bool)
+    for which in reversed(range(len(fronts))):
+        first[list(fronts[which].before)] = not first[which]
+    return first
 
 
 def _sum_up(
     added: list[Entries],
     step: Step,
     steps: list[Step],
-    stack: Array,
+    memory: Array,
     row_of: Integers,
     parts: tuple[Array, Array, Array],
 ) -> None:
@@ -154,17 +164,15 @@ def _sum_up(
 
     `row_of` is filled with where in it each dof stands, by the place in the elimination, -1 if nowhere.
     """
-    pivot, below, rest = parts
     row_of[:] = -1
     row_of[step.own] = np.arange(step.size)
     row_of[step.outside] = step.size + np.arange(step.outside.size)
-    _clear(pivot)
-    _clear(rest)
-    below[:] = 0.0
+    for part in parts:
+        part[:] = 0.0
     for entries in added:
         _add_entries(*entries, row_of, *parts)
     for other in step.before:
-        _add_front(steps[other].remainder(stack), row_of[steps[other].outside], *parts)
+        _add_front(steps[other].rest(memory), row_of[steps[other].outside], *parts)
 
 
 def _add_readings(read: sp.csc_matrix, dof: slice, rows: Integers, block: Array) -> None:
@@ -233,18 +241,3 @@ def _add_front(added: Array, at: Integers, pivot: Array, below: Array, rest: Arr
         column = at[j] - size
         for i in range(j, count):
             rest[at[i] - size, column] += added[i, j]
-
-
-@compiled
-def _clear(square: Array) -> None:
-    """Zero the lower triangle."""
-    for column in range(square.shape[0]):
-        for row in range(column, square.shape[0]):
-            square[row, column] = 0.0
-
-
-@compiled
-def _move_down(source: Array, target: Array) -> None:
-    """Copy numbers (n,) to where they may overlap with themselves, from the first to the last."""
-    for i in range(source.size):
-        target[i] = source[i]

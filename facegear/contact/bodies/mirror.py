@@ -46,16 +46,18 @@ def unfolded(even: Array, odd: Array, shape: tuple[int, int], rows: bool = True)
 
     Without `rows` (..., g, nu nv): only its columns stand for nodes of the lattice.
     """
-    along = np.minimum(np.arange(2 * shape[1] - 1), np.arange(2 * shape[1] - 1)[::-1])
-    node = (shape[1] * np.arange(shape[0])[:, None] + along).ravel()
-    sign = np.tile(np.where(np.arange(along.size) < shape[1], 1.0, -1.0), shape[0])
-    if not rows:
-        return np.asarray(0.5 * (even[..., node] + sign * odd[..., node]))
-    whole = odd[..., node[:, None], node]
-    whole *= sign[:, None] * sign
-    whole += even[..., node[:, None], node]
-    whole *= 0.5
-    return np.asarray(whole)
+    across, half = shape
+    whole, before, behind = 2 * half - 1, slice(0, half), slice(half, None)
+    image = slice(half - 2, None, -1) if half > 1 else slice(0, 0)
+    ends = (across, half, across, half) if rows else (even.shape[-2], 1, across, half)
+    same, other = (0.5 * each.reshape(*even.shape[:-2], *ends) for each in (even + odd, even - odd))
+    seen = whole if rows else 1
+    result = np.empty((*even.shape[:-2], ends[0], seen, across, whole))
+    for at, from_row in ((before, before), (behind, image)) if rows else ((before, before),):
+        near, far = (same, other) if at is before else (other, same)
+        result[..., at, :, before] = near[..., from_row, :, :]
+        result[..., at, :, behind] = far[..., from_row, :, image]
+    return result.reshape(*even.shape[:-2], -1, across * whole)
 
 
 def _before_the_plane(system: TiedSystem) -> tuple[tuple[Part, ...], Array]:

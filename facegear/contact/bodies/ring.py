@@ -22,8 +22,8 @@ def joined(first: Array, second: Array) -> Array:
     coupling, ends = np.empty((s, 2 * s), order="F"), np.zeros((2 * s, 2 * s), order="F")
     coupling[:, :s], coupling[:, s:] = first[:s, s:].T, second[:s, s:]
     ends[:s, :s], ends[s:, s:] = first[:s, :s], second[s:, s:]
-    half = forward(cholesky(first[s:, s:] + second[:s, :s]), coupling)
-    return plus_square(ends, half, -1.0)
+    middle = cholesky(first[s:, s:] + second[:s, :s], overwrite=True)
+    return plus_square(ends, forward(middle, coupling, overwrite=True), -1.0, overwrite=True)
 
 
 def chain(faces: Array, teeth: int) -> Array:
@@ -106,10 +106,11 @@ def moved_faces(faces: Array, rests: list[tuple[Array, Array]], held: Array, sid
     near, far = halves[1 - side], halves[side]
     planes = [held[far]]
     for rest in (sides[side] for sides in rests[1:]):
-        push = faces[far, near] @ planes[-1]
+        push = -faces[far, near] @ planes[-1]
         if not apart(rest):
-            push += rest[far, near] @ held[near]
-        planes.append(-solved(cholesky(faces[far, far] + rest[far, far]), push))
+            push -= rest[far, near] @ held[near]
+        middle = cholesky(faces[far, far] + rest[far, far], overwrite=True)
+        planes.append(solved(middle, np.asfortranarray(push), overwrite=True))
     order = slice(None) if side == RIGHT else slice(None, None, -1)
     return [np.concatenate(planes[tooth : tooth + 2][order]) for tooth in range(len(planes) - 1)]
 
