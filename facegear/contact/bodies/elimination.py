@@ -22,6 +22,8 @@ compiled = compiler()
 
 Entries = tuple[Array, Integers, Integers, Integers, Array]
 """Small matrices (k, a, a), their rows (k, a) of a sparse one, and its pointers, columns and values."""
+BLOCK = 256
+"""Columns that are cleared together."""
 SINGULAR = "the stiffness matrix is singular: the body is not held or its mesh is broken"
 
 
@@ -167,8 +169,10 @@ def _sum_up(
     row_of[:] = -1
     row_of[step.own] = np.arange(step.size)
     row_of[step.outside] = step.size + np.arange(step.outside.size)
-    for part in parts:
-        part[:] = 0.0
+    pivot, below, rest = parts
+    _clear(pivot)
+    _clear(rest)
+    below[:] = 0.0
     for entries in added:
         _add_entries(*entries, row_of, *parts)
     for other in step.before:
@@ -241,3 +245,9 @@ def _add_front(added: Array, at: Integers, pivot: Array, below: Array, rest: Arr
         column = at[j] - size
         for i in range(j, count):
             rest[at[i] - size, column] += added[i, j]
+
+
+def _clear(square: Array) -> None:
+    """Zero the lower triangle, and of the upper one no more than a block."""
+    for start in range(0, len(square), BLOCK):
+        square[start:, start : start + BLOCK] = 0.0

@@ -72,15 +72,16 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
     s = len(faces) // 2
     if teeth < 2 * neighbours + 3:
         raise ValueError(f"{2 * neighbours + 1} loaded teeth and two more do not fit in a {ends} of {teeth}")
-    swap = np.r_[s : 2 * s, 0:s]
     rests = []
     if ends == "ring":
         outside = chain(faces, teeth - 1 - neighbours)
-        for k in range(neighbours, -1, -1):
-            around = outside[np.ix_(swap, swap)]
-            rests.append((around, around))
-            if k and not apart(outside):
+        around = _from_outside(outside)
+        rests.append((around, around))
+        for _ in range(neighbours):
+            if not apart(outside):
                 outside = joined(faces, outside)
+                around = _from_outside(outside)
+            rests.append((around, around))
         return rests[::-1]
     before = (teeth - 1) // 2
     after = teeth - 1 - before
@@ -93,6 +94,12 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
             sides.append(rest)
         rests.append((sides[0], sides[1]))
     return rests
+
+
+def _from_outside(chain: Array) -> Array:
+    """The stiffness of a chain whose right face is another row's left one, and the other way round."""
+    s = len(chain) // 2
+    return np.roll(chain, (s, s), axis=(0, 1))
 
 
 def moved_faces(faces: Array, rests: list[tuple[Array, Array]], held: Array, side: int) -> list[Array]:
