@@ -9,6 +9,9 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.io.atomic import atomic_path
 
+NODE = "%d, %.12e, %.12e, %.12e\n"
+ELEMENT = f"{', '.join(['%d'] * 11)},\n{', '.join(['%d'] * 10)}\n"
+
 
 def write(
     path: str | Path,
@@ -26,18 +29,20 @@ def write(
     used = np.unique(elements)
     with atomic_path(path) as temporary, open(temporary, "w", encoding="ascii") as stream:
         stream.write(f"*HEADING\n{title}; lengths in m\n*NODE, NSET=ALL_NODES\n")
-        table = np.column_stack([used + 1, nodes[used]])
-        np.savetxt(stream, table, fmt="%d, %.12e, %.12e, %.12e")
+        _rows(stream, NODE, np.column_stack([used + 1, nodes[used]]))
         stream.write("*ELEMENT, TYPE=C3D20, ELSET=BODY\n")
-        labels = np.column_stack([np.arange(1, len(elements) + 1), elements + 1])
-        for row in labels.tolist():
-            stream.write(", ".join(map(str, row[:11])) + ",\n" + ", ".join(map(str, row[11:])) + "\n")
+        _rows(stream, ELEMENT, np.column_stack([np.arange(1, len(elements) + 1), elements + 1]))
         for name, members in node_sets.items():
             stream.write(f"*NSET, NSET={name.upper()}\n")
             _list(stream, np.intersect1d(members, used) + 1)
         for name, faces in surfaces.items():
             stream.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
             stream.writelines(f"{element + 1}, {side}\n" for element, side in faces)
+
+
+def _rows(stream: TextIO, line: str, table: Array | Integers) -> None:
+    """A line for each row of a table, all of them formatted at once."""
+    stream.write(line * len(table) % tuple(table.ravel().tolist()))
 
 
 def _list(stream: TextIO, labels: Integers) -> None:

@@ -13,7 +13,7 @@ from facegear.mesh.hexahedra import TENSOR, hex_mesh
 from facegear.mesh.tooth import FeTooth
 
 ELEMENTS_AT_ONCE = 2000
-DEGREE = 7
+DEGREE = 5
 """Of the quadrature of volumes: the determinant of the 27-node geometry has at most the degree 5 each way."""
 
 
