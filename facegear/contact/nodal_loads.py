@@ -27,13 +27,12 @@ def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Int
     }
     spots = [(number, spot) for number, case in enumerate(cases) for spot in case.spots]
     for body, part in zip(BODIES, ("on_pinion", "on_gear"), strict=True):
-        forces = [getattr(spot, part) for _, spot in spots]
-        nodes = [np.flatnonzero(force) for force in forces]
-        counts = [node.size for node in nodes]
-        arrays[f"{body}_case"] = np.repeat([number for number, _ in spots], counts)
-        arrays[f"{body}_tooth"] = np.repeat([spot.tooth for _, spot in spots], counts)
-        arrays[f"{body}_node"] = np.concatenate(nodes)
-        arrays[f"{body}_force_n"] = np.concatenate([f[n] for f, n in zip(forces, nodes, strict=True)])
+        forces = np.array([getattr(spot, part) for _, spot in spots])
+        row, node = np.nonzero(forces)
+        arrays[f"{body}_case"] = np.array([number for number, _ in spots])[row]
+        arrays[f"{body}_tooth"] = np.array([spot.tooth for _, spot in spots])[row]
+        arrays[f"{body}_node"] = node
+        arrays[f"{body}_force_n"] = forces[row, node]
     arrays["nodes"] = np.array([spots[0][1].on_pinion.size, spots[0][1].on_gear.size])
     return arrays
 
@@ -49,7 +48,7 @@ def loads_by_tooth(
     cases = np.flatnonzero(arrays["variant"] == variant)
     shape = cases.size, int(arrays["nodes"][BODIES.index(body)])
     case, tooth, node, force = (arrays[f"{body}_{name}"] for name in ("case", "tooth", "node", "force_n"))
-    own = np.isin(case, cases)
+    own = arrays["variant"][case] == variant
     case, tooth, node, force = case[own] - cases[0], tooth[own], node[own], force[own]
     force = force if flank_nodes is None else np.where(node < flank_nodes, force, 0.0)
     return {

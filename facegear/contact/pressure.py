@@ -7,7 +7,7 @@ is refined, and the line load is all that can be said. What a fillet carries sta
 is left out.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import pairwise
 
@@ -20,7 +20,7 @@ from facegear.contact.flanks import FlankPair
 from facegear.contact.hertz import contact_modulus, strip_pressure
 from facegear.contact.lines import ContactLines, unloaded_lines
 from facegear.contact.position import LoadedPosition, Spot
-from facegear.geometry.design import Material
+from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.unloaded import PAIRS
 
@@ -79,31 +79,46 @@ class LineLoads:
 
 @dataclass(frozen=True, eq=False)
 class FlankPressure:
-    """Contact lines of all pairs at all positions, and what they carry at each position and torque.
+    """Contact lines of the pairs that carry load at some torque, and what they carry at each.
 
-    `position` and `tooth` (p,) of the lines and `points` (p, n, 3) of theirs on the pinion's right flank in
-    its body frame, m; `loads` in the order of the results they were made from.
+    `position` and `tooth` (p,) of the lines; `unloaded` transmission error (m) of all positions by which they
+    are placed; `loads` in the order of the results they were made from.
     """
 
     position: Array
     tooth: Integers
     lines: ContactLines
-    points: Array
+    unloaded: Mapping[float, float]
     loads: tuple[LineLoads, ...]
+
+    def every_point(self, design: PairDesign) -> tuple[Array, Integers, Array]:
+        """Positions and teeth (q,) of the pairs -2..2 at all positions, and the points (q, n, 3) of their
+        lines on the pinion's right flank in its body frame, m.
+        """
+        position, tooth = np.repeat(sorted(self.unloaded), PAIRS.size), np.tile(PAIRS, len(self.unloaded))
+        row = _rows(self.position, self.tooth)
+        known = np.array([row.get(pair, -1) for pair in zip(position.tolist(), tooth.tolist(), strict=True)])
+        roll = self.lines.roll[known]
+        rest = known < 0
+        if rest.any():
+            others = position[rest], tooth[rest]
+            roll[rest] = unloaded_lines(design, *others, self.unloaded, self.lines.y).roll
+        return position, tooth, flank_points(design, roll, self.lines.y).position
 
 
 def flank_pressure(
     results: Sequence[LoadedPosition], flanks: FlankPair, materials: tuple[Material, Material]
 ) -> FlankPressure:
-    """Line loads and pressures of all results; pairs -2..2 at every position.
+    """Line loads and pressures of all results.
 
     Raises NotConverged as `facegear.geometry.separation` does.
     """
     design = flanks.design
     unloaded = {result.position: result.unloaded for result in results}
-    position, tooth = np.repeat(sorted(unloaded), PAIRS.size), np.tile(PAIRS, len(unloaded))
+    loaded = sorted({(result.position, spot.tooth) for result in results for spot in result.spots})
+    position, tooth = (np.array(part) for part in zip(*loaded, strict=True))
     lines = unloaded_lines(design, position, tooth, unloaded, flanks.pinion.planes)
-    row = {key: i for i, key in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
+    row = _rows(position, tooth)
     modulus = contact_modulus(materials)
     places = line_rows(lines.to_pinion_tip, flanks.pinion)
     spots, at = [], []
@@ -114,8 +129,12 @@ def flank_pressure(
     every, ends = _along(_by_plane(spots, lines.y.size), np.array(at), lines, modulus)
     of_result = np.cumsum([0] + [len(result.spots) for result in results])
     loads = [every.part(slice(ends[first], ends[last])) for first, last in pairwise(of_result)]
-    points = flank_points(design, lines.roll, lines.y).position
-    return FlankPressure(position=position, tooth=tooth, lines=lines, points=points, loads=tuple(loads))
+    return FlankPressure(position, tooth, lines, unloaded, tuple(loads))
+
+
+def _rows(position: Array, tooth: Integers) -> dict[tuple[float, int], int]:
+    """Number of each line by position and tooth."""
+    return {pair: row for row, pair in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
 
 
 def line_loads(spots: Sequence[Spot], rows: Sequence[int], lines: ContactLines, modulus: float) -> LineLoads:

@@ -73,14 +73,15 @@ def pressure_arrays(
         }
         for name, values in rows.items():
             lines.setdefault(name, []).append(values)
+    position, tooth, points = pressure.every_point(surface.design)
     return {
         **_forces(results),
         "shape": np.array(surface.shape),
         "point_m": surface.nodes,
         **{name: np.concatenate(parts) for name, parts in lines.items()},
-        "contact_position": pressure.position,
-        "contact_tooth": pressure.tooth,
-        "contact_point_m": pressure.points,
+        "contact_position": position,
+        "contact_tooth": tooth,
+        "contact_point_m": points,
     }
 
 

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from scipy.special import ellipe, ellipk
 
 from facegear.contact.hertz import contact_modulus, strip_pressure
-from facegear.contact.lines import ContactLines, contact_lines
+from facegear.contact.lines import ContactLines, contact_lines, unloaded_lines
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import Refinement
 from facegear.contact.pattern import imprint, pattern
@@ -266,6 +266,15 @@ def test_largest_pressure_in_the_table_is_where_the_pattern_and_its_scale_end(pr
     found = pattern(pressure_arrays(results, model.flanks.pinion, pressure))
     assert 1e-6 * found.largest == pytest.approx(table["pressure_mpa"].max(), rel=1e-12)
     assert found.points.shape[:2] == (4 * PAIRS.size, model.flanks.pinion.shape[1])
+
+
+def test_lines_of_pairs_that_carry_nothing_are_those_of_all_pairs_but_only_made_for_the_file(pressed_pair):
+    model, _, pressure = pressed_pair
+    position, tooth, points = pressure.every_point(model.design)
+    assert len(pressure.tooth) < len(tooth) == 4 * PAIRS.size
+    lines = unloaded_lines(model.design, position, tooth, pressure.unloaded, model.flanks.pinion.planes)
+    expected = flank_points(model.design, lines.roll, lines.y).position
+    np.testing.assert_allclose(points, expected, rtol=0, atol=1e-12)
 
 
 def test_the_imprint_grows_with_load_and_ends_where_planes_carry_nothing(pressed_pair):
