@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import time
+from inspect import signature
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -56,12 +57,18 @@ def test_parameters_are_written_without_pandas_where_snakemake_can_and_else_as_i
 def test_the_snakemake_that_is_locked_has_every_name():
     """Where this fails a run still works, but look what `workflow.process.engine` can do with the new one."""
     import snakemake.api  # noqa: F401  (its parts import each other in this order alone)
+    from snakemake.benchmark import benchmarked
     from snakemake.persistence import PersistenceBase
+    from snakemake.script import PythonScript
     from snakemake.workflow import Workflow
     from snakemake_interface_logger_plugins.common import LogEvent
 
     assert hasattr(PersistenceBase, "_serialize_param_builtin") and hasattr(PersistenceBase, "finished")
-    for name in ("dryrun", "non_local_exec", "async_run", "persistence", "overwrite_workdir"):
+    assert callable(benchmarked) and list(signature(PythonScript.execute_script).parameters)[1:] == [
+        "fname",
+        "edit",
+    ]
+    for name in ("_build_dag", "dryrun", "non_local_exec", "async_run", "persistence", "overwrite_workdir"):
         assert hasattr(Workflow, name) or name in Workflow.__dataclass_fields__, name
     assert {"JOB_INFO", "JOB_FINISHED", "JOB_ERROR"} <= {event.name for event in LogEvent}
 
