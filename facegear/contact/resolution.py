@@ -53,7 +53,7 @@ def estimated_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) ->
     """
     nodes, planes = flank_nodes(design, sizes, plan), 2.0 * _elements_along(design, sizes) + 1.0
     dof = 1.75 * nodes + 11.3 * planes * (design.face_gear.rim_thickness / sizes.thickness + 5.3)
-    return max(1.8e8 + 22.0 * dof**2, 8.0 * nodes**2)
+    return max(1.6e8 + 19.0 * dof**2, 8.0 * nodes**2)
 
 
 def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, available: float) -> None:

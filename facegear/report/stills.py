@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 DECIMALS = 2
 """Of a coordinate (1/72 inch) of a drawing on the page: a hundredth is not seen."""
-KEPT = frozenset(f"{ascii_letters}{digits}_.-~" ' !"$()*+,/:;=?@[]^`{|}')
+KEPT = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
 """Characters that a data URI between single quotes may hold as they are."""
 GAPS = re.compile(r"\s+")
 NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")

@@ -280,6 +280,19 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, ring, places
     agrees("stress at the gauges, Pa", read, stress, absolute=1e-8 * np.abs(stress).max())
 
 
+def test_gauges_on_a_tooth_change_nothing_of_how_the_teeth_of_a_ring_move_each_other(slab):
+    """Without them one side's neighbours stand for both."""
+    tooth, elastic = slab
+    _, gauges = root_gauges(tooth, STEEL)
+    with_gauges, without = (
+        flank_compliance(elastic, CUTS, tooth.teeth, 2, gauges=rows) for rows in (gauges, None)
+    )
+    assert len(without.readings) == len(with_gauges.readings) == len(without.others)
+    known = with_gauges.others
+    np.testing.assert_allclose(without.others, known, rtol=0.0, atol=1e-11 * np.abs(known).max())
+    np.testing.assert_allclose(without.own, with_gauges.own, rtol=0.0, atol=1e-11 * with_gauges.own.max())
+
+
 def test_sector_of_one_condensed_tooth_is_the_sector_meshed_whole():
     design = spur()
     tooth = pinion_tooth(design, MeshSizes(1.5e-3, 2e-3, 2.5e-3))
