@@ -6,21 +6,12 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.config.bodies import SingleGear, SinglePinion
-from facegear.config.lumped_model import ToothNumbers, half_backlash, imperfections, layout
+from facegear.config.lumped_model import Described, ToothNumbers, described, half_backlash
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.transmission.assembly import Assembly, assembly, squeezed
 from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
-
-Described = tuple[Layout, Imperfections]
-"""The layout of a section `transmission` and its errors."""
-
-
-def described(section: Transmission, teeth: ToothNumbers) -> Described:
-    """What the checks of this module look at, made once for several of them."""
-    shape = layout(section, teeth)
-    return shape, imperfections(section, shape)
 
 
 def require_buildable(section: Transmission, teeth: ToothNumbers, made: Described | None = None) -> None:
@@ -65,7 +56,7 @@ def _require_hold(shape: Layout, name: str, own: SinglePinion | SingleGear) -> N
     key = "single_pinions" if isinstance(own, SinglePinion) else "single_gears"
     names = [pinion.name for pinion in shape.pinions] + [gear.side.value for gear in shape.gears]
     bearing = shape.bodies[names.index(name)].bearing
-    for axis, force in own.force_n.model_dump().items():
+    for axis, force in own.force_n:
         if force != 0.0 and bearing["xyz".index(axis)] == 0.0:
             allowed = f"0, as the bearing has no stiffness along {axis}"
             raise ConfigError(f"transmission.{key}.{name}.force_n.{axis}", force, allowed)

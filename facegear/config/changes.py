@@ -90,12 +90,13 @@ def movable(
 
 
 def moved(values: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
-    """Values made by `movable` with the changes added to their nominal values."""
-    changed = deepcopy(dict(values))
+    """Values made by `movable` with the changes added to their nominal values; the others are shared."""
+    changed: Any = values
     for key, added in changes.items():
-        inside, last = _holder(changed, key.split("."))
-        inside[last] = inside[last] + added
-    return changed
+        parts = key.split(".")
+        inside, last = _holder(changed, parts)
+        changed = _with(changed, parts, inside[last] + added)
+    return dict(changed)
 
 
 def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
@@ -109,11 +110,18 @@ def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
 
 def placed(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
     """Values made by `movable` with numbers in the place of nominal ones; those of teeth are rounded."""
-    changed = deepcopy(dict(values))
+    changed: Any = values
     for key, number in numbers.items():
-        inside, last = _holder(changed, key.split("."))
-        inside[last] = round(number) if str(last).endswith("teeth") else number
-    return changed
+        changed = _with(changed, key.split("."), round(number) if key.endswith("teeth") else number)
+    return dict(changed)
+
+
+def _with(values: Any, parts: list[str], number: float) -> Any:
+    """A copy of nested mappings and lists with a number at a dotted key; it shares all else."""
+    copied: Any = list(values) if isinstance(values, list | tuple) else dict(values)
+    index = _index_of(values, parts[0])
+    copied[index] = _with(values[index], parts[1:], number) if len(parts) > 1 else number
+    return copied
 
 
 def _to_each_side(transmission: Mapping[str, Any]) -> None:

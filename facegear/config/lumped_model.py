@@ -6,6 +6,7 @@ adds the mesh stiffness as its stage has stored it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Self
 
 import numpy as np
@@ -63,8 +64,27 @@ def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> L
     return layout(*lumped_sections(transmission, teeth))
 
 
+Described = tuple[Layout, Imperfections]
+"""The layout of a section `transmission` and its errors."""
+
+
+def described(section: Transmission, teeth: ToothNumbers, unloaded: Harmonics | None = None) -> Described:
+    """Layout and errors, made once for all that looks at them; `unloaded` as of machine()."""
+    shape = layout(section, teeth)
+    return shape, imperfections(section, shape, unloaded)
+
+
 def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
-    """The layout that a config describes."""
+    """The layout that a config describes; those that are alike are one, which keeps what follows from it."""
+    return _shared(_layout(section, teeth))
+
+
+@lru_cache(maxsize=16)
+def _shared(shape: Layout) -> Layout:
+    return shape
+
+
+def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
     radius_mm, given_mm = section.pinion.base_radius_mm, section.face_gear.mesh_radius_mm
     sides = [side for side in Side if side.value in section.face_gears]
     pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
@@ -96,14 +116,14 @@ def machine(
     teeth: ToothNumbers,
     stiffness: Harmonics,
     unloaded: Harmonics | None = None,
-    shape: Layout | None = None,
+    made: Described | None = None,
 ) -> Machine:
     """The machine that a config describes, with the reference mesh stiffness from its own stage.
 
-    `unloaded` is the pair's own e(t), m; shape: layout(section, teeth), where the caller has it. Raises
-    ConfigError where the config asks for e(t) and there is none.
+    `unloaded` is the pair's own e(t), m; made: described(section, teeth, unloaded), where the caller has it.
+    Raises ConfigError where the config asks for e(t) and there is none.
     """
-    shape = shape or layout(section, teeth)
+    shape, flaws = made or described(section, teeth, unloaded)
     damping = section.damping
     return Machine(
         layout=shape,
@@ -116,7 +136,7 @@ def machine(
         ),
         phase_convention=PhaseConvention(section.phase_convention),
         error_lags=error_lags(section, shape),
-        imperfections=imperfections(section, shape, unloaded),
+        imperfections=flaws,
         forces=external_forces(section, shape),
         drive_line=drive_line(section, shape),
     )

@@ -1,18 +1,41 @@
 """The load-dependent law of each gear's flanks from the arrays that its stage stores."""
 
-from facegear.arrays import Arrays
+from collections.abc import Callable
+from functools import cache
+
+from facegear.arrays import Array, Arrays
 from facegear.geometry.flank_errors import GEARS
 from facegear.mesh_law.force_table import ForceTable
-from facegear.transmission.layout import Layout
+from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import FlankTables
+
+TablesOf = Callable[[Layout], tuple[FlankTables, ...]]
+"""Tables of the flanks at each gear of a machine."""
 
 
 def flank_tables(law: Arrays, layout: Layout) -> tuple[FlankTables, ...]:
     """Tables of the flanks at each gear of a machine; one gear alone has the upper one's."""
+    return tables_of(law)(layout)
+
+
+def tables_of(law: Arrays) -> TablesOf:
+    """The same of many machines, those of the same gears made once."""
     tables = [
-        ForceTable(levels, forces, slopes)
+        ForceTable(_read_only(levels), _read_only(forces), _read_only(slopes))
         for levels, forces, slopes in zip(law["level_m"], law["force_n"], law["slope_n_per_m"], strict=True)
     ]
-    rows = [GEARS.index(gear.side.value) if len(layout.gears) > 1 else 0 for gear in layout.gears]
-    numbers = law["flank_variant"][rows]
-    return tuple(FlankTables(tables[drive], tables[back]) for drive, back in numbers)
+
+    @cache
+    def of_sides(sides: tuple[Side, ...]) -> tuple[FlankTables, ...]:
+        rows = [GEARS.index(side.value) if len(sides) > 1 else 0 for side in sides]
+        numbers = law["flank_variant"][rows]
+        return tuple(FlankTables(tables[drive], tables[back]) for drive, back in numbers)
+
+    return lambda layout: of_sides(tuple(gear.side for gear in layout.gears))
+
+
+def _read_only(values: Array) -> Array:
+    """A view that nothing is written through."""
+    view = values[...]
+    view.flags.writeable = False
+    return view

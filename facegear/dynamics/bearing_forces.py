@@ -2,13 +2,12 @@
 
 import numpy as np
 import pandas as pd
-import scipy
 
 from facegear.arrays import Array, Integers
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.steady_state.statistics import moments
+from facegear.dynamics.track import Track, track
 from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_bearing_forces
@@ -28,32 +27,49 @@ BEARING_COLUMNS = (
 
 
 def bearing_history(model: Model, response: SteadyState) -> Array:
-    """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N.
+    """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N, as bearing_forces() has
+    them.
+    """
+    return np.moveaxis(bearing_forces(model, track(response)), -1, 0)
+
+
+def bearing_forces(model: Model, motion: Track) -> Array:
+    """Force of every body on its bearing along x, y, z, shape (bodies, 3, K), N.
 
     Springs, their damping of equation (21) and dampers: K q + beta K q' + D q'. Mass damping acts from
     outside and is no bearing's. With clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its
     damping is beta dF/dt.
     """
-    basis, linear, coordinates = model.reduced.basis, model.machine.linear, response.coordinates
-    lag, rings = linear.bearing_damping, linear.rings
-    rate, held = velocities(response), linear.translations
-    forces = _held_by(model, response, rate, held.ravel()).reshape(-1, *held.shape)
+    linear = model.machine.linear
+    rings, bodies = linear.rings, linear.translations
+    places, speeds = _held(model, bodies.ravel())
+    in_rings = np.zeros(bodies.shape, dtype=bool)
+    in_rings[rings.body, :2] = True
+    alone = (places.any(axis=0) | speeds.any(axis=0)) & ~in_rings.ravel()
+    rows = model.reduced.basis[linear.ring_coordinates.ravel()].T
+    nothing, first = np.zeros_like(rows), np.count_nonzero(alone)
+    moving_parts = motion.along(
+        np.concatenate([places[:, alone], rows, nothing], axis=1),
+        np.concatenate([speeds[:, alone], nothing, rows], axis=1),
+    )
+    forces = np.zeros((alone.size, motion.count))
+    forces[alone] = moving_parts[:first]
+    forces = forces.reshape(*bodies.shape, -1)
     if rings.body.size:
-        rows = basis[linear.ring_coordinates.ravel()].T
-        moved, moving = ((motion @ rows).reshape(-1, rings.body.size, 2) for motion in (coordinates, rate))
-        forces[:, rings.body, :2] = _ring_force(moved, moving, rings.stiffness, rings.clearance, lag)
+        moved, moving = moving_parts[first:].reshape(2, rings.body.size, 2, -1)
+        forces[rings.body, :2] = _ring_force(
+            moved, moving, rings.stiffness, rings.clearance, linear.bearing_damping
+        )
     return forces
 
 
-def _held_by(model: Model, response: SteadyState, rate: Array, coordinates: Integers) -> Array:
-    """Force or moment (K, coordinates) on springs and dampers along some coordinates."""
+def _held(model: Model, coordinates: Integers) -> tuple[Array, Array]:
+    """What a place and a speed of the reduced coordinates (n, coordinates) give to the force or moment on
+    springs and dampers along some coordinates.
+    """
     linear, basis = model.machine.linear, model.reduced.basis
-    forces = (response.coordinates + linear.bearing_damping * rate) @ (
-        basis.T @ linear.stiffness[:, coordinates]
-    )
-    if linear.dampers.any():
-        forces += rate @ (basis.T @ linear.dampers[coordinates].T)
-    return np.asarray(forces)
+    springs = basis.T @ linear.stiffness[:, coordinates]
+    return springs, linear.bearing_damping * springs + basis.T @ linear.dampers[coordinates].T
 
 
 def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) -> Array:
@@ -65,42 +81,27 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     line = model.machine.drive_line
     if line is None:
         return np.zeros((len(forces), 0, 5))
-    rate = velocities(response)
-    moments = {i: _held_by(model, response, rate, line.tilts(i)) for i in line.tilting}
+    motion = track(response)
+    moments = {i: motion.along(*_held(model, line.tilts(i))).T for i in line.tilting}
     return shaft_bearing_loads(line, forces, moments)
 
 
 def _ring_force(displacement: Array, speed: Array, stiffness: Array, clearance: Array, lag: float) -> Array:
-    """Forces (K, R, 2) of R bearings with clearance at displacements and speeds (K, R, 2)."""
-    (x, y), (u, v) = np.moveaxis(displacement, -1, 0), np.moveaxis(speed, -1, 0)
-    distance = np.maximum(np.hypot(x, y), clearance)
-    fraction = 1.0 - clearance / distance
-    turned = (1.0 - fraction) * (x * u + y * v) / distance**2
+    """Forces (R, 2, K) of R bearings with clearance at displacements and speeds (R, 2, K)."""
+    clearance = clearance[:, None]
+    distance = np.maximum(np.hypot(displacement[:, 0], displacement[:, 1]), clearance)
+    free = clearance / distance
     touching = lag * (distance > clearance)
-    both = ((x, u), (y, v))
-    along = [fraction * shift + (fraction * rate + turned * shift) * touching for shift, rate in both]
-    return stiffness[:, None] * np.stack(along, axis=-1)
+    turned = free * (displacement * speed).sum(axis=1) / distance**2 * touching
+    fraction = 1.0 - free
+    along = (fraction + turned)[:, None] * displacement + (fraction * touching)[:, None] * speed
+    return np.asarray(stiffness[:, None, None] * along)
 
 
 def velocities(response: SteadyState) -> Array:
     """Time derivatives of the coordinates (K, n), 1/s, from cubic splines through the samples."""
-    step = TAU / (response.frequency * response.per_period)
-    if response.period > 0:
-        return closed_spline_slopes(response.coordinates, step)
-    time = np.arange(len(response.coordinates)) * step
-    return scipy.interpolate.CubicSpline(time, response.coordinates)(time, 1)
-
-
-def closed_spline_slopes(samples: Array, step: float) -> Array:
-    """Slopes (K, columns) at the knots of the periodic cubic spline through K even samples.
-
-    Slopes m satisfy m[i-1] + 4 m[i] + m[i+1] = 3 (f[i+1] - f[i-1]) / step, which Fourier's series solves wave
-    by wave.
-    """
-    count = len(samples)
-    angle = TAU * np.arange(count // 2 + 1) / count
-    factor = 3.0j * np.sin(angle) / ((2.0 + np.cos(angle)) * step)
-    return np.asarray(np.fft.irfft(np.fft.rfft(samples, axis=0) * factor[:, None], count, axis=0))
+    each = np.eye(response.coordinates.shape[1])
+    return track(response).along(0.0 * each, each).T
 
 
 def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:

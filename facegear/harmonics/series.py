@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -43,7 +44,7 @@ class Harmonics:
         """Mean stiffness b[0], N/m."""
         return float(self.b[0])
 
-    @property
+    @cached_property
     def minimum(self) -> float:
         """Smallest value at 64 (H+1) even points of a period, N/m."""
         points = 64 * (self.order + 1)
@@ -51,7 +52,7 @@ class Harmonics:
         halves[0] = self.b[0]
         return float(np.fft.irfft(points * halves, points).min())
 
-    @property
+    @cached_property
     def amplitudes(self) -> Array:
         """Amplitude of each order, shape (H+1,), N/m; the first entry is the mean."""
         return np.hypot(self.a, self.b)

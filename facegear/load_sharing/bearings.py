@@ -18,10 +18,11 @@ REFERENCE = 1e4
 def bearing_mass(forces: Array) -> float:
     """Mass of all bearings, in masses of one that carries REFERENCE for the same life.
 
-    `forces` (K, bodies, 3), N, of every body on its bearing at K evenly spaced times. Each bearing is of one
+    `forces` (bodies, 3, K), N, of every body on its bearing at K evenly spaced times. Each bearing is of one
     series, as large as its equivalent load P = (mean of F^(10/3))^(3/10) asks for at equal life, so that its
     mass goes with P^1.62; F is the length of the force. Bodies turn at different speeds, which is left out.
     """
-    size = np.linalg.norm(forces, axis=-1)
-    equivalent = np.mean(size**LIFE_EXPONENT, axis=0) ** (1.0 / LIFE_EXPONENT)
+    square = np.square(forces).sum(axis=1)
+    powers = square * np.square(np.cbrt(square))  # the length to LIFE_EXPONENT, several times as fast
+    equivalent = np.mean(powers, axis=-1) ** (1.0 / LIFE_EXPONENT)
     return float(np.sum((equivalent / REFERENCE) ** MASS_EXPONENT))

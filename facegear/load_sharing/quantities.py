@@ -5,19 +5,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.bearing_forces import bearing_history
+from facegear.dynamics.bearing_forces import bearing_forces
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.guide import Guide, guide_of
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.errors import NotConverged
 from facegear.load_sharing.bearings import bearing_mass
-from facegear.load_sharing.groups import load_groups
+from facegear.load_sharing.even_shares import even_shares
+from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.hardest_cycles import hardest_cycles
-from facegear.load_sharing.hunting import LoadHistory, hunting_cycle, hunting_length
+from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.quantity_names import PAST_LAW, quantity_names
 from facegear.load_sharing.run import measured_motion
-from facegear.load_sharing.statistics import defined_mean
+from facegear.load_sharing.tally import tally
 from facegear.transmission.flanks import carried, past_law
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
@@ -45,21 +46,23 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
     """
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // cycles, 1))
     hard = hardest_cycles(run)
-    shared = _shared(machine.layout)
+    groups, shared = _groups(machine.layout)
+    counted, hardest = (tally(motion.flank_forces.T, POSITIONS, groups) for motion in (run, hard))
+    largest_mean = np.maximum(counted.largest_mean, hardest.largest_mean)
+    largest = np.maximum(counted.largest, hardest.largest)
     values = (
-        *np.maximum(run.mesh_load_factors, hard.mesh_load_factors)[shared],
-        *_coefficients(run),
-        max(run.loads.max(), hard.loads.max()),
-        *_shares(run, shared),
-        bearing_mass(run.bearings),
+        *(largest_mean / even_shares(machine))[shared],
+        *counted.coefficients,
+        largest.max(),
+        counted.open,
+        counted.reversed,
+        bearing_mass(np.moveaxis(run.bearings, 0, -1)),
     )
-    forces = run.flank_forces
-    largest = np.maximum(forces.max(axis=0), hard.flank_forces.max(axis=0))
     named = _named(machine.layout, values, dynamic=False)
     if machine.tables is not None:
         past = (past_law(machine, motion.cycles, motion.flank_forces).max() for motion in (run, hard))
         named[PAST_LAW] = float(max(past))
-    return named, FlankLoads(forces.mean(axis=0), largest)
+    return named, FlankLoads(counted.mean, largest)
 
 
 def dynamic_quantities(
@@ -74,30 +77,32 @@ def dynamic_quantities(
     Raises NotConverged naming the speed.
     """
     model = build_model(machine)
-    response = measured_motion(model, speed_rpm, settings, options, guide)
-    forces = carried(response.forces)
-    flanks = np.concatenate([np.maximum(forces, 0.0), np.maximum(-forces, 0.0)], axis=1)
-    cycles = np.arange(len(flanks)) / response.per_period
-    run, shared = LoadHistory(machine, response.per_period, cycles, flanks), _shared(machine.layout)
-    values = (
-        *run.mesh_load_factors[shared],
-        *run.dynamic_factors[shared],
-        *_coefficients(run),
-        run.loads.max(),
-        *_shares(run, shared),
-        bearing_mass(bearing_history(model, response)),
+    motion = measured_motion(model, speed_rpm, settings, options, guide)
+    forces = carried(motion.forces)
+    groups, shared = _groups(machine.layout)
+    counted = tally(
+        np.concatenate([np.maximum(forces, 0.0), np.maximum(-forces, 0.0)]), motion.per_period, groups
     )
-    loads = FlankLoads(flanks.mean(axis=0), flanks.max(axis=0))
+    loaded = np.where(counted.largest_mean > 0.0, counted.largest_mean, np.nan)
+    values = (
+        *(counted.largest_mean / even_shares(machine))[shared],
+        *(counted.largest_load / loaded)[shared],
+        *counted.coefficients,
+        counted.largest.max(),
+        counted.open,
+        counted.reversed,
+        bearing_mass(bearing_forces(model, motion.track)),
+    )
     named = _named(machine.layout, values, dynamic=True)
     if machine.tables is not None:
-        named[PAST_LAW] = float(response.past_law.max())
-    return named, loads
+        named[PAST_LAW] = float(motion.past_law.max())
+    return named, FlankLoads(counted.mean, counted.largest)
 
 
 def orbit_of(machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions) -> Guide | None:
     """The orbit that a machine comes to from static equilibrium as a guide for like ones, if it is one."""
     try:
-        response = measured_motion(build_model(machine), speed_rpm, settings, options)
+        response = measured_motion(build_model(machine), speed_rpm, settings, options).response
     except NotConverged:
         return None
     return guide_of(response.system, response.orbit)
@@ -107,21 +112,7 @@ def _named(layout: Layout, values: tuple[float, ...], dynamic: bool) -> dict[str
     return dict(zip(quantity_names(layout, dynamic), map(float, values), strict=True))
 
 
-def _shared(layout: Layout) -> list[int]:
-    """Meshes that share a load, group by group."""
-    return [mesh for group in load_groups(layout) for mesh in group.meshes]
-
-
-def _coefficients(run: LoadHistory) -> list[float]:
-    """Mean coefficient of each group."""
-    return [defined_mean(run.coefficients(group)) for group in run.groups]
-
-
-def _shares(run: LoadHistory, shared: list[int]) -> tuple[float, float]:
-    """Fraction of the time in which one of the meshes that share a load carries nothing, and in which a mesh
-    is loaded on the flank that carries less on average.
-    """
-    drive, back = np.split(run.flank_forces, 2, axis=1)
-    works_back = back.mean(axis=0) > drive.mean(axis=0)
-    reversed_ = np.any(np.where(works_back, drive, back) > 0.0, axis=1)
-    return float((run.loads[:, shared] == 0.0).any(axis=1).mean()), float(reversed_.mean())
+def _groups(layout: Layout) -> tuple[tuple[LoadGroup, ...], list[int]]:
+    """Meshes that share a load, and all of them group by group."""
+    groups = load_groups(layout)
+    return groups, [mesh for group in groups for mesh in group.meshes]

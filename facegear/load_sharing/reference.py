@@ -13,11 +13,12 @@ from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import load_groups
 from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.run import WATCHED, cycle_forces, followed, group_average, watched_for
+from facegear.load_sharing.run import WATCHED, followed, group_average, watched_for
 from facegear.load_sharing.sampling import densely_sampled
 from facegear.load_sharing.statics import mean_equilibrium_forces, static_forces
 from facegear.load_sharing.statistics import average
 from facegear.progress import Progress
+from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
 
 SHARES = ("maximum", "lost_fraction", "undefined_fraction")
@@ -62,7 +63,8 @@ def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> Array
     slow = replace(
         settings, samples=POSITIONS, dwell=SLOW_PERIODS, settle=SLOW_PERIODS, window=1, refine=False
     )
-    forces = cycle_forces(simulate(build_model(machine), speed_rpm, slow))[-1:]
+    response = simulate(build_model(machine), speed_rpm, slow)
+    forces = carried(response.forces).reshape(response.periods, response.per_period, -1)[-1:]
     return forces[:, :: forces.shape[1] // POSITIONS]
 
 
@@ -84,10 +86,10 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
         lambda motion: followed(model, motion, settings, options),
         progress.step,
     )
-    for speed, motion in zip(speeds, responses, strict=True):
-        response = densely_sampled(motion)
+    for speed, response in zip(speeds, responses, strict=True):
+        motion = densely_sampled(response)
         for group in load_groups(machine.layout):
-            sharing_average = group_average(response, group, options.confidence)[2]
+            sharing_average = group_average(motion, group, options.confidence)[2]
             rows.append(
                 {
                     "speed_rpm": speed,

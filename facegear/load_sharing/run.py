@@ -6,6 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array, Mask
 from facegear.dynamics.courses import Course, alone
+from facegear.dynamics.dense_motion import DenseMotion
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.guide import Guide, guide_of
 from facegear.dynamics.steady_state.response import SteadyState
@@ -47,9 +48,14 @@ class GroupSharing:
 class Sharing:
     """All groups of a machine at a speed; `motions` holds the class of motion reached from each start."""
 
-    response: SteadyState
+    motion: DenseMotion
     groups: tuple[GroupSharing, ...]
     motions: tuple[str, ...]
+
+    @property
+    def response(self) -> SteadyState:
+        """The motion at its own samples."""
+        return self.motion.response
 
     @property
     def period(self) -> float:
@@ -78,16 +84,16 @@ def load_sharing(
         motions.append(other.label)
         if not same_orbit(response, other):
             means.append(_means(densely_sampled(other), groups))
-    response = densely_sampled(response)
+    dense = densely_sampled(response)
     shared = tuple(
-        _group(response, group, options, [mean[i] for mean in means]) for i, group in enumerate(groups)
+        _group(dense, group, options, [mean[i] for mean in means]) for i, group in enumerate(groups)
     )
-    return Sharing(response, shared, tuple(motions))
+    return Sharing(dense, shared, tuple(motions))
 
 
 def measured_motion(
     model: Model, speed_rpm: float, settings: Settings, options: SharingOptions, guide: Guide | None = None
-) -> SteadyState:
+) -> DenseMotion:
     """The motion from static equilibrium, as load_sharing() measures it; `guide`: an orbit of a like machine.
 
     Raises NotConverged.
@@ -148,30 +154,30 @@ def disturb(model: Model, start: State, spread: float, random: np.random.Generat
     return replace(start, displacement=start.displacement + model.reduced.basis.T @ linear.momentum(moved))
 
 
-def cycle_forces(response: SteadyState) -> Array:
-    """Elastic mesh forces by cycle, shape (cycles, samples, meshes), N."""
-    return carried(response.forces).reshape(response.periods, response.per_period, -1)
+def cycle_forces(motion: DenseMotion) -> Array:
+    """Elastic mesh forces by cycle, shape (meshes, cycles, samples), N."""
+    return carried(motion.forces).reshape(len(motion.forces), -1, motion.per_period)
 
 
-def group_average(response: SteadyState, group: LoadGroup, confidence: float) -> tuple[Array, Mask, Average]:
+def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> tuple[Array, Mask, Average]:
     """Coefficient and lost contact of a group, each (cycles, samples), and their average."""
-    forces = cycle_forces(response)[..., group.meshes]
+    forces = np.moveaxis(cycle_forces(motion)[list(group.meshes)], 0, -1)
     coefficients, lost = sharing_coefficient(forces), lost_contact(forces)
-    periodic = response.motion is Motion.PERIODIC
+    periodic = motion.response.motion is Motion.PERIODIC
     return coefficients, lost, average(coefficients, lost, confidence, periodic)
 
 
-def _means(response: SteadyState, groups: tuple[LoadGroup, ...]) -> list[float]:
+def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
     """Mean coefficient of each group, NaN where nothing is ever loaded."""
-    forces = cycle_forces(response)
+    forces = np.moveaxis(cycle_forces(motion), 0, -1)
     return [defined_mean(sharing_coefficient(forces[..., group.meshes])) for group in groups]
 
 
 def _group(
-    response: SteadyState, group: LoadGroup, options: SharingOptions, others: list[float]
+    motion: DenseMotion, group: LoadGroup, options: SharingOptions, others: list[float]
 ) -> GroupSharing:
     """`others`: the means from other starts."""
-    coefficients, lost, first = group_average(response, group, options.confidence)
+    coefficients, lost, first = group_average(motion, group, options.confidence)
     every = max(coefficients.shape[1] // options.samples, 1)
     defined = [mean for mean in (first.mean, *others) if not np.isnan(mean)] or [float("nan")]
     return GroupSharing(

@@ -1,19 +1,19 @@
 """The load-dependent law of all contacts of a machine, each with a table of forces of its kind."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.machine_code.memory import LANES, aligned, divided
+from facegear.machine_code.memory import LANES, aligned, aligned_together, divided
 from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
 from facegear.mesh_law.law import Held
 
-KEPT = 2
-"""Sets of phases at which the coefficients of the pieces are kept."""
+if TYPE_CHECKING:
+    from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,47 +77,17 @@ class LoadDependentLaw:
 
     def force(self, cycles: Array, beyond: Array) -> Array:
         """Forces (..., K, M)."""
-        forces = self._by_piece(cycles, beyond, _cubic)
-        np.negative(forces, out=forces, where=beyond < 0.0)
-        return forces
+        return self._pieces.at(self.kind, cycles, beyond)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
         """Slopes (..., K, M), zero where nothing is pressed in."""
-        return self._by_piece(cycles, beyond, _cubic_slope)
-
-    def _by_piece(self, cycles: Array, beyond: Array, law: Callable[[Array, Array], Array]) -> Array:
-        """What `law` gives for amounts (..., K) past the beginning of a piece and its coefficients (4, K), at
-        every contact (..., K, M); zero where nothing is pressed in.
-
-        Only pieces that contacts are pressed into are evaluated.
-        """
-        pieces, values = self._pieces_at(cycles), np.zeros(beyond.shape)
-        for m, kind in enumerate(self.kind.tolist()):
-            ahead = np.abs(beyond[..., m])
-            pressed = ahead > 0.0
-            if not pressed.any():
-                continue
-            piece = np.searchsorted(self._levels[kind], ahead, side="right") - 1
-            for number in range(piece.min(where=pressed, initial=len(self._levels[kind])), piece.max() + 1):
-                here = pressed & (piece == number)
-                if here.any():
-                    begin = self._levels[kind, number]
-                    np.copyto(values[..., m], law(ahead - begin, pieces(kind, number)), where=here)
-        return values
-
-    def _pieces_at(self, cycles: Array) -> Callable[[int, int], Array]:
-        """Coefficients (4, K) of the pieces of each kind at some phases; the last ones are kept."""
-        phases, kept = cycles.tobytes(), self._pieces
-        pieces = kept.get(phases)
-        if pieces is None:
-            for old in list(kept)[: max(len(kept) + 1 - KEPT, 0)]:
-                kept.pop(old, None)
-            pieces = kept[phases] = _Pieces(self._coefficients, cycles)
-        return pieces
+        return self._pieces.at(self.kind, cycles, beyond, slopes=True)
 
     @cached_property
-    def _pieces(self) -> dict[bytes, "_Pieces"]:
-        return {}
+    def _pieces(self) -> "PiecewiseCubics":
+        from facegear.mesh_law.piecewise_cubics import PiecewiseCubics  # compiled
+
+        return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
         """Mean forces and slopes at every level."""
@@ -169,38 +139,12 @@ class LoadDependentLaw:
 
         shapes = dict.fromkeys(LoadDependentSeries._fields, (rows, width))
         shapes |= {"four": (rows, LANES), "filled": (1, width)}
-        return LoadDependentSeries(**{name: aligned(*shape) for name, shape in shapes.items()})
-
-
-class _Pieces:
-    """Coefficients (4, K) of cubics at K phases, of series (kinds, L, 4, 2, harmonics + 1), as asked for."""
-
-    def __init__(self, series: Array, cycles: Array) -> None:
-        angle = 2.0 * np.pi * np.outer(np.arange(series.shape[-1]), cycles)
-        self.series, self.sine, self.cosine = series, np.sin(angle), np.cos(angle)
-        self.kept: dict[tuple[int, int], Array] = {}
-
-    def __call__(self, kind: int, number: int) -> Array:
-        """Those of one piece of one kind."""
-        if (kind, number) not in self.kept:
-            own = self.series[kind, number]
-            self.kept[kind, number] = own[:, 0] @ self.sine + own[:, 1] @ self.cosine
-        return self.kept[kind, number]
+        return LoadDependentSeries(**aligned_together(shapes))
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
     """The law of contacts with a table each."""
     return LoadDependentLaw(tuple(tables), np.arange(len(tables)))
-
-
-def _cubic(ahead: Array, coefficients: Array) -> Array:
-    zeroth, first, second, third = coefficients
-    return np.asarray(zeroth + ahead * (first + ahead * (second + ahead * third)))
-
-
-def _cubic_slope(ahead: Array, coefficients: Array) -> Array:
-    _, first, second, third = coefficients
-    return np.asarray(first + ahead * (2.0 * second + 3.0 * ahead * third))
 
 
 @lru_cache(maxsize=16)

@@ -38,7 +38,7 @@ def load_sharing(
     forces = force_table(
         layout(transmission, teeth),
         response.mean_forces[1],
-        np.abs(response.forces).max(axis=0),
+        np.abs(sharing.motion.forces).max(axis=1),
         response.label,
     )
     means = ", ".join(f"{row.group} {row.mean:.3f}" for row in summary.itertuples())

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Mask
+from facegear.by_content import kept_by_content
 from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
 
@@ -52,9 +53,20 @@ def assembly(
     With `errors` their constant ones count as misfit, and clearance of the bearings as room. With one face
     gear nothing has to fit.
     """
+    turned = np.zeros(len(layout.pinions)) if clocking is None else clocking
+    if errors is None:
+        return _without_errors(layout, half_backlash, turned)
+    return _assembly(layout, half_backlash, turned, errors)
+
+
+@kept_by_content(4)
+def _without_errors(layout: Layout, half_backlash: Array, turned: Array) -> Assembly:
+    return _assembly(layout, half_backlash, turned, None)
+
+
+def _assembly(layout: Layout, half_backlash: Array, turned: Array, errors: Imperfections | None) -> Assembly:
     count = len(layout.pinions)
     pitches = np.array([pinion.pitches for pinion in layout.pinions])
-    turned = np.zeros(count) if clocking is None else clocking
     if len(layout.gears) < 2:
         nothing = np.zeros(count)
         return Assembly(nothing, np.full(count, np.inf), np.ones(count, bool), pitches, pitches)
@@ -83,13 +95,9 @@ def squeezed(layout: Layout, half_backlash: Array, errors: Imperfections) -> Arr
     Positive where both flanks of a tooth would be pressed with the machine at rest.
     """
     sine = np.sin(layout.pressure_angle)
-    squeeze = np.empty(len(layout.meshes))
-    for mesh, (i, g) in enumerate(layout.meshes):
-        side = layout.gears[g].sign
-        squeeze[mesh] = (
-            sine * (side * errors.position[i, 1] - errors.bearing_clearance[i]) - half_backlash[mesh]
-        )
-    return squeeze
+    side = np.array([[gear.sign] for gear in layout.gears])
+    deeper = sine * (side * errors.position[:, 1] - errors.bearing_clearance)
+    return np.asarray(deeper.ravel() - half_backlash)
 
 
 def _wrapped(pitches: Array) -> Array:
@@ -101,8 +109,10 @@ def _all_together(left: Array, reach: Array, candidates: Mask) -> Mask:
     """Which pinions share one place of the lower gear, from the candidates outwards (pinions,)."""
     fits = np.zeros(left.size, bool)
     low, high = -np.inf, np.inf
-    for i in np.argsort(np.abs(left)):
-        below, above = max(low, left[i] - reach[i]), min(high, left[i] + reach[i])
+    outwards = np.argsort(np.abs(left)).tolist()
+    bounds = (left - reach).tolist(), (left + reach).tolist()
+    for i in outwards:
+        below, above = max(low, bounds[0][i]), min(high, bounds[1][i])
         if candidates[i] and below <= above:
             fits[i], low, high = True, below, above
     return fits

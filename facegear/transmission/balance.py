@@ -63,10 +63,9 @@ def bearing_loads(machine: Machine, displacements: Array) -> Array:
     """Force or moment of every degree of freedom on its bearing, (K, dof), beyond any clearance."""
     linear = machine.linear
     loads = displacements @ linear.stiffness_without_rings
-    for at, spring, clearance in zip(
-        linear.ring_coordinates, linear.rings.stiffness, linear.rings.clearance, strict=True
-    ):
-        distance = np.hypot(*displacements[:, at].T)[:, None]
-        beyond = np.maximum(1.0 - clearance / np.maximum(distance, clearance), 0.0)
-        loads[:, at] += displacements[:, at] * beyond * spring
+    rings, at = linear.rings, linear.ring_coordinates
+    moved = displacements[:, at]
+    distance = np.maximum(np.hypot(moved[..., 0], moved[..., 1]), rings.clearance)
+    beyond = np.maximum(1.0 - rings.clearance / distance, 0.0)
+    loads[:, at] += moved * beyond[..., None] * rings.stiffness[:, None]
     return np.asarray(loads)

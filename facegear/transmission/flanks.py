@@ -53,7 +53,7 @@ class MeshContacts:
     """
 
     law: MeshLaw
-    error: list[Harmonics]
+    error: tuple[Harmonics, ...]
     lower: Array
     upper: Array
     damping: Array
@@ -82,7 +82,7 @@ def _line_contacts(machine: Machine) -> MeshContacts:
     half = np.full(phases.size, machine.half_backlash)
     return MeshContacts(
         law=line_law(machine),
-        error=[machine.error.shifted(float(phase)) for phase in phases],
+        error=tuple(machine.error.shifted(float(phase)) for phase in phases),
         lower=-half,
         upper=half,
         damping=np.full(phases.size, machine.damping.mesh),
@@ -168,25 +168,26 @@ def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) 
     return load_dependent_law(lagging(drive, lags))
 
 
-def error_series(machine: Machine) -> list[Harmonics]:
+def error_series(machine: Machine) -> tuple[Harmonics, ...]:
     """e(t) of every flank over the reference's mesh cycle, m, without what is constant or slow."""
     own = machine.imperfections.series
     shapes = [own.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
-    return list(_both(tuple(shapes), machine.error_phases))
+    return _both(tuple(shapes), machine.error_phases)
 
 
+@lru_cache(maxsize=16)
 def constant_errors(machine: Machine) -> Array:
-    """Error of every flank that never changes, (2 meshes,), m: teeth, pinions out of place, assembly."""
+    """Error of every flank that never changes, (2 meshes,), m: teeth, pinions out of place, assembly; shared,
+    only read.
+    """
     layout, errors = machine.layout, machine.imperfections
-    tangential = errors.error.copy()
-    separating = np.zeros_like(tangential)
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     misfit = assembly(layout, machine.half_backlashes, errors.clocking).misfit
-    for mesh, (i, g) in enumerate(layout.meshes):
-        side, lower = layout.gears[g].sign, layout.gears[g].side is Side.LOWER
-        tangential[mesh] -= side * cosine * errors.position[i, 0] + (misfit[i] if lower else 0.0)
-        separating[mesh] -= side * sine * errors.position[i, 1]
-    return _flanks(tangential, separating)
+    side = np.array([[gear.sign] for gear in layout.gears])
+    lower = np.array([[float(gear.side is Side.LOWER)] for gear in layout.gears])
+    off = side * cosine * errors.position[:, 0] + lower * misfit
+    separating = -side * sine * errors.position[:, 1]
+    return _flanks(errors.error - off.ravel(), separating.ravel())
 
 
 def slow_errors(machine: Machine, cycles: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -133,7 +134,8 @@ class Layout:
     """Bodies and mesh geometry, in m and rad. Bodies are ordered pinions, then gears, as in equation (1).
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
-    `kinematics` says what `pinion_radius` and `gear_radius` are.
+    `kinematics` says what `pinion_radius` and `gear_radius` are. What follows from the fields is kept; its
+    arrays are only read.
     """
 
     pinions: tuple[Pinion, ...]
@@ -155,27 +157,27 @@ class Layout:
             raise InvalidInput("pinions", names, "names that differ from pinion to pinion")
         self.kinematics.require(self)
 
-    @property
+    @cached_property
     def pinion_arm(self) -> float:
         """Torque on a pinion over the mesh force that balances it, m: the base radius, as teeth have it."""
         return self.kinematics.arm(self.pinion_radius, self.pressure_angle)
 
-    @property
+    @cached_property
     def gear_arm(self) -> float:
         """Torque on a face gear over the mesh force that balances it, m."""
         return self.kinematics.arm(self.gear_radius, self.pressure_angle)
 
-    @property
+    @cached_property
     def mesh_radius(self) -> float:
         """Distance of the meshes from the face gears' axis, m: m N2 / 2, as teeth have it."""
         return self.kinematics.mesh_radius(self)
 
-    @property
+    @cached_property
     def base_pitch(self) -> float:
         """Way along the line of action in a mesh period, m."""
         return 2.0 * np.pi * self.pinion_arm / self.pinion_teeth
 
-    @property
+    @cached_property
     def tilting(self) -> tuple[int, ...]:
         """The gears that may rock."""
         return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
@@ -186,18 +188,18 @@ class Layout:
         pitch_radius = self.pinion_arm / float(np.cos(self.pressure_angle))
         return pitch_radius + (0.0 if tilt is None else tilt.below)
 
-    @property
+    @cached_property
     def first_tilts(self) -> dict[int, int]:
         """Where the two tilts of every gear that may rock begin among the degrees of freedom, by gear."""
         return {g: DOF_PER_BODY * len(self.bodies) + 2 * k for k, g in enumerate(self.tilting)}
 
-    @property
+    @cached_property
     def output(self) -> int:
         """The gear that gives the power out: the upper one, else the only one."""
         sides = [gear.side for gear in self.gears]
         return sides.index(Side.UPPER) if Side.UPPER in sides else 0
 
-    @property
+    @cached_property
     def dof(self) -> int:
         """Degrees of freedom: 4 a body, then the two tilts of every gear that may rock."""
         return DOF_PER_BODY * len(self.bodies) + 2 * len(self.tilting)
@@ -207,46 +209,46 @@ class Layout:
         """Where the rotation of every body about its own axis stands among the degrees of freedom."""
         return slice(3, DOF_PER_BODY * len(self.bodies), DOF_PER_BODY)
 
-    @property
+    @cached_property
     def bodies(self) -> tuple[Body, ...]:
         """All bodies in the order of the degrees of freedom."""
         return (*(pinion.body for pinion in self.pinions), *(gear.body for gear in self.gears))
 
-    @property
+    @cached_property
     def body_names(self) -> tuple[str, ...]:
         """Names of the bodies in the same order."""
         return (*(pinion.name for pinion in self.pinions), *(gear.name for gear in self.gears))
 
-    @property
+    @cached_property
     def dof_names(self) -> tuple[str, ...]:
         """Names of the degrees of freedom, ``body:letter``."""
         places = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
         tilts = [f"{self.gears[g].name}:{letter}" for g in self.tilting for letter in TILT_LETTERS]
         return (*places, *tilts)
 
-    @property
+    @cached_property
     def meshes(self) -> tuple[tuple[int, int], ...]:
         """(pinion, gear) of each mesh, each counted from 0 in its own list."""
         return tuple((i, g) for g in range(len(self.gears)) for i in range(len(self.pinions)))
 
-    @property
+    @cached_property
     def contacts(self) -> int:
         """How many contacts move by themselves: both flanks of every mesh, which share one line of action and
         are one contact in equation (13) as printed. Drive flanks come first.
         """
         return len(self.meshes) * (2 if self.kinematics.flanks_apart else 1)
 
-    @property
+    @cached_property
     def mesh_names(self) -> tuple[str, ...]:
         """`pinion/side` of each mesh."""
         return tuple(f"{self.pinions[i].name}/{self.gears[g].side.value}" for i, g in self.meshes)
 
-    @property
+    @cached_property
     def angles(self) -> Array:
         """Distribution angles, shape (pinions,), rad."""
         return 2.0 * np.pi * np.array([pinion.pitches for pinion in self.pinions]) / self.gear_teeth
 
-    @property
+    @cached_property
     def pitches_from_first(self) -> Array:
         """Distribution angles counted from the first pinion, shape (pinions,), pitches of the face gear."""
         return np.array([pinion.pitches - self.pinions[0].pitches for pinion in self.pinions])

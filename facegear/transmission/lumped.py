@@ -1,5 +1,8 @@
 """The lumped model: rigid bodies on springs, four coordinates each, and the tilts of face gears that rock."""
 
+from dataclasses import replace
+from functools import lru_cache
+
 import numpy as np
 
 from facegear.arrays import Array
@@ -20,24 +23,37 @@ def lumped_model(
     torques (bodies,), N m; forces (bodies, 3), N; damping: of the masses (1/s) and of the bearings (s);
     clearance (pinions,): radial clearance of the bearings, m.
     """
-    bodies = len(layout.bodies)
+    alone = _alone(layout)
     turning, pushing = np.zeros((2, layout.dof))
     turning[layout.spins] = 0.0 if torques is None else torques
-    translations = DOF_PER_BODY * np.arange(bodies)[:, None] + np.arange(3)
-    pushing[translations] = 0.0 if forces is None else forces
+    pushing[alone.translations] = 0.0 if forces is None else forces
+    return replace(
+        alone,
+        torques=turning,
+        forces=pushing,
+        mass_damping=damping[0],
+        bearing_damping=damping[1],
+        rings=_rings(layout, np.zeros(len(layout.pinions)) if clearance is None else clearance),
+    )
+
+
+@lru_cache(maxsize=16)
+def _alone(layout: Layout) -> LinearModel:
+    """Without loads, damping and clearance: what all machines of a layout have in common, shared by them."""
+    nothing = np.zeros(layout.dof)
     return LinearModel(
         labels=layout.dof_names,
         mass=np.diag(mass_diagonal(layout)),
         stiffness=bearing_matrix(layout),
         rows=flank_jacobian(layout),
-        torques=turning,
-        forces=pushing,
+        torques=nothing,
+        forces=nothing,
         lengths=_lengths(layout),
-        translations=translations,
-        mass_damping=damping[0],
-        bearing_damping=damping[1],
+        translations=DOF_PER_BODY * np.arange(len(layout.bodies))[:, None] + np.arange(3),
+        mass_damping=0.0,
+        bearing_damping=0.0,
         dampers=np.zeros((layout.dof, layout.dof)),
-        rings=_rings(layout, np.zeros(len(layout.pinions)) if clearance is None else clearance),
+        rings=_rings(layout, np.zeros(len(layout.pinions))),
     )
 
 

@@ -192,12 +192,12 @@ class Machine:
             pushes.append(linear.over_all(friction_rows(self.layout)).reshape(-1, linear.size))
         return np.concatenate(pushes)
 
-    @property
+    @cached_property
     def phases(self) -> Array:
         """Stiffness phase of each mesh in mesh periods, shape (meshes,)."""
         return mesh_phases(self.layout, self.phase_convention, self.imperfections.clocking)
 
-    @property
+    @cached_property
     def half_backlashes(self) -> Array:
         """Half backlash of each mesh, shape (meshes,), m."""
         own = self.imperfections.half_backlash

@@ -1,53 +1,41 @@
 """Statics as the compiled solver takes it: three unknowns for each pinion, and a core for all else."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.by_content import kept_by_content
 from facegear.transmission.contact_energy import Springs
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
 
 
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    """What machines of the same bodies, bearings and meshes have in common, shared by them: has_blocks()
+    without loads, what unknowns() gives, and the compiled problem without clearance and loads.
+    """
+
+    blocks: bool
+    kept: Integers
+    scale: Array
+    springs: Springs
+
+
 def has_blocks(machine: Machine) -> bool:
     """Whether bearings join no pinion with anything else, and each flank touches one pinion alone."""
-    layout, linear = machine.layout, machine.linear
-    kept, _ = unknowns(machine)
-    pinions = len(layout.pinions)
-    group = np.full(linear.size, -1)
-    group[kept[: 3 * pinions]] = np.repeat(np.arange(pinions), 3)
-    left_out = np.setdiff1d(np.arange(linear.size), kept)
-    group[left_out] = pinions + np.arange(left_out.size)
-    turns = kept[2 : 3 * pinions : 3]
-    joined = (linear.stiffness != 0.0) & (group[:, None] != group)
-    own = np.array([i for i, _ in layout.meshes] * 2)[:, None]
-    strange = (linear.rows != 0.0) & (group != -1) & (group != own)
-    held = linear.stiffness[turns].any() or linear.loads[left_out].any()
-    return not (joined.any() or strange.any() or held)
+    frame = _frame_of(machine)
+    kept = np.zeros(machine.linear.size, dtype=bool)
+    kept[frame.kept] = True
+    return frame.blocks and not machine.linear.loads[~kept].any()
 
 
 def static_springs(machine: Machine) -> Springs:
     """The compiled problem in the unknowns of `unknowns`."""
-    layout, linear = machine.layout, machine.linear
-    kept, scale = unknowns(machine)
-    first, jacobian = 3 * len(layout.pinions), linear.rows[:, kept] * scale
-    touched, columns = _windows(layout, kept.size, linear.size == layout.dof)
-    if np.count_nonzero(np.take_along_axis(jacobian, columns, axis=1)) < np.count_nonzero(jacobian):
-        touched, columns = _windows(layout, kept.size, False)
-    x, y = kept[0:first:3], kept[1:first:3]
-    bearing = linear.stiffness
-    core = bearing[np.ix_(kept[first:], kept[first:])] * np.outer(scale[first:], scale[first:])
-    row, column = np.nonzero(np.triu(core))
-    return Springs(
-        jacobian=np.take_along_axis(jacobian, columns, axis=1),
-        pinion=touched[:, 0].copy(),
-        gear=touched[:, 1].copy(),
-        pinion_bearing=np.stack([bearing[x, x], bearing[x, y], bearing[y, y]], axis=1),
-        clearance=machine.imperfections.bearing_clearance,
-        core_row=row.copy(),  # with strides, as np.nonzero gives them, the kernel would be compiled anew
-        core_column=column.copy(),
-        core_value=core[row, column],
-        applied=linear.loads[kept] * scale,
-    )
+    frame, linear = _frame_of(machine), machine.linear
+    applied = linear.loads[frame.kept] * frame.scale
+    return frame.springs._replace(clearance=machine.imperfections.bearing_clearance, applied=applied)
 
 
 def unknowns(machine: Machine) -> tuple[Integers, Array]:
@@ -56,21 +44,72 @@ def unknowns(machine: Machine) -> tuple[Integers, Array]:
     Left out is the pinions' motion along their own axes, which no mesh feels. If one gear may
     rock, another that may not is given tilts of no length. Coordinates beside those of the layout come last.
     """
-    layout, linear = machine.layout, machine.linear
+    frame = _frame_of(machine)
+    return frame.kept, frame.scale
+
+
+def _frame_of(machine: Machine) -> _Frame:
+    linear = machine.linear
+    return _frame(machine.layout, linear.stiffness, linear.rows, linear.lengths)
+
+
+@kept_by_content(8)
+def _frame(layout: Layout, stiffness: Array, rows: Array, lengths: Array) -> _Frame:
+    kept, scale = _unknowns(layout, lengths)
+    blocks, springs = _blocks(layout, kept, stiffness, rows), _springs(layout, kept, scale, stiffness, rows)
+    return _Frame(blocks, kept, scale, springs)
+
+
+def _blocks(layout: Layout, kept: Integers, stiffness: Array, rows: Array) -> bool:
+    size, pinions = len(stiffness), len(layout.pinions)
+    group = np.full(size, -1)
+    group[kept[: 3 * pinions]] = np.repeat(np.arange(pinions), 3)
+    left_out = np.setdiff1d(np.arange(size), kept)
+    group[left_out] = pinions + np.arange(left_out.size)
+    turns = kept[2 : 3 * pinions : 3]
+    joined = (stiffness != 0.0) & (group[:, None] != group)
+    own = np.array([i for i, _ in layout.meshes] * 2)[:, None]
+    strange = (rows != 0.0) & (group != -1) & (group != own)
+    return not (joined.any() or strange.any() or stiffness[turns].any())
+
+
+def _springs(layout: Layout, kept: Integers, scale: Array, bearing: Array, rows: Array) -> Springs:
+    """Without clearance and loads."""
+    first, jacobian = 3 * len(layout.pinions), rows[:, kept] * scale
+    touched, columns = _windows(layout, kept.size, len(bearing) == layout.dof)
+    if np.count_nonzero(np.take_along_axis(jacobian, columns, axis=1)) < np.count_nonzero(jacobian):
+        touched, columns = _windows(layout, kept.size, False)
+    x, y = kept[0:first:3], kept[1:first:3]
+    core = bearing[np.ix_(kept[first:], kept[first:])] * np.outer(scale[first:], scale[first:])
+    row, column = np.nonzero(np.triu(core))
+    return Springs(
+        jacobian=np.take_along_axis(jacobian, columns, axis=1),
+        pinion=touched[:, 0].copy(),
+        gear=touched[:, 1].copy(),
+        pinion_bearing=np.stack([bearing[x, x], bearing[x, y], bearing[y, y]], axis=1),
+        clearance=np.zeros(len(layout.pinions)),
+        core_row=row.copy(),  # with strides, as np.nonzero gives them, the kernel would be compiled anew
+        core_column=column.copy(),
+        core_value=core[row, column],
+        applied=np.zeros(kept.size),
+    )
+
+
+def _unknowns(layout: Layout, every_length: Array) -> tuple[Integers, Array]:
     kept: list[int] = []
     lengths: list[float] = []
     pinions, bodies = len(layout.pinions), len(layout.bodies)
     for body in range(bodies):
         own = DOF_PER_BODY * body + np.array([0, 1, 3] if body < pinions else [0, 1, 2, 3])
         kept += own.tolist()
-        lengths += linear.lengths[own].tolist()
+        lengths += every_length[own].tolist()
         if body >= pinions and layout.tilting:
             rocks = body - pinions in layout.tilting
             at = layout.first_tilts[body - pinions if rocks else layout.tilting[0]]
             kept += [at, at + 1]
-            lengths += 2 * [linear.lengths[at] if rocks else np.inf]
-    added = np.arange(layout.dof, linear.size)
-    return np.append(kept, added), 1.0 / np.append(lengths, linear.lengths[added])
+            lengths += 2 * [every_length[at] if rocks else np.inf]
+    added = np.arange(layout.dof, every_length.size)
+    return np.append(kept, added), 1.0 / np.append(lengths, every_length[added])
 
 
 def _windows(layout: Layout, size: int, by_gear: bool) -> tuple[Integers, Integers]:

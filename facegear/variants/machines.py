@@ -9,13 +9,13 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.config.base import parse
-from facegear.config.buildable import described, require_buildable, require_room
+from facegear.config.buildable import require_buildable, require_room
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lubrication import LubricationSection, limits_of
-from facegear.config.lumped_model import ToothNumbers, machine
-from facegear.config.mesh_law import flank_tables
+from facegear.config.lumped_model import ToothNumbers, described, machine
+from facegear.config.mesh_law import tables_of
 from facegear.config.transmission import Transmission
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.guide import Guide
@@ -174,8 +174,9 @@ def tooth_meshes(
 
         return meshes_in_contact(pair, flanks, rub)
     series, error = series_of(harmonics), unloaded_error(harmonics)
+    tables = None if law is None else tables_of(law)
     return lambda values: PairExcitation(
-        ToothNumbers.of_config(values), series, error, law=law, rubbed=rubbed
+        ToothNumbers.of_config(values), series, error, tables=tables, rubbed=rubbed
     )
 
 
@@ -216,12 +217,12 @@ def judge(
     def assembled(values: Values) -> tuple[PairExcitation, Machine]:
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
-        made = described(section, mesh.numbers)
+        made = described(section, mesh.numbers, mesh.unloaded)
         require_buildable(section, mesh.numbers, made)
         require_room(section, mesh.numbers, made)
-        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded, made[0])
-        if mesh.law is not None:
-            built = replace(built, tables=flank_tables(mesh.law, built.layout))
+        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded, made)
+        if mesh.tables is not None:
+            built = replace(built, tables=mesh.tables(built.layout))
         if bodies is not None:
             built = bodies.joined(built, section, values["tooth_pair"])
         if surface is not None:

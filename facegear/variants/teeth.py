@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from facegear.arrays import Arrays
 from facegear.config.lumped_model import ToothNumbers
+from facegear.config.mesh_law import TablesOf
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.quantity_names import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
 from facegear.strength.pair_answers import PairAnswers
@@ -24,7 +24,7 @@ class PairExcitation:
     """What a tooth pair means for its machine: k and e over a pitch, and the teeth's numbers.
 
     `backlash_added` (um): what the pair has more than the one of the config. `answers` where it was put into
-    contact. law: arrays of stage mesh_law where k depends on the load. `rubbed` where it is lubricated.
+    contact. tables: of the flanks where k depends on the load. `rubbed` where it is lubricated.
     """
 
     numbers: ToothNumbers
@@ -32,7 +32,7 @@ class PairExcitation:
     unloaded: Harmonics | None
     backlash_added: float = 0.0
     answers: PairAnswers | None = None
-    law: Arrays | None = None
+    tables: TablesOf | None = None
     rubbed: "RubbedTeeth | None" = None
 
     def in_machine(self, transmission: Values) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """What machines of one study have in common is computed once, and nothing else counts as common."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -41,6 +41,37 @@ def test_a_number_a_shape_or_a_type_that_differs_makes_another_content(other):
     series = Harmonics(np.array([0.0, 1.0]), np.array([2.0, 3.0]))
     assert content(series) == content(Harmonics(series.a.copy(), series.b.copy()))
     assert content(series) != content(other)
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Numbers in a frozen dataclass."""
+
+    values: np.ndarray
+
+
+def test_content_is_kept_of_what_cannot_change_and_of_nothing_else():
+    open_, closed = np.arange(3.0), np.arange(3.0)
+    closed.flags.writeable = False
+    loose, fixed = Table(open_), Table(closed)
+    assert content(loose) == content(fixed)
+    assert content((fixed,))[1][0] is content(fixed)
+    open_[0] = 5.0
+    assert content(loose) != content(fixed), "what is written into an array is seen"
+    assert content(Table((1.0, loose.values))) != content(Table((1.0, closed)))
+
+
+def test_machines_of_one_layout_share_what_no_error_changes():
+    layout = make_layout(kinematics=GEOMETRIC)
+    models = [
+        build_model(make_machine(layout, imperfections=replace(perfect(layout), position=at)))
+        for at in np.array([0.0, 1e-6])[:, None, None] * np.ones((len(layout.pinions), 2))
+    ]
+    first, second = (model.machine.linear for model in models)
+    for name in ("mass", "stiffness", "rows", "lengths", "translations"):
+        assert getattr(first, name) is getattr(second, name)
+    assert (models[0].system.upper != models[1].system.upper).any()
+    assert models[0].system.error is models[1].system.error
 
 
 def test_machines_that_differ_in_errors_and_clearances_share_reduction_and_law_and_nothing_that_differs():

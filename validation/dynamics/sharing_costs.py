@@ -13,6 +13,7 @@ from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.run import Sharing, group_average, load_sharing
+from facegear.load_sharing.sampling import densely_sampled
 from facegear.load_sharing.statistics import Average
 from facegear.transmission.machine import Machine
 from validation.dynamics.convergence import exact
@@ -107,8 +108,9 @@ def _again(case: RandomMachine, sharing: Sharing, settings: Settings, options: S
 
 def _error(sharing: Sharing, finer: SteadyState, options: SharingOptions) -> dict[str, float]:
     """Of the group whose mean coefficient changes most."""
+    fine = densely_sampled(finer)
     pairs: list[tuple[Average, Average]] = [
-        (group.average, group_average(finer, group.group, options.confidence)[2]) for group in sharing.groups
+        (group.average, group_average(fine, group.group, options.confidence)[2]) for group in sharing.groups
     ]
     first, second = max(pairs, key=lambda pair: abs(pair[0].mean - pair[1].mean))
     return {

@@ -138,7 +138,7 @@ def _side_by_side(
 
 def _longest_step(stretch: Stretch) -> float:
     """The longest step, rad, that a run may take."""
-    return np.inf if stretch.tangents is None else stretch.integrator.longest_step()
+    return np.inf if stretch.tangents is None else stretch.integrator.longest_step
 
 
 def _result(queue: "Queue", number: int, stretch: Stretch) -> RunResult | NotConverged:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.by_content import kept_by_content
 from facegear.dynamics.integrator.blocks import Blocks, Coupled, blocks_of, coupled_of, nonzero
 from facegear.dynamics.integrator.coupling import Coupling
 from facegear.dynamics.integrator.system import System
@@ -165,20 +166,17 @@ def _packed(system: System) -> Packed:
     """What pack() gives at 1 rad/s, without law and rings; its arrays are shared and only read."""
     m, n = system.mesh_jacobian.shape
     width_n, width_m = whole_lanes(n), whole_lanes(m)
-    transposed = aligned(width_m, width_n)
-    transposed[:m, :n] = system.mesh_jacobian
-    mesh_jacobian = aligned(width_n, width_m)
-    mesh_jacobian[:] = transposed.T
+    jacobian = _jacobian(system.mesh_jacobian)
     # A clearance within rounding of the deflections is none: its edges could not be distinguished.
     closed = system.upper - system.lower <= MIN_CLEARANCE * system.scale
     lower = np.where(closed, system.upper, system.lower)
     return Packed(
         n=n,
         m=m,
-        mesh_jacobian=mesh_jacobian,
-        transposed=transposed,
-        touched=_sparse(system.mesh_jacobian),
-        touching=_sparse(system.mesh_jacobian.T),
+        mesh_jacobian=jacobian.by_coordinate,
+        transposed=jacobian.by_mesh,
+        touched=jacobian.touched,
+        touching=jacobian.touching,
         omega_squared=padded(system.omega_squared, width_n),
         damping=padded(system.damping, width_n),
         mesh_damping=padded(system.mesh_damping, width_m),
@@ -191,7 +189,7 @@ def _packed(system: System) -> Packed:
         load=fourier_columns(system.load),
         breaks=system.law.breaks * TAU,
         weights=padded(_weights(system), width_n),
-        leverage=(transposed**2).sum(axis=1),
+        leverage=jacobian.leverage,
         fastest=sum(_fastest(system)),
         damping_when_open=system.damping_when_open,
         push_only=system.push_only and not system.damping_when_open and bool(system.mesh_damping.any()),
@@ -202,6 +200,27 @@ def _packed(system: System) -> Packed:
         rubbing=_rubbing(system),
         coupled=None,
     )
+
+
+class _Jacobian(NamedTuple):
+    """A mesh Jacobian as Packed has it."""
+
+    by_coordinate: Array
+    by_mesh: Array
+    touched: Sparse
+    touching: Sparse
+    leverage: Array
+
+
+@kept_by_content(4)
+def _jacobian(rows: Array) -> _Jacobian:
+    """Of rows (m, n); many systems share it."""
+    m, n = rows.shape
+    by_mesh = aligned(whole_lanes(m), whole_lanes(n))
+    by_mesh[:m, :n] = rows
+    by_coordinate = aligned(*by_mesh.shape[::-1])
+    by_coordinate[:] = by_mesh.T
+    return _Jacobian(by_coordinate, by_mesh, _sparse(rows), _sparse(rows.T), (by_mesh**2).sum(axis=1))
 
 
 def _weights(system: System) -> Array:
@@ -261,12 +280,16 @@ def _fastest(system: System) -> tuple[float, float]:
     mesh = np.zeros(len(system.mesh_jacobian))
     mesh[:contacts] = system.law.steepest
     mesh[contacts::3] = mesh[contacts + 1 :: 3] = system.ring_stiffness
-    mesh_jacobian = system.mesh_jacobian
-    stiffness = np.diag(system.omega_squared) + (mesh_jacobian.T * mesh) @ mesh_jacobian
     dampers = system.mesh_damping.copy()
     dampers[contacts::3] = dampers[contacts + 1 :: 3] = system.ring_lag * system.ring_stiffness
-    damping = np.diag(system.damping) + (mesh_jacobian.T * dampers) @ mesh_jacobian
-    natural = np.sqrt(max(np.linalg.eigvalsh(stiffness)[-1], 0.0)) + np.linalg.eigvalsh(damping)[-1]
+    stiffest = _largest_root(system.omega_squared, system.mesh_jacobian, mesh)
+    natural = np.sqrt(max(stiffest, 0.0)) + _largest_root(system.damping, system.mesh_jacobian, dampers)
     fractions = system.law.harmonic_fractions
     harmonics = (np.arange(fractions.size) * fractions ** (1.0 / 8.0)).max()
     return float(natural), float(harmonics)
+
+
+@kept_by_content(8)
+def _largest_root(own: Array, rows: Array, factors: Array) -> float:
+    """Largest eigenvalue of diag(own (n,)) + rows^T diag(factors (m,)) rows, rows (m, n)."""
+    return float(np.linalg.eigvalsh(np.diag(own) + (rows.T * factors) @ rows)[-1])

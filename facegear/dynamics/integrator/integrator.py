@@ -1,6 +1,7 @@
 """A system at one mesh frequency, ready to be run: what the kernels need stays inside."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -159,6 +160,7 @@ class Integrator:
         """A state by time."""
         return State(state[0].copy(), state[1] * self.frequency)
 
+    @cached_property
     def longest_step(self) -> float:
         """Longest step, rad, that disturbances of the motion may be moved over, whatever the motion does."""
         return float(disturbance_step(self.packed, self.order, self.tolerance))
@@ -191,7 +193,7 @@ class Integrator:
         log = self._log(periods, samples, growth, batches)
         padded = self.padded(state)
         packed = self.packed if drift is None else self.packed._replace(drift=self._drift(drift))
-        longest = self.longest_step() if fine or len(moved) else np.inf
+        longest = self.longest_step if fine or len(moved) else np.inf
         status = run_periods(
             packed,
             self.work,
@@ -234,7 +236,7 @@ class Integrator:
         Runs whole mesh periods; the steps are no longer than disturbances need. Raises NotConverged.
         """
         log = self._log(periods)._replace(extrema=make_extrema(self.packed, count))
-        self._run_alone(state, periods, log, self.longest_step())
+        self._run_alone(state, periods, log, self.longest_step)
         return log.extrema
 
     def _run_alone(self, state: Array, periods: int, log: Log, longest: float, begin: float = 0.0) -> Array:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.by_content import kept_by_content
 from facegear.dynamics.integrator.coupling import Coupling
 from facegear.dynamics.integrator.reduction import Reduced
 from facegear.harmonics.series import Harmonics
@@ -21,6 +22,10 @@ from facegear.mesh_law.linear import different
 from facegear.transmission.flanks import mesh_contacts
 from facegear.transmission.machine import Machine, OpenFlanks
 from facegear.transmission.mesh_friction import MeshFriction, flank_ratios, friction_rows
+
+NO_ERROR = Harmonics(np.zeros(1), np.zeros(1))
+
+_kinds = kept_by_content(4)(different)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,8 +121,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
     """The system of a machine in its reduced coordinates; runouts and pitch deviations are left out."""
     contacts, rings = mesh_contacts(machine), machine.linear.rings
     nothing = 3 * rings.body.size * [0.0]
-    none = len(nothing) * [Harmonics(np.zeros(1), np.zeros(1))]
-    error, error_kind = different([*contacts.error, *none])
+    error, error_kind = _kinds((*contacts.error, *len(nothing) * [NO_ERROR]))
     load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
     return System(

@@ -10,7 +10,7 @@ from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
 from facegear.dynamics.integrator.system import System
 from facegear.machine_code.fourier import FourierScratch, fourier_scratch
-from facegear.machine_code.memory import LANES, aligned
+from facegear.machine_code.memory import LANES, aligned, aligned_together
 
 ABREAST = 3 * LANES
 """Tangents moved side by side: as many vectors as the registers hold with what they are multiplied by."""
@@ -114,45 +114,51 @@ def make_work(system: System, packed: Packed, order: int) -> Work:
     rubbing = packed.rubbing
     ratios = 0 if rubbing is None else len(rubbing.ratios)
     harmonics = max(system.law.harmonic_fractions.size, len(packed.error), len(packed.load), ratios)
+    by_coordinate, by_row = (rows, n), (rows, m)
+    tables = aligned_together(
+        {
+            "y": by_coordinate,
+            "deflection": by_row,
+            "error": by_row,
+            "load": by_coordinate,
+            "force": (m,),
+            "edge": (m,),
+            "active": (m,),
+            "acting": (m,),
+            "side": (m,),
+            "per_kind": (rows * packed.error.shape[2],),
+            "polynomial": (rows,),
+            "scaled": by_row,
+            "bernstein": by_row,
+            "subdivision": (MAX_DEPTH + 2, rows),
+            "tangent": by_coordinate,
+            "tangent_deflection": by_row,
+            "block": (rows, packed.n * ABREAST),
+            "block_deflection": (rows, packed.m * ABREAST),
+            "block_force": (packed.m * ABREAST,),
+            "zero_error": by_row,
+            "zero_load": by_coordinate,
+            "sample": (n,),
+            "was_acting": (m,),
+            "lower_bound": (m,),
+            "upper_bound": (m,),
+            "coupled": (2 * n,),
+        }
+    )
     return Work(
         order=order,
-        y=aligned(rows, n),
-        deflection=aligned(rows, m),
-        error=aligned(rows, m),
-        load=aligned(rows, n),
-        force=aligned(m),
-        edge=aligned(m),
-        active=aligned(m),
-        acting=aligned(m),
         state=np.zeros(m, dtype=np.int64),
         at_level=np.zeros(m, dtype=np.int64),
-        side=aligned(m),
         at_parting=np.zeros(m, dtype=np.int64),
         law=system.law.series(rows, m),
         fourier=fourier_scratch(harmonics, rows),
-        per_kind=aligned(rows * packed.error.shape[2]),
-        polynomial=aligned(rows),
-        scaled=aligned(rows, m),
-        bernstein=aligned(rows, m),
         conversion=bernstein_matrix(order),
         conversion_less=bernstein_matrix(order - 1),
-        subdivision=aligned(MAX_DEPTH + 2, rows),
-        tangent=aligned(rows, n),
-        tangent_deflection=aligned(rows, m),
-        block=aligned(rows, packed.n * ABREAST),
-        block_deflection=aligned(rows, packed.m * ABREAST),
-        block_force=aligned(packed.m * ABREAST),
-        zero_error=aligned(rows, m),
-        zero_load=aligned(rows, n),
-        sample=aligned(n),
-        was_acting=aligned(m),
-        lower_bound=aligned(m),
-        upper_bound=aligned(m),
         nodes=_gauss(order // 4 + 1),
         rings=_ring_series(rows, packed.rings.clearance.size) if packed.rings else None,
         rubbing=RubbingSeries(aligned(rows, rubbing.ratios.shape[2]), aligned(rows, m)) if rubbing else None,
-        coupled=aligned(2 * n),
         pressing=_pressing(packed),
+        **tables,
     )
 
 
@@ -164,8 +170,8 @@ def _pressing(packed: Packed) -> Pressing | None:
 
 
 def _ring_series(rows: int, width: int) -> RingSeries:
-    tables = {name: aligned(rows, width) for name in RingSeries._fields}
-    return RingSeries(**{**tables, "reciprocal": aligned(width)})
+    shapes: dict[str, tuple[int, ...]] = dict.fromkeys(RingSeries._fields, (rows, width))
+    return RingSeries(**aligned_together({**shapes, "reciprocal": (width,)}))
 
 
 @cache

@@ -23,6 +23,9 @@ STEPS = 12
 """Steps that the chord method may take; each must gain a factor of two."""
 RETURNS = 5
 """Returns in succession that must follow the guide's multipliers."""
+COARSE = 1e2
+"""Changes above this, times the tolerance, are known well enough from steps that disturbances would find too
+long."""
 HOLDING = 0.99
 """Multipliers of a guide lie below: what it draws in slowly is better watched."""
 
@@ -86,15 +89,16 @@ def _guided(integrator: Integrator, state: Array, guide: Guide) -> Settled | Non
 
 def _orbit_near(integrator: Integrator, state: Array, guide: Guide) -> tuple[Array, float] | None:
     """The orbit (2, n) that the chord method comes to from a state, and the change over its period."""
-    here, best = state, np.inf
+    here, best, fine = state, np.inf, False
     for _ in range(STEPS):
-        end = integrator.run(here, 1, fine=True).state
+        end = integrator.run(here, 1, fine=fine).state
         residual = change(integrator, here, end)
-        if residual <= ROUNDING:
+        if fine and residual <= ROUNDING:
             return here, residual
         if not residual < 0.5 * best:
             return None
-        best = residual
+        near = residual <= COARSE * integrator.tolerance
+        best, fine = residual if fine or not near else np.inf, fine or near
         here = here + (guide.chord @ (end - here).ravel()).reshape(2, -1)
     return None
 

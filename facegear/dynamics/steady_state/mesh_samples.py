@@ -24,8 +24,13 @@ def each_deflection(system: System, coordinates: Array, per_period: int) -> Arra
     # Period by period: one large product would start threads, which then wait at full speed.
     by_period = coordinates.reshape(-1, per_period, coordinates.shape[1])
     deflections = by_period @ system.mesh_jacobian[:contacts].T
-    deflections -= _errors(system.error, system.error_kind[:contacts], per_period)
+    deflections -= errors_of_period(system, per_period)
     return deflections.reshape(len(coordinates), -1)
+
+
+def errors_of_period(system: System, per_period: int) -> Array:
+    """Errors e (per_period, contacts) at the samples of a mesh period, m; shared, only read."""
+    return _errors(system.error, system.error_kind[: system.contacts], per_period)
 
 
 @kept_by_content(2)

@@ -1,6 +1,7 @@
 """Errors of single meshes and bodies in the config: one line each, and one line of refusal."""
 
 import re
+from copy import deepcopy
 
 import numpy as np
 import pytest
@@ -172,6 +173,19 @@ def test_a_tolerance_adds_to_a_clearance_that_is_given_from_side_to_side(key, cl
     sample = parse(Transmission, moved(start, {key: 5.0})["transmission"])
     found = machine(sample, TEETH, STIFFNESS).imperfections.bearing_clearance
     np.testing.assert_allclose(found, 1e-6 * np.array(clearance_um))
+
+
+def test_a_sample_shares_with_the_nominal_machine_what_it_does_not_change_and_leaves_that_as_it_is():
+    given = section(single_pinions={"one": {"clearance_um": 30}})
+    keys = [f"transmission.single_pinions.{name}.clearance_um" for name in ("one", "two")]
+    start = movable({"transmission": parse(Transmission, given).model_dump(mode="json")}, keys)
+    before = deepcopy(start)
+    sample = moved(start, {keys[0]: 5.0, keys[1]: -5.0})
+    assert start == before
+    own = sample["transmission"]["single_pinions"]
+    assert own["one"]["clearance_um"] == 35.0
+    assert own["two"]["clearance_um"] == before["transmission"]["single_pinions"]["two"]["clearance_um"] - 5.0
+    assert sample["transmission"]["pinions"] is start["transmission"]["pinions"]
 
 
 @pytest.mark.parametrize(

@@ -11,15 +11,11 @@ from references import against, agrees
 from scipy.interpolate import CubicSpline
 
 import facegear
-from facegear.dynamics.bearing_forces import (
-    bearing_history,
-    bearing_table,
-    closed_spline_slopes,
-    velocities,
-)
+from facegear.dynamics.bearing_forces import bearing_forces, bearing_history, bearing_table
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.dynamics.track import SampledTrack, periodic_track, track
 from facegear.harmonics.series import Harmonics, stacked_values
 from facegear.report.case import case_report
 from facegear.transmission.imperfections import perfect
@@ -135,7 +131,7 @@ def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics
 def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinematics, backlash):
     steady = {"stiffness": FLAT, "error": 8e-6, "backlash": backlash, "open_flanks": OpenFlanks.CONTACT_ONLY}
     model, found = loaded(kinematics, samples=1024, **steady)
-    machine, system, rate = model.machine, model.system, velocities(found)
+    machine, system, rate = model.machine, model.system, rates(found)
     assert found.motion is Motion.PERIODIC and found.periods == 1
     error = stacked_values(system.error, found.phases)[:, system.error_kind]
     closed = found.coordinates @ system.mesh_jacobian.T - error - system.upper
@@ -221,9 +217,37 @@ def test_the_report_shows_the_forces_on_the_bearings_at_the_nominal_speed():
     assert page.count("<td>radial</td>") == 7
 
 
+def rates(response):
+    """Time derivatives of the coordinates (K, n) of a response."""
+    each = np.eye(response.system.size)
+    return track(response).along(0.0 * each, each).T
+
+
 @given(st.integers(3, 40), st.integers(0, 2**32 - 1))
 def test_slopes_of_a_periodic_motion_are_those_of_the_closed_spline(count, seed):
-    samples = np.random.default_rng(seed).normal(size=(count, 3))
+    samples, each = np.random.default_rng(seed).normal(size=(count, 3)), np.eye(3)
     time = 0.3 * np.arange(count + 1)
     spline = CubicSpline(time, np.concatenate([samples, samples[:1]]), bc_type="periodic")
-    np.testing.assert_allclose(closed_spline_slopes(samples, 0.3), spline(time[:-1], 1), rtol=0, atol=1e-10)
+    slopes = periodic_track(samples, 0.3).along(0.0 * each, each).T
+    np.testing.assert_allclose(slopes, spline(time[:-1], 1), rtol=0, atol=1e-10)
+
+
+@given(st.integers(4, 40), st.integers(0, 2**32 - 1))
+def test_places_and_speeds_along_some_directions_are_those_of_the_coordinates(count, seed):
+    random = np.random.default_rng(seed)
+    samples, places, speeds = (random.normal(size=shape) for shape in ((count, 3), (3, 2), (3, 2)))
+    speeds[:, 0] = 0.0
+    for motion in (periodic_track(samples, 0.3), SampledTrack(samples, 0.3)):
+        moved, moving = motion.along(np.eye(3), np.zeros((3, 3))), motion.along(np.zeros((3, 3)), np.eye(3))
+        expected = places.T @ moved + speeds.T @ moving
+        np.testing.assert_allclose(moved, samples.T, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(motion.along(places, speeds), expected, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("clearance", [0.0, 2e-6])
+def test_forces_between_the_samples_are_those_of_a_run_with_as_many_samples(clearance):
+    (model, few), (_, many) = (loaded(clearance=clearance, error=4e-6, samples=each) for each in (256, 1024))
+    assert few.motion is Motion.PERIODIC and few.per_period * 4 == many.per_period
+    dense = np.moveaxis(bearing_forces(model, track(few, 4)), -1, 0)
+    exact = bearing_history(model, many)
+    np.testing.assert_allclose(dense, exact, rtol=0, atol=1e-4 * np.abs(exact).max())

@@ -11,11 +11,11 @@ from facegear.dynamics.bearing_forces import (
     bearing_history,
     bearing_table,
     shaft_bearing_history,
-    velocities,
 )
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.dynamics.track import track
 from facegear.harmonics.series import Harmonics, stacked_values
 from facegear.shafts.beam import carried
 from facegear.transmission.drive_line import TurningMass
@@ -152,7 +152,8 @@ def test_shafts_springs_masses_and_meshes_take_no_more_power_than_is_brought_in(
     model = build_model(machine)
     found = simulate(model, 2500.0, Settings(tolerance=1e-10, samples=1024))
     assert found.motion is Motion.PERIODIC and found.periods == 1
-    system, rate = model.system, velocities(found)
+    system, each = model.system, np.eye(model.system.size)
+    rate = track(found).along(0.0 * each, each).T
     error = stacked_values(system.error, found.phases)[:, system.error_kind]
     closed = found.coordinates @ system.mesh_jacobian.T - error - system.upper
     touches = (closed > 0.0).all(axis=0)

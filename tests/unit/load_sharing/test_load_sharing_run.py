@@ -8,13 +8,14 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model
+from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.dynamics.track import periodic_track
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.options import SharingOptions, SpeedRange
 from facegear.load_sharing.reference import reference_table, slow_forces, speed_range_table
 from facegear.load_sharing.run import load_sharing, measured_motion
-from facegear.load_sharing.sampling import between, same_orbit
+from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
 from facegear.transmission.imperfections import Runout, perfect
@@ -192,7 +193,7 @@ def test_a_slow_approach_to_an_orbit_is_not_called_a_torus(paper_machine):
     "own convergence",
     "4096 samples a cycle",
     capability="load_sharing",
-    module="facegear.load_sharing.sampling",
+    module="facegear.dynamics.track",
 )
 @pytest.mark.parametrize("speed", [5000.0, 10_000.0])
 def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_samples(paper_machine, speed):
@@ -210,7 +211,7 @@ def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_s
     "manufactured",
     "a sum of sines and cosines",
     capability="load_sharing",
-    module="facegear.load_sharing.sampling",
+    module="facegear.dynamics.track",
 )
 @given(
     waves=st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=7),
@@ -226,8 +227,8 @@ def test_instants_between_the_samples_of_a_band_limited_series_are_exact(waves, 
 
     agrees(
         "value between the samples",
-        between(series(16), factor),
-        series(16 * factor),
+        periodic_track(series(16), 1.0, factor).along(np.ones((1, 1)), np.zeros((1, 1)))[0],
+        series(16 * factor)[:, 0],
         relative=1e-7,
         absolute=1e-13,
     )
@@ -237,6 +238,14 @@ def test_a_machine_is_judged_by_the_motion_that_its_load_sharing_is_taken_from(t
     """Without what the groups make of it, which nobody asks for there."""
     model, single = build_model(tight), replace(OPTIONS, starts=1)
     alone = measured_motion(model, 6000.0, SETTINGS, single)
-    shared = load_sharing(model, 6000.0, SETTINGS, single).response
-    np.testing.assert_array_equal(alone.coordinates, shared.coordinates)
+    shared = load_sharing(model, 6000.0, SETTINGS, single).motion
+    np.testing.assert_array_equal(alone.response.coordinates, shared.response.coordinates)
     np.testing.assert_array_equal(alone.forces, shared.forces)
+
+
+def test_forces_between_the_samples_are_those_of_a_run_with_as_many_samples(tight):
+    model, precise = build_model(tight), replace(SETTINGS, tolerance=1e-9)
+    few, many = (simulate(model, 6000.0, replace(precise, samples=samples)) for samples in (256, 2048))
+    assert few.label == many.label == "period-1" and many.per_period == 2048
+    dense = densely_sampled(few)
+    np.testing.assert_allclose(dense.forces.T, many.forces, rtol=0, atol=1e-5 * np.abs(many.forces).max())
