@@ -4,7 +4,8 @@ A course asks for a stretch by yielding it and is given its run. The same code w
 and many whose stretches run side by side.
 """
 
-from collections.abc import Generator, Sequence
+from collections import defaultdict
+from collections.abc import Generator, Mapping, Sequence
 from typing import TypeAlias, TypeVar
 
 from facegear.dynamics.abreast.many import run_stretches
@@ -25,22 +26,31 @@ def alone(course: Course[T]) -> T:
 
 
 def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
-    """What each of many courses comes to; stretches that are asked for at a time run in lanes where they can.
+    """What each of many courses comes to; stretches of one kind and length run in lanes where they can.
 
-    Raises NotConverged if any of the courses does.
+    The kind that most courses ask for at a time is run, while the others wait for more of their own: so lanes
+    are as full as they can be. Raises NotConverged if any of the courses does.
     """
     ended: dict[int, T] = {}
     asked: dict[int, Stretch] = {}
     answers: dict[int, RunResult | NotConverged | None] = dict.fromkeys(range(len(courses)))
     while answers:
-        asked.clear()
         for number, answer in answers.items():
             try:
                 asked[number] = _next_of(courses[number], answer)
             except StopIteration as end:
                 ended[number] = end.value
-        answers = dict(zip(asked, run_stretches(list(asked.values())), strict=True))
+        alike = _most_alike(asked)
+        answers = dict(zip(alike, run_stretches([asked.pop(number) for number in alike]), strict=True))
     return [ended[number] for number in range(len(courses))]
+
+
+def _most_alike(asked: Mapping[int, Stretch]) -> list[int]:
+    """Numbers of the courses in the largest group that asks for stretches of one kind and length."""
+    groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
+    for number, stretch in asked.items():
+        groups[(stretch.periods, *stretch.asks)].append(number)
+    return max(groups.values(), key=len, default=[])
 
 
 def _next_of(course: Course[T], answer: RunResult | NotConverged | None) -> Stretch:
