@@ -40,12 +40,12 @@ def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
                 asked[number] = _next_of(courses[number], answer)
             except StopIteration as end:
                 ended[number] = end.value
-        alike = _most_alike(asked)
+        alike = _largest_group(asked)
         answers = dict(zip(alike, run_stretches([asked.pop(number) for number in alike]), strict=True))
     return [ended[number] for number in range(len(courses))]
 
 
-def _most_alike(asked: Mapping[int, Stretch]) -> list[int]:
+def _largest_group(asked: Mapping[int, Stretch]) -> list[int]:
     """Numbers of the courses in the largest group that asks for stretches of one kind and length."""
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
     for number, stretch in asked.items():

@@ -37,8 +37,8 @@ def prepare(clearance: bool = False, friction: bool = False, load_dependent: boo
 @cache
 def prepare_abreast() -> None:
     """The same for machines that run side by side."""
-    one = Integrator(_smallest(False, False, False), 1.0, 1e-2, 6)
-    run_many([one] * FEWEST, [np.zeros((2, 1))] * FEWEST, 1)
+    integrator = Integrator(_smallest(False, False, False), 1.0, 1e-2, 6)
+    run_many([integrator] * FEWEST, [np.zeros((2, 1))] * FEWEST, 1)
 
 
 def _smallest(clearance: bool, friction: bool, load_dependent: bool = False) -> System:
