@@ -11,6 +11,7 @@ from references import against, agrees
 from scipy.integrate import quad
 from scipy.special import ellipe, ellipk
 
+from facegear.contact import lines
 from facegear.contact.hertz import contact_modulus, strip_pressure
 from facegear.contact.lines import ContactLines, contact_lines, unloaded_lines
 from facegear.contact.ltca import loaded_contact
@@ -337,3 +338,20 @@ def test_strip_fine_in_both_directions_has_the_pressure_of_the_line_load(pressed
         strip = strip_at(model.design, pressure, number, result.unloaded, contact_modulus((STEEL, STEEL)))
         assert strip.y.size
         np.testing.assert_allclose(strip.line, strip.strip, rtol=0.01)
+
+
+@pytest.mark.parametrize("assembly", [{}, {"offset": 2e-4}, {"shaft_angle_error": -3e-3}])
+def test_least_gaps_between_every_fourth_sample_are_those_among_all_samples(monkeypatch, assembly):
+    relief = Relief(2e-5, 0.0, 1e-3)
+    design = pair_design()
+    pinion = replace(design.pinion, tip_relief=relief)
+    design = replace(design, pinion=pinion, assembly=AssemblyErrors(**assembly))
+    phi1 = np.repeat(np.array([-0.45, -0.1, 0.3]) * 2 * np.pi / design.pinion.teeth, PAIRS.size)
+    phi2, tooth = unloaded_contact(design, phi1).phi2, np.tile(PAIRS, 3)
+    planes = design.mean_radius + np.linspace(-0.5, 0.5, 15) * design.pinion.width
+    few = contact_lines(design, phi1, phi2, tooth, planes)
+    monkeypatch.setattr(lines, "EVERY", 1)
+    every = contact_lines(design, phi1, phi2, tooth, planes)
+    assert np.isfinite(every.curvature).sum() > 50
+    np.testing.assert_allclose(few.roll, every.roll, rtol=1e-10)
+    np.testing.assert_allclose(few.curvature, every.curvature, rtol=1e-9)
