@@ -175,7 +175,8 @@ def newton(
             repeated |= np.array_equal(seen[earlier], following)
         if repeated or not drives:
             break
-        active[:] = following
+        for i in range(count):
+            active[i] = following[i]
     return 0, force, 0.0, 0.0, 0.0
 
 

@@ -187,7 +187,8 @@ def listed(mark: Mask) -> tuple[Integers, Integers]:
     """The indices that are marked (n,), rising, and the index of each among them."""
     used = np.flatnonzero(mark)
     slot = np.full(mark.size, -1)
-    slot[used] = np.arange(used.size)
+    for i in range(used.size):
+        slot[used[i]] = i
     return used, slot
 
 

@@ -91,7 +91,8 @@ def settle_all(
         for f in range(flanks):
             if over[f] > 0.0:
                 forces[k, f], _ = held_force(held, k, f, over[f])
-        displacements[k] = displacement
+        for j in range(n):
+            displacements[k, j] = displacement[j]
     return displacements, forces, residuals
 
 
