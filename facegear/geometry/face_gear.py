@@ -19,6 +19,7 @@ from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.geometry import closed_forms
 from facegear.geometry.design import PairDesign
+from facegear.geometry.generated import generated
 
 ROUNDING = 16 * np.finfo(float).eps
 
@@ -83,6 +84,14 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
     return _newton(residual, local_pressure_angle(design, radius), radius**2, "psi at a gear radius")
 
 
+def flank_radius(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
+    """Gear radius (m) of `flank_point`."""
+    base, ratio, _, _ = shaper_numbers(design)
+    roll, psi = _together(roll, psi)
+    square, _ = closed_forms.radius_at_roll(base, ratio, 0.0, roll, psi)
+    return np.asarray(np.sqrt(square))
+
+
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
     """th and psi (rad) of the flank at gear radius `radius` and height `z` (m).
 
@@ -104,9 +113,13 @@ def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
     return flank_point(design, *roll_and_psi_at_height(design, radius, design.gear_tip_plane))
 
 
-@lru_cache(maxsize=16)
 def tip_roll(design: PairDesign) -> "scipy.interpolate.CubicSpline":
-    """th (rad) of the flank's tip edge by gear radius (m)."""
+    """th (rad) of the flank's tip edge, as it is generated, by gear radius (m)."""
+    return _tip_roll(generated(design))
+
+
+@lru_cache(maxsize=16)
+def _tip_roll(design: PairDesign) -> "scipy.interpolate.CubicSpline":
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
     return scipy.interpolate.CubicSpline(

@@ -71,8 +71,7 @@ def located(design: PairDesign, seen: Separation) -> GearHits:
     """Where on the gear's tooth a separation ends."""
     radius, flank, fillet, beyond = (np.full(seen.gap.shape, np.nan) for _ in range(4))
     on = seen.part == FLANK
-    point = face_gear.flank_point(design, seen.u[on], seen.v[on])
-    radius[on] = np.hypot(point[:, 0], point[:, 1])
+    radius[on] = face_gear.flank_radius(design, seen.u[on], seen.v[on])
     tip = face_gear.tip_roll(design)(radius[on])
     flank[on] = (seen.u[on] - tip) / (design.shaper_tip_roll - tip)
     on = seen.part == FILLET

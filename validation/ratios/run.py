@@ -24,6 +24,8 @@ TURNS = 3
 SAME = 1e-9
 """Change of a number, over the largest of its array, up to which it is the same."""
 WORKER = Path(__file__).with_name("worker.py")
+DIFFERENCES = {"k_gamma_missed": 1e-12}
+"""Relative differences of two like numbers up to which these count as equal."""
 COLUMNS = (
     *("point", "unit", "before", "now", "ratio", "memory_before_mb", "memory_now_mb"),
     *("change", "fraction_equal", "labels_changed", "labels", "error", "load"),
@@ -114,7 +116,7 @@ def changes(before: dict[str, np.ndarray], now: dict[str, np.ndarray]) -> tuple[
     most SAME, labels that changed, and how many labels there are.
 
     Rows whose `motion` changes its class or its period, or is not periodic, count by their label alone, as
-    other motions are statistics. Residuals count as `facegear compare` has them.
+    other motions are statistics. Residuals, and differences of like numbers, count as zero up to rounding.
     """
     texts = {name: values for name, values in before.items() if values.dtype.kind in "UO"}
     changed = sum(int((values != now[name]).sum()) for name, values in texts.items())
@@ -151,7 +153,7 @@ def _regular(before: dict[str, np.ndarray], now: dict[str, np.ndarray], name: st
 def _counted(name: str, values: np.ndarray) -> np.ndarray:
     """Numbers of an array as they are compared."""
     numbers = np.atleast_1d(values).astype(complex)
-    zero = RESIDUALS.get(name.rsplit("/", 1)[-1], 0.0)
+    zero = (RESIDUALS | DIFFERENCES).get(name.rsplit("/", 1)[-1], 0.0)
     return np.where(np.abs(numbers) <= zero, 0.0, numbers)
 
 

@@ -47,6 +47,12 @@ def test_a_motion_of_another_period_counts_by_its_label_and_residuals_of_solved_
     assert changes({"kkt_residual": np.array([1e-16])}, {"kkt_residual": np.array([1e-9])})[0] > 0.0
 
 
+def test_differences_of_like_numbers_are_compared_down_to_rounding():
+    before, now, other = ({"0/k_gamma_missed": np.array([number])} for number in (1e-15, -4e-16, 1e-9))
+    assert changes(before, now)[0] == 0.0
+    assert changes(before, other)[0] > 0.0
+
+
 def test_arrays_of_another_shape_are_no_small_change():
     assert changes({"k": np.ones(3)}, {"k": np.ones(4)})[0] == np.inf
 

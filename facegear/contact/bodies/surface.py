@@ -90,8 +90,9 @@ def interpolation(coordinates: Array, shape: tuple[int, int], linear: bool = Fal
     return _rows(nodes, values, shape[0] * shape[1])
 
 
+@lru_cache(maxsize=8)
 def pressure_basis(shape: tuple[int, int]) -> Basis:
-    """Bilinear hats in lattice coordinates with 2 x 2 Gauss points in each cell between nodes."""
+    """Bilinear hats in lattice coordinates with 2 x 2 Gauss points in each cell between nodes: shared."""
     mesh = MeshQuad.init_tensor(*(np.arange(float(count)) for count in shape))
     return Basis(mesh, ElementQuad1(), intorder=TWO_POINTS)
 
