@@ -13,6 +13,8 @@ from facegear.transmission.layout import Layout
 from facegear.transmission.modes import Modes
 
 UM = 1e6
+STILL = 1e-12
+"""Fraction of the largest RMS translation up to which a body moves in a direction by rounding alone."""
 PER_MESH = {
     **{f"deflection_{name}_um": (UM, f"deflection_{name}") for name in DEFLECTION},
     "mean_elastic_force_n": (1.0, "mean_force"),
@@ -36,7 +38,8 @@ PER_SPEED = (
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular.
 
-    The unit stands in the quantity. `past_law_fraction` is there where a mesh is past its law at some speed.
+    The unit stands in the quantity. Directions in which a body moves by rounding alone are left out.
+    `past_law_fraction` is there where a mesh is past its law at some speed.
     """
     order, labels = np.argsort(piece.speeds), np.array(piece.labels)
     frames = []
@@ -62,9 +65,10 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
             add(quantity, mesh, factor * getattr(piece, field)[:, m])
         if piece.past_law_fraction.any():
             add("past_law_fraction", mesh, piece.past_law_fraction[:, m])
+    rounding = STILL * piece.translation_rms.max(initial=0.0)
     for b, body in enumerate(layout.body_names):
         for axis, letter in enumerate("xyz"):
-            if piece.translation_rms[:, b, axis].max() > 0.0:
+            if piece.translation_rms[:, b, axis].max() > rounding:
                 for name in TRANSLATION:
                     add(f"{letter}_{name}_um", body, UM * getattr(piece, f"translation_{name}")[:, b, axis])
     for name in PER_SPEED:

@@ -23,6 +23,13 @@ ROWS = (
         priority=100,
     ),
     Stage(
+        name="machine_code_abreast",
+        title="Machine code of machines side by side",
+        folder="dynamics",
+        asked=asked.side_by_side,
+        priority=70,
+    ),
+    Stage(
         name="dynamics_response",
         title="Response at the nominal speed",
         needs={**MACHINE, **ACCURACY, **SPEED},

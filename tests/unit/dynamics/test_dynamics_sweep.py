@@ -168,6 +168,19 @@ def test_tables_name_every_mesh_and_unit(model, whole):
     assert (jumps["speed_after_rpm"] - jumps["speed_before_rpm"]).abs().max() <= 1.0
 
 
+def test_directions_that_move_by_rounding_alone_are_no_rows_of_the_table(model, whole):
+    layout, piece = model.machine.layout, whole["up"].piece
+    moved = piece.translation_rms.copy()
+    moved[:, 0, 2] = 1e-15 * moved.max()
+    noisy = sweep_table(layout, "up", replace(piece, translation_rms=moved))
+    moved[:, 0, 2] = 0.0
+    still = sweep_table(layout, "up", replace(piece, translation_rms=moved))
+    pd.testing.assert_frame_equal(noisy, still)
+    moved[:, 0, 2] = 1e-9 * moved.max()
+    rows = sweep_table(layout, "up", replace(piece, translation_rms=moved))
+    assert "z_rms_um" in set(rows["quantity"][rows["body_or_mesh"] == layout.body_names[0]])
+
+
 def test_the_campbell_diagram_marks_a_resonance_at_its_order_of_the_mesh_frequency(model, whole):
     layout, modes = model.machine.layout, natural_modes(model.machine.layout, 4.1e8)
     jumps = jump_table(layout, "up", whole["up"], modes)
