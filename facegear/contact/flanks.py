@@ -47,8 +47,9 @@ class PinionSurface:
     """The pinion's pressure hats and the exact points their integrals are taken at.
 
     For q points: `at` (q, 2) on the refined lattice, `points`, `area` (q,) m2, `lever_arm` (q,) m (speed
-    along the normal per rotation), `hats` (q, n) their values, four a point; `element` (q,) the flat index of
-    the unrefined element (ne_u, ne_v) a point belongs to.
+    along the normal per rotation), `hats` (q, n) their values, four a point; `cell` (q,) the flat index of
+    the cell between refined nodes that a point lies in, `element` that of the unrefined element (ne_u, ne_v)
+    of each cell.
     """
 
     design: PairDesign
@@ -89,7 +90,7 @@ class PinionSurface:
 
     @cached_property
     def area(self) -> Array:
-        return cell_areas(self.nodes.reshape(*self.shape, 3), self.pressure)
+        return cell_areas(self.nodes.reshape(*self.shape, 3))
 
     @cached_property
     def lever_arm(self) -> Array:
@@ -117,8 +118,11 @@ class PinionSurface:
 
     @cached_property
     def element(self) -> Integers:
-        row, column = np.floor(self.at / (2 * self.lattice.factors)).astype(np.int64).T
-        return row * ((self.side.shape[1] - 1) // 2) + column
+        rows, columns = (np.arange(count - 1) for count in self.shape)
+        row, column = (
+            part // (2 * cut) for part, cut in zip((rows, columns), self.lattice.factors, strict=True)
+        )
+        return (row[:, None] * ((self.side.shape[1] - 1) // 2) + column).ravel()
 
     @cached_property
     def tip(self) -> tuple[Array, SurfacePoints]:
@@ -173,7 +177,6 @@ class PinionSurface:
 
     @cached_property
     def cell(self) -> Integers:
-        """Flat index (q,) of the cell between refined nodes that each point lies in."""
         row, column = np.floor(self.at).astype(np.int64).T
         return row * (self.shape[1] - 1) + column
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -133,44 +134,61 @@ def solve_position(
             continue
         for torque, steps, residual in zip(loads, contact.steps, contact.residual, strict=True):
             check_solved(int(steps), float(residual), contact.sought, where(torque))
-        return [_result(pair, contact, loads, row) for row in np.argsort(order)], float(contact.rotation[0])
+        results = _results(pair, contact, loads)
+        return [results[row] for row in np.argsort(order)], float(contact.rotation[0])
     tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
     raise NotConverged("contact", where(max(torques)), tried)
 
 
-def _result(pair: PairAtPosition, contact: Touching, torques: Array, row: int) -> LoadedPosition:
-    """That of the torque in a row of what was found."""
-    base, torque, force, hats = pair.base_radius, float(torques[row]), contact.force[row], contact.hats
-    part = force * hats.lever_arm / torque
-    load_share = np.zeros(len(PAIRS))
-    load_share[np.searchsorted(PAIRS, contact.teeth)] = np.bincount(hats.pair, part, contact.teeth.size)
-    ends, spots = np.searchsorted(hats.pair, np.arange(contact.teeth.size + 1)), []
-    for number, tooth in enumerate(contact.teeth.tolist()):
-        on = ends[number] + np.flatnonzero(force[ends[number] : ends[number + 1]] > 0.0)
-        if on.size:
-            spots.append(
-                Spot(
-                    tooth=tooth,
-                    hats=hats.node[on],
-                    force=force[on],
-                    fillet=hats.fillet[on],
-                    on_pinion=contact.on_pinion[row, number],
-                    on_gear=contact.on_gear[row, number],
-                )
+def _results(pair: PairAtPosition, contact: Touching, torques: Array) -> list[LoadedPosition]:
+    """Those of all torques (t,) N m of what was found."""
+    base, hats, teeth = pair.base_radius, contact.hats, contact.teeth
+    approach, overlap = base * contact.rotation, base * contact.overlap
+    average = np.where(overlap <= UNKNOWN_REFERENCE * approach, torques / base / approach, np.nan)
+    local, part = 1.0 / (base**2 * contact.slope), contact.force * hats.lever_arm / torques[:, None]
+    column = np.searchsorted(PAIRS, teeth)
+    ends = np.searchsorted(hats.pair, np.arange(teeth.size + 1))
+    results = []
+    for row, torque in enumerate(torques.tolist()):
+        load_share = np.zeros(len(PAIRS))
+        load_share[column] = np.bincount(hats.pair, part[row], teeth.size)
+        results.append(
+            LoadedPosition(
+                position=pair.position,
+                torque=torque,
+                ste=pair.unloaded + float(approach[row]),
+                unloaded=pair.unloaded,
+                k_average=float(average[row]),
+                k_local=float(local[row]),
+                load_share=load_share,
+                fillet_share=float(part[row][hats.fillet].sum()),
+                overlap=overlap,
+                residual=float(contact.residual[row]),
+                steps=int(contact.steps[row]),
+                candidates=contact.candidates,
+                spots=_spots(contact, row, ends),
             )
-    approach, overlap = base * float(contact.rotation[row]), base * contact.overlap
-    return LoadedPosition(
-        position=pair.position,
-        torque=torque,
-        ste=pair.unloaded + approach,
-        unloaded=pair.unloaded,
-        k_average=torque / base / approach if overlap <= UNKNOWN_REFERENCE * approach else np.nan,
-        k_local=1.0 / (base**2 * float(contact.slope[row])),
-        load_share=load_share,
-        fillet_share=float(part[hats.fillet].sum()),
-        overlap=overlap,
-        residual=float(contact.residual[row]),
-        steps=int(contact.steps[row]),
-        candidates=contact.candidates,
-        spots=tuple(spots),
+        )
+    return results
+
+
+def _spots(contact: Touching, row: int, ends: Integers) -> tuple[Spot, ...]:
+    """Of the torque in a row; hats of each pair end at `ends` (p + 1,), 0 first."""
+    hats = contact.hats
+    on = np.flatnonzero(contact.force[row] > 0.0)
+    node, force, fillet = hats.node[on], contact.force[row][on], hats.fillet[on]
+    begun = np.searchsorted(on, ends).tolist()
+    return tuple(
+        Spot(
+            tooth=tooth,
+            hats=node[first:last],
+            force=force[first:last],
+            fillet=fillet[first:last],
+            on_pinion=contact.on_pinion[row, number],
+            on_gear=contact.on_gear[row, number],
+        )
+        for number, (tooth, (first, last)) in enumerate(
+            zip(contact.teeth.tolist(), pairwise(begun), strict=True)
+        )
+        if last > first
     )

@@ -146,12 +146,14 @@ def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integer
     # a gear's edge may lie between a probe and the points that touch: the flank is taken to go on there
     gaps = np.minimum(seen.gap, seen.continued)
     close = np.any((gaps < depth)[:, elements], axis=2)
-    nodes = ~(pinion.between_probes @ np.where(np.isfinite(gaps), gaps, np.nan).T >= depth)
-    cells = _beside(nodes.T.reshape(-1, *pinion.shape)).reshape(len(gaps), -1)
-    return [
-        np.flatnonzero(near[pinion.element] & cell[pinion.cell])
-        for near, cell in zip(close, cells, strict=True)
-    ]
+    near = [np.zeros(0, np.int64)] * len(gaps)
+    rows = np.flatnonzero(close.any(axis=1))
+    known = np.where(np.isfinite(gaps[rows]), gaps[rows], np.nan)
+    nodes = ~(pinion.between_probes @ known.T >= depth)
+    cells = _beside(nodes.T.reshape(-1, *pinion.shape)).reshape(rows.size, pinion.element.size)
+    for row, marked in zip(rows.tolist(), cells & close[rows][:, pinion.element], strict=True):
+        near[row] = np.flatnonzero(marked[pinion.cell])
+    return near
 
 
 def _beside(nodes: Mask) -> Mask:

@@ -122,9 +122,10 @@ def pinion_points(
     gamma[side.flank_rows - 1] = side.junction
     u, v, gamma = (weights @ part.ravel() for part in (side.u, side.v, gamma))
     on_flank = coarse[:, 0] <= side.flank_rows - 1
-    flank = flank_points(design, np.where(on_flank, u, side.u[0, 0]), v)
-    fillet = fillet_points(design, np.where(on_flank, design.pressure_angle, gamma), v)
-    where = on_flank[:, None]
-    return SurfacePoints(
-        np.where(where, flank.position, fillet.position), np.where(where, flank.normal, fillet.normal)
-    )
+    position, normal = np.empty((2, len(lattice), 3))
+    for where, points in (
+        (on_flank, flank_points(design, u[on_flank], v[on_flank])),
+        (~on_flank, fillet_points(design, gamma[~on_flank], v[~on_flank])),
+    ):
+        position[where], normal[where] = points.position, points.normal
+    return SurfacePoints(position, normal)

@@ -133,7 +133,7 @@ def hats_of(surface):
     shape = surface.shape[:2]
     basis = pressure_basis(shape)
     points = cell_points(basis)
-    weight = hat_values(basis).multiply(cell_areas(surface, basis)[:, None]).T.tocsr()
+    weight = hat_values(basis).multiply(cell_areas(surface)[:, None]).T.tocsr()
     area = np.asarray(weight.sum(axis=1)).ravel()
     return points, sp.diags_array(1 / area) @ weight, area
 

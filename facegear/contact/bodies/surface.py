@@ -117,11 +117,19 @@ def edge_hats(nodes: int) -> tuple[Array, Integers, Array]:
     return np.asarray(basis.global_coordinates()).ravel(), *_by_point(basis)
 
 
-def cell_areas(surface: Array, basis: Basis) -> Array:
+def cell_areas(surface: Array) -> Array:
     """Area (m2) that each Gauss point of the pressure basis stands for, surface nodes (nu, nv, 3)."""
-    nodes, _, gradients = face_functions(cell_points(basis), surface.shape[:2])
+    nodes, gradients, weights = _at_cell_points(surface.shape[:2])
     tangents = np.einsum("qad,qai->dqi", gradients, surface.reshape(-1, 3)[nodes])
-    return np.linalg.norm(np.cross(*tangents), axis=1) * basis.dx.ravel()
+    return np.linalg.norm(np.cross(*tangents), axis=1) * weights
+
+
+@lru_cache(maxsize=8)
+def _at_cell_points(shape: tuple[int, int]) -> tuple[Integers, Array, Array]:
+    """Nodes and gradients of `face_functions` at a pressure basis' Gauss points, and their weights (q,)."""
+    basis = pressure_basis(shape)
+    nodes, _, gradients = face_functions(cell_points(basis), shape)
+    return nodes, gradients, basis.dx.ravel()
 
 
 def _by_point(basis: Basis) -> tuple[Integers, Array]:

@@ -54,6 +54,22 @@ def test_screening_by_coarse_probes_loses_no_hat(model_of, errors):
             np.testing.assert_allclose(screened[pair.tooth].gap, pair.gap, atol=1e-15)
 
 
+def test_teeth_that_stand_apart_have_no_candidates(model_of):
+    model = model_of()
+    phi1, phi2 = placed(model, 0.4)
+    apart = phi1, phi2 + 3e-4 / model.design.gear_base_radius
+    for options in (ContactOptions(), ContactOptions(edges=False)):
+        assert find_candidates(model.flanks, (phi1, phi2), PAIRS, LIMIT, options)
+        assert not find_candidates(model.flanks, apart, PAIRS, LIMIT, options)
+
+
+def test_a_cell_lies_in_the_element_that_its_points_lie_in(model_of):
+    pinion = model_of().flanks.pinion
+    row, column = np.floor(pinion.at / (2 * pinion.lattice.factors)).astype(int).T
+    number = row * ((pinion.side.shape[1] - 1) // 2) + column
+    np.testing.assert_array_equal(pinion.element[pinion.cell], number)
+
+
 @pytest.mark.parametrize("errors", PLACES)
 def test_contact_sought_in_a_strip_is_that_among_all_candidates(model_of, errors, monkeypatch):
     model = misaligned(model_of(), **errors)
