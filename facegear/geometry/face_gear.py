@@ -9,6 +9,7 @@ q = R_c cos(chi - psi) / (m2s cos psi); a sharp tip edge is the rounding of radi
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -87,9 +88,7 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
 def flank_radius(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     """Gear radius (m) of `flank_point`."""
     base, ratio, _, _ = shaper_numbers(design)
-    roll, psi = _together(roll, psi)
-    square, _ = closed_forms.radius_at_roll(base, ratio, 0.0, roll, psi)
-    return np.asarray(np.sqrt(square))
+    return np.asarray(closed_forms.flank_radius(base, ratio, *_together(roll, psi)))
 
 
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
@@ -113,18 +112,27 @@ def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
     return flank_point(design, *roll_and_psi_at_height(design, radius, design.gear_tip_plane))
 
 
-def tip_roll(design: PairDesign) -> "scipy.interpolate.CubicSpline":
-    """th (rad) of the flank's tip edge, as it is generated, by gear radius (m)."""
-    return _tip_roll(generated(design))
+@dataclass(frozen=True, eq=False)
+class TipEdge:
+    """The flank's tip edge, as it is generated: th and gear angle (rad) by gear radius (m)."""
+
+    roll: "scipy.interpolate.CubicSpline"
+    angle: "scipy.interpolate.CubicSpline"
+
+
+def tip_edge_by_radius(design: PairDesign) -> TipEdge:
+    """That of a design: many that have one gear share it."""
+    return _tip_edge_by_radius(generated(design))
 
 
 @lru_cache(maxsize=16)
-def _tip_roll(design: PairDesign) -> "scipy.interpolate.CubicSpline":
+def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
-    return scipy.interpolate.CubicSpline(
-        radius, roll_and_psi_at_height(design, radius, design.gear_tip_plane)[0]
-    )
+    roll, psi = roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    point = flank_point(design, roll, psi)
+    angle = np.arctan2(point[:, 0], point[:, 1])
+    return TipEdge(*(scipy.interpolate.CubicSpline(radius, values) for values in (roll, angle)))
 
 
 def _newton(residual: Callable[[Array], tuple[Array, Array]], near: Array, size: Array, where: str) -> Array:

@@ -70,17 +70,17 @@ def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
 def located(design: PairDesign, seen: Separation) -> GearHits:
     """Where on the gear's tooth a separation ends."""
     radius, flank, fillet, beyond = (np.full(seen.gap.shape, np.nan) for _ in range(4))
+    edge = face_gear.tip_edge_by_radius(design)
     on = seen.part == FLANK
-    radius[on] = face_gear.flank_radius(design, seen.u[on], seen.v[on])
-    tip = face_gear.tip_roll(design)(radius[on])
+    radius[on] = at = face_gear.flank_radius(design, seen.u[on], seen.v[on])
+    tip = edge.roll(at)
     flank[on] = (seen.u[on] - tip) / (design.shaper_tip_roll - tip)
     on = seen.part == FILLET
     radius[on] = seen.v[on]
     fillet[on] = face_gear.fillet_fraction(design, seen.v[on], seen.u[on])
     on = seen.part == TIP_LAND
-    radius[on] = seen.v[on]
-    edge = face_gear.tip_edge(design, seen.v[on])
-    beyond[on] = seen.v[on] * (np.arctan2(edge[:, 0], edge[:, 1]) - seen.u[on])
+    radius[on] = at = seen.v[on]
+    beyond[on] = at * (edge.angle(at) - seen.u[on])
     return GearHits(gap=seen.gap, radius=radius, flank=flank, fillet=fillet, beyond=beyond)
 
 

@@ -76,6 +76,16 @@ def test_the_radius_of_a_place_on_the_flank_is_that_of_its_point(pair):
     np.testing.assert_allclose(face_gear.flank_radius(design, roll, psi), expected, rtol=1e-14)
 
 
+@pytest.mark.parametrize("teeth", [23, 26])
+def test_tip_edge_by_radius_is_that_of_the_surface(pair, teeth):
+    design = pair(teeth)
+    radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, 1001)
+    point, edge = face_gear.tip_edge(design, radius), face_gear.tip_edge_by_radius(design)
+    roll, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    np.testing.assert_allclose(edge.roll(radius), roll, rtol=1e-6)
+    np.testing.assert_allclose(edge.angle(radius), np.arctan2(point[:, 0], point[:, 1]), rtol=1e-6)
+
+
 @against(
     "analytic",
     "cos a_L = m N2 cos a0 / (2 L)",
