@@ -65,36 +65,52 @@ class PassingTension:
         by_tooth = loads_by_tooth(loads, self.body, self.flank_nodes)
         torques, count = np.unique(loads["torque_n_m"]), np.unique(loads["position"]).size
         teeth = np.array(sorted(by_tooth))
+        every = sp.vstack([by_tooth[tooth] for tooth in teeth], format="csr")
+        first_rows = np.arange(teeth.size)[:, None] * (torques.size * count)
 
         def force(row: int) -> sp.csr_matrix:
-            rows = slice(row * count, (row + 1) * count)
-            return sp.vstack([by_tooth[tooth][rows] for tooth in teeth], format="csr")
+            return every[(first_rows + np.arange(row * count, (row + 1) * count)).ravel()]
 
         def largest(torque: float) -> float:
             first = int(np.clip(np.searchsorted(torques, torque) - 1, 0, max(torques.size - 2, 0)))
             near = range(first, min(first + 2, torques.size))
             ends = [force(row) for row in near]
-            stress = np.array([self._largest(end, teeth, splined=False) for end in ends])
+            bounds = [_bounded(*_forces(end, teeth), self.bounds) for end in ends]
+            stress = np.array(
+                [
+                    self._largest(end, teeth, bound, splined=False)
+                    for end, bound in zip(ends, bounds, strict=True)
+                ]
+            )
             growth = scale(torques[list(near)], stress, LONE, 1.0)
             (row,), (own,), (above,) = growth.parts(np.array([torque]))
             there = own * ends[row] + (above * ends[row + 1] if above > 0.0 else 0.0 * ends[row])
-            return self._largest(there, teeth, splined=True)
+            # neither factor is negative: bounds add up as forces do
+            bound = own * bounds[row] + (above * bounds[row + 1] if above > 0.0 else 0.0)
+            return self._largest(there, teeth, bound, splined=True)
 
         return largest
 
-    def _largest(self, force: sp.csr_matrix, teeth: Integers, splined: bool) -> float:
-        """Of the gauges, or of the splines through them, by forces (teeth positions, c) N."""
-        forces = force.indptr, force.indices, force.data, teeth, force.shape[0] // teeth.size
-        bounds = _bounded(*forces, self.bounds)
-        order = np.argsort(-bounds.ravel(), kind="stable")
-        largest, done = -np.inf, 0
-        while done < order.size and bounds.ravel()[order[done]] > largest:
-            places = np.stack(np.unravel_index(order[done : done + FIRST], bounds.shape), axis=1)
+    def _largest(self, force: sp.csr_matrix, teeth: Integers, bounds: Array, splined: bool) -> float:
+        """Of the gauges, or of the splines through them, by forces (teeth positions, c) N.
+
+        bounds: no stress is larger, by tooth, position and plane as `_bounded` has them.
+        """
+        forces, left, largest = _forces(force, teeth), bounds.ravel().copy(), -np.inf
+        while (above := np.flatnonzero(left > largest)).size:
+            highest = np.argpartition(-left[above], FIRST) if above.size > FIRST else slice(None)
+            block = above[highest][:FIRST]
+            places = np.stack(np.unravel_index(block, bounds.shape), axis=1)
             stress = _superposed(*forces, self.readings, places)
             if splined:
                 stress = down_the_fillet(stress[:, :, None])[..., 0]
-            largest, done = max(largest, float(stress.max())), done + FIRST
+            largest, left[block] = max(largest, float(stress.max())), -np.inf
         return largest
+
+
+def _forces(force: sp.csr_matrix, teeth: Integers) -> tuple[Array, Array, Array, Integers, int]:
+    """Forces (teeth positions, c) N as the kernels take them."""
+    return force.indptr, force.indices, force.data, teeth, force.shape[0] // teeth.size
 
 
 def _bounds(stress: Array) -> Array:
