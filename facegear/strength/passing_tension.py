@@ -98,13 +98,13 @@ class PassingTension:
         """
         forces, left, largest = _forces(force, teeth), bounds.ravel().copy(), -np.inf
         while (above := np.flatnonzero(left > largest)).size:
-            highest = np.argpartition(-left[above], FIRST) if above.size > FIRST else slice(None)
-            block = above[highest][:FIRST]
-            places = np.stack(np.unravel_index(block, bounds.shape), axis=1)
+            if above.size > FIRST:
+                above = above[np.argpartition(-left[above], FIRST)[:FIRST]]
+            places = np.stack(np.unravel_index(above, bounds.shape), axis=1)
             stress = _superposed(*forces, self.readings, places)
             if splined:
                 stress = down_the_fillet(stress[:, :, None])[..., 0]
-            largest, left[block] = max(largest, float(stress.max())), -np.inf
+            largest, left[above] = max(largest, float(stress.max())), -np.inf
         return largest
 
 
