@@ -10,9 +10,20 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies import surface
 from facegear.contact.bodies.surface import LINEAR_STEPS, QUADRATIC_STEPS, locate
 from facegear.contact.options import Refinement
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.picked import (
+    empty_integers,
+    empty_numbers,
+    empty_table,
+    integers,
+    marked,
+    numbers,
+    taken,
+)
 
-compiled, inlined = compiler(Path(surface.__file__)), for_callers()
+compiled = compiler(Path(surface.__file__), Path(picked.__file__))
+inlined, called = for_callers(), for_callers(forceinline=False)
 
 ROUNDING = 1e-6
 """Of coordinates on a lattice."""
@@ -62,13 +73,13 @@ class HatPoints(NamedTuple):
 @compiled
 def rows_of(pointer: Integers, index: Integers, weight: Array, keep: Mask) -> Rows:
     """The rows marked (m,)."""
-    chosen = np.zeros(np.count_nonzero(keep) + 1, np.int64)
+    chosen = integers(marked(keep).size + 1, 0)
     row = 0
     for i in range(keep.size):
         if keep[i]:
             chosen[row + 1] = chosen[row] + pointer[i + 1] - pointer[i]
             row += 1
-    kept, values = np.empty(chosen[row], np.int64), np.empty(chosen[row])
+    kept, values = empty_integers(chosen[row]), empty_numbers(chosen[row])
     row = 0
     for i in range(keep.size):
         if keep[i]:
@@ -110,14 +121,14 @@ def _facing(points: HatPoints, q: int) -> bool:
     return bool(np.isfinite(points.gap[q] + sum_of_all))
 
 
-@inlined
+@called
 def _hat_averages(points: HatPoints, starts: Integers, min_area: Array) -> tuple[Rows, Integers]:
     """Averages by area over the points under each hat, and the hats (m,) of which enough is covered, those of
     pair k numbered from k times the number of hats on.
     """
     hats, values, area = points.hats, points.values, points.area
     size, pairs = min_area.size, starts.size - 1
-    covered, count = np.zeros(pairs * size), np.zeros(pairs * size, np.int64)
+    covered, count = numbers(pairs * size, 0.0), integers(pairs * size, 0)
     on = np.empty(area.size, np.bool_)
     for pair in range(pairs):
         for q in range(starts[pair], starts[pair + 1]):
@@ -126,14 +137,14 @@ def _hat_averages(points: HatPoints, starts: Integers, min_area: Array) -> tuple
                 if values[q, h] != 0.0:
                     covered[pair * size + hats[q, h]] += values[q, h] * area[q]
                     count[pair * size + hats[q, h]] += 1
-    chosen, slot = np.empty(covered.size, np.int64), np.full(covered.size, -1)
-    pointer, filled = np.zeros(covered.size + 1, np.int64), 0
+    chosen, slot = empty_integers(covered.size), integers(covered.size, -1)
+    pointer, filled = integers(covered.size + 1, 0), 0
     for hat in range(covered.size):
         if covered[hat] > min_area[hat % size]:
             chosen[filled], slot[hat] = hat, pointer[filled]
             pointer[filled + 1] = pointer[filled] + count[hat]
             filled += 1
-    index, weight = np.empty(pointer[filled], np.int64), np.empty(pointer[filled])
+    index, weight = empty_integers(pointer[filled]), empty_numbers(pointer[filled])
     for pair in range(pairs):
         for q in range(starts[pair], starts[pair + 1]):
             for h in range(hats.shape[1] if on[q] else 0):
@@ -174,11 +185,11 @@ def closing(
     """
     rows, chosen = _hat_averages(points, starts, min_area)
     pointer, index, weight = rows
-    pair, node = chosen // min_area.size, chosen % min_area.size - first
-    gap, lever_arm = np.zeros(chosen.size), np.zeros(chosen.size)
+    pair, node = empty_integers(chosen.size), empty_integers(chosen.size)
+    gap, lever_arm = numbers(chosen.size, 0.0), numbers(chosen.size, 0.0)
     fillet, near = np.zeros(chosen.size, np.bool_), np.zeros(chosen.size, np.bool_)
     for i in range(chosen.size):
-        beyond = 0.0
+        beyond, pair[i], node[i] = 0.0, chosen[i] // min_area.size, chosen[i] % min_area.size - first
         for k in range(pointer[i], pointer[i + 1]):
             q, w = index[k], weight[k]
             gap[i] += w * points.gap[q]
@@ -190,7 +201,9 @@ def closing(
         if near[i] and not 0 <= node[i] < shape[0] * shape[1]:
             node[i] = _nearest_node(rows, i, points.pinion, shape[1])
     kept = rows_of(pointer, index, weight, near)
-    return Hats(pair[near], node[near], gap[near], lever_arm[near], fillet[near], kept)
+    some = marked(near)
+    pair, node, fillet = taken(pair, some), taken(node, some), taken(fillet, some)
+    return Hats(pair, node, taken(gap, some), taken(lever_arm, some), fillet, kept)
 
 
 class Faces(NamedTuple):
@@ -210,12 +223,12 @@ def spread(rows: Rows, which: Integers, at: Array, faces: Faces) -> Rows:
     pointer, index, weight = rows
     width, columns = steps.shape[0], shape[1]
     base, values = functions_at(rows, which, at, faces)
-    offset, room = steps[:, 0] * columns + steps[:, 1], 0
+    offset, room = offsets(faces), 0
     for row in which:
         room += width * (pointer[row + 1] - pointer[row])
-    nodes, load = np.empty(room, np.int64), np.empty(room)
-    ends, slot = np.zeros(which.size + 1, np.int64), np.full(shape[0] * columns, -1)
-    on_face, filled = np.zeros(width), 0
+    nodes, load = empty_integers(room), empty_numbers(room)
+    ends, slot = integers(which.size + 1, 0), integers(shape[0] * columns, -1)
+    on_face, filled = numbers(width, 0.0), 0
     for number in range(which.size):
         row, first = which[number], filled
         for k in range(pointer[row], pointer[row + 1]):
@@ -236,17 +249,28 @@ def spread(rows: Rows, which: Integers, at: Array, faces: Faces) -> Rows:
     return ends, nodes[:filled].copy(), load[:filled].copy()
 
 
-@inlined
+@called
+def offsets(faces: Faces) -> Integers:
+    """Numbers (a,) of a face's nodes less that of its first."""
+    result = integers(faces.steps.shape[0], 0)
+    for a in range(result.size):
+        result[a] = faces.steps[a, 0] * faces.shape[1] + faces.steps[a, 1]
+    return result
+
+
+@called
 def functions_at(rows: Rows, which: Integers, at: Array, faces: Faces) -> tuple[Integers, Array]:
     """First node (q,) of the face that each point of the rows `which` lies on, -1 of other points, and the
     face's functions (q, a) there.
     """
     scale, shape, steps = faces
     pointer, index, _ = rows
-    size, columns = steps.max(), shape[1]
-    base, values = np.full(at.shape[0], -1), np.empty((at.shape[0], steps.shape[0]))
-    value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
-    corner = np.empty(2, np.int64)
+    size, columns = 0, shape[1]
+    for a in range(steps.shape[0]):
+        size = max(size, steps[a, 0])
+    base, values = integers(at.shape[0], -1), empty_table(at.shape[0], steps.shape[0])
+    value, slope = empty_table(2, size + 1), empty_table(2, size + 1)
+    corner = integers(2, 0)
     for row in which:
         for k in range(pointer[row], pointer[row + 1]):
             point = index[k]

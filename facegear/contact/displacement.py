@@ -2,17 +2,17 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from facegear.arrays import Array, Integers
 from facegear.contact import averages, influence
-from facegear.contact.averages import Faces, Rows, functions_at
+from facegear.contact.averages import Faces, Rows, functions_at, offsets
 from facegear.contact.bodies import surface
 from facegear.contact.influence import Surface, listed, part_of
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.picked import empty_numbers, empty_table, integers, marked, table, taken
 
-SOURCES = Path(averages.__file__), Path(influence.__file__), Path(surface.__file__)
-compiled, inlined = compiler(*SOURCES), for_callers()
+SOURCES = Path(averages.__file__), Path(influence.__file__), Path(surface.__file__), Path(picked.__file__)
+compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
 
@@ -38,28 +38,28 @@ def displacement(
     """
     which, seen_ends, cases = seen
     ends, loads, coarse = loaded
-    total = np.zeros((which.size, forces.shape[0]))
+    total = table(which.size, forces.shape[0])
     for i in range(teeth.size):
         here = slice(seen_ends[i], seen_ends[i + 1])
         for side in range(2 if which[here].size else 0):
             body = surfaces[side]
             nodes = _nodes_under(rows, which[here], cases[here], at[side], body.faces)
-            moved = np.zeros((nodes[2].size, forces.shape[0]))
+            moved = table(nodes[2].size, forces.shape[0])
             if ends[i + 1] > ends[i]:
                 pushing = part_of(loads[side], ends[i], ends[i + 1])
                 _move(moved, nodes[2], nodes[4], body.own, pushing, forces[:, ends[i] : ends[i + 1]])
-            _add_averages(total[here], rows, which[here], cases[here], nodes, body.faces, body.scale * moved)
+            _add_averages(total[here], rows, which[here], cases[here], nodes, body.faces, moved, body.scale)
             if not coupled or teeth.size < 2:
                 continue
             reach = len(body.others) // 2
             nodes = _nodes_under(rows, which[here], cases[here], at[side], body.coarse)
-            moved = np.zeros((nodes[2].size, forces.shape[0]))
+            moved = table(nodes[2].size, forces.shape[0])
             for j in range(teeth.size):
                 if i != j and ends[j + 1] > ends[j] and abs(teeth[i] - teeth[j]) <= reach:
                     pushing, block = part_of(coarse[side], ends[j], ends[j + 1]), teeth[i] - teeth[j] + reach
                     push = forces[:, ends[j] : ends[j + 1]]
                     _move(moved, nodes[2], nodes[4], body.others[block], pushing, push)
-            _add_averages(total[here], rows, which[here], cases[here], nodes, body.coarse, body.scale * moved)
+            _add_averages(total[here], rows, which[here], cases[here], nodes, body.coarse, moved, body.scale)
     return total
 
 
@@ -72,8 +72,8 @@ def _nodes_under(
     """
     pointer, index, _ = rows
     base, values = functions_at(rows, which, at, faces)
-    offset = faces.steps[:, 0] * faces.shape[1] + faces.steps[:, 1]
-    asked = np.zeros(faces.shape[0] * faces.shape[1], np.int64)
+    offset = offsets(faces)
+    asked = integers(faces.shape[0] * faces.shape[1], 0)
     for number in range(which.size):
         last = -1
         for k in range(pointer[which[number]], pointer[which[number] + 1]):
@@ -81,8 +81,8 @@ def _nodes_under(
             for a in range(offset.size if first != last else 0):
                 asked[first + offset[a]] = max(asked[first + offset[a]], cases[number])
             last = first
-    used, slot = listed(asked > 0)
-    return base, values, used, slot, asked[used]
+    used, slot = listed(asked)
+    return base, values, used, slot, taken(asked, used)
 
 
 @compiled_sums
@@ -93,7 +93,7 @@ def _move(
     of nodal loads.
     """
     loaded, nodal = _nodal(loads, forces, compliance.shape[1])
-    line = np.empty(loaded.size)
+    line = empty_numbers(loaded.size)
     for a in range(used.size):
         row = compliance[used[a]]
         for b in range(loaded.size):
@@ -114,38 +114,42 @@ def _add_averages(
     nodes: tuple[Integers, Array, Integers, Integers, Integers],
     faces: Faces,
     moved: Array,
+    scale: float,
 ) -> None:
-    """Add to the first `cases` (k,) of rows `which` (k, t) over points the displacements (u, t) of nodes, as
-    `_nodes_under` has them.
+    """Add to the first `cases` (k,) of rows `which` (k, t) over points the displacements (u, t) of nodes by a
+    scale, as `_nodes_under` has them.
     """
     pointer, index, weight = rows
     base, values, _, slot, _ = nodes
-    offset = faces.steps[:, 0] * faces.shape[1] + faces.steps[:, 1]
-    there = np.zeros((base.size, moved.shape[1]))
+    offset = offsets(faces)
+    there = table(base.size, moved.shape[1])
     for point in range(base.size):
         for a in range(offset.size if base[point] >= 0 else 0):
             node, value = slot[base[point] + offset[a]], values[point, a]
             for t in range(moved.shape[1]):
-                there[point, t] += value * moved[node, t]
+                there[point, t] += value * (scale * moved[node, t])
     for number in range(which.size):
         for k in range(pointer[which[number]], pointer[which[number] + 1]):
             for t in range(cases[number]):
                 total[number, t] += weight[k] * there[index[k], t]
 
 
-@inlined
+@called
 def _nodal(loads: Rows, forces: Array, nodes: int) -> tuple[Integers, Array]:
     """The nodes (l,) that load cases (t, m) of rows load, and the loads (t, l) on them."""
     pointer, index, weight = loads
-    every = np.zeros((nodes, forces.shape[0]))
-    mark = np.zeros(nodes, np.bool_)
+    every, mark = table(nodes, forces.shape[0]), integers(nodes, 0)
     for i in range(forces.shape[1]):
         pushes = False
         for t in range(forces.shape[0]):
             pushes |= forces[t, i] != 0.0
         for k in range(pointer[i], pointer[i + 1] if pushes else pointer[i]):
-            mark[index[k]] = True
+            mark[index[k]] = 1
             for t in range(forces.shape[0]):
                 every[index[k], t] += weight[k] * forces[t, i]
-    loaded = np.flatnonzero(mark)
-    return loaded, np.ascontiguousarray(every[loaded].T)
+    loaded = marked(mark)
+    result = empty_table(forces.shape[0], loaded.size)
+    for t in range(forces.shape[0]):
+        for i in range(loaded.size):
+            result[t, i] = every[loaded[i], t]
+    return loaded, result

@@ -5,18 +5,27 @@ from typing import NamedTuple
 
 import numpy as np
 
-from facegear.arrays import Array, Integers, Mask
+from facegear.arrays import Array, Integers
 from facegear.contact import averages
 from facegear.contact.averages import Faces, Lattice, NodalLoads, Rows
 from facegear.contact.bodies import surface
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-
-compiled, inlined = compiler(Path(averages.__file__), Path(surface.__file__)), for_callers()
-compiled_sums = compiler(
-    Path(averages.__file__), Path(surface.__file__), fastmath={"contract", "reassoc"}, error_model="numpy"
+from facegear.machine_code.picked import (
+    empty_integers,
+    empty_numbers,
+    empty_table,
+    integers,
+    marked,
+    table,
+    taken,
 )
+
+SOURCES = Path(averages.__file__), Path(surface.__file__), Path(picked.__file__)
+compiled, inlined, called = compiler(*SOURCES), for_callers(), for_callers(forceinline=False)
+compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
 
 BLOCK = 128
@@ -69,8 +78,8 @@ def product(first: NodalLoads, compliance: Array | None, second: NodalLoads) -> 
 def _product(first: Rows, compliance: Array, second: Rows) -> Array:
     half, slot = _half(first, compliance, second[1])
     pointer, index, weight = second
-    at = slot[index]
-    result, line = np.empty((first[0].size - 1, pointer.size - 1)), np.empty(half.shape[1])
+    at = taken(slot, index)
+    result, line = empty_table(first[0].size - 1, pointer.size - 1), empty_numbers(half.shape[1])
     for j in range(result.shape[1]):
         _sum_of_rows((pointer[j], pointer[j + 1]), at, weight, half, line, line.size)
         for i in range(line.size):
@@ -88,10 +97,10 @@ def add_own(matrix: Array, origin: int, rows: Rows, compliance: Array, scale: fl
     """
     pointer, index, weight = rows
     used, slot = used_of(index, compliance.shape[0])
-    at, count = slot[index], pointer.size - 1
+    at, count = taken(slot, index), pointer.size - 1
     order, first, end = _by_first(pointer, at, used.size)
-    half, part = np.empty((used.size, count)), np.empty((used.size, BLOCK))
-    line = np.empty(max(BLOCK, count))
+    half, part = empty_table(used.size, count), empty_table(used.size, BLOCK)
+    line = empty_numbers(max(BLOCK, count))
     for start in range(0, used.size, BLOCK):
         size = min(BLOCK, used.size - start)
         begun = filled = 0
@@ -118,7 +127,8 @@ def _sum_of_rows(
 ) -> None:
     """Fill in the sum of rows numbered `index` by weight, over a span of both, as far as `size`."""
     k, end = span
-    total[:size] = 0.0
+    for i in range(size):
+        total[i] = 0.0
     while k + 3 < end:
         a, b, c, d = index[k], index[k + 1], index[k + 2], index[k + 3]
         u, v, w, x = weight[k], weight[k + 1], weight[k + 2], weight[k + 3]
@@ -132,35 +142,36 @@ def _sum_of_rows(
         k += 1
 
 
-@inlined
+@called
 def _by_first(pointer: Integers, index: Integers, columns: int) -> tuple[Integers, Integers, Integers]:
     """Numbers (m,) of rows in the order of their first column, and of each in that order its first column and
     where its columns end.
     """
     count = pointer.size - 1
-    first, end = np.full(count, columns), np.zeros(count, np.int64)
-    begin = np.zeros(columns + 2, np.int64)
+    first, end = integers(count, columns), integers(count, 0)
+    begin = integers(columns + 2, 0)
     for i in range(count):
         for k in range(pointer[i], pointer[i + 1]):
             first[i], end[i] = min(first[i], index[k]), max(end[i], index[k] + 1)
         begin[first[i] + 1] += 1
-    begin = np.cumsum(begin)
-    order = np.empty(count, np.int64)
+    for column in range(columns + 1):
+        begin[column + 1] += begin[column]
+    order = empty_integers(count)
     for i in range(count):
         order[begin[first[i]]] = i
         begin[first[i]] += 1
-    return order, first[order], end[order]
+    return order, taken(first, order), taken(end, order)
 
 
-@inlined
+@called
 def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Integers]:
     """Rows times a compliance at the distinct `columns` (c, m), and the number (n,) of each column there."""
     pointer, index, weight = rows
     used, slot = used_of(index, compliance.shape[0])
     wanted, number = used_of(columns, compliance.shape[1])
-    at, count = slot[index], pointer.size - 1
-    half = np.empty((wanted.size, count))
-    part, line = np.empty((used.size, BLOCK)), np.empty(BLOCK)
+    at, count = taken(slot, index), pointer.size - 1
+    half = empty_table(wanted.size, count)
+    part, line = empty_table(used.size, BLOCK), empty_numbers(BLOCK)
     for start in range(0, wanted.size, BLOCK):
         size = min(BLOCK, wanted.size - start)
         for a in range(used.size):
@@ -173,31 +184,33 @@ def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Inte
     return half, number
 
 
-@inlined
+@called
 def used_of(indices: Integers, count: int) -> tuple[Integers, Integers]:
     """The distinct indices, rising, and the index of each among them."""
-    mark = np.zeros(count, np.bool_)
+    mark = integers(count, 0)
     for index in indices:
-        mark[index] = True
+        mark[index] = 1
     return listed(mark)
 
 
-@inlined
-def listed(mark: Mask) -> tuple[Integers, Integers]:
-    """The indices that are marked (n,), rising, and the index of each among them."""
-    used = np.flatnonzero(mark)
-    slot = np.full(mark.size, -1)
+@called
+def listed(mark: Integers) -> tuple[Integers, Integers]:
+    """The indices whose marks (n,) are not 0, rising, and the index of each among them."""
+    used, slot = marked(mark), integers(mark.size, -1)
     for i in range(used.size):
         slot[used[i]] = i
     return used, slot
 
 
-@inlined
+@called
 def part_of(rows: Rows, begin: int, end: int) -> Rows:
     """Rows from `begin` to `end`."""
     pointer, index, weight = rows
     first, last = pointer[begin], pointer[end]
-    return pointer[begin : end + 1] - first, index[first:last], weight[first:last]
+    here = empty_integers(end + 1 - begin)
+    for i in range(here.size):
+        here[i] = pointer[begin + i] - first
+    return here, index[first:last], weight[first:last]
 
 
 class Surface(NamedTuple):
@@ -225,7 +238,7 @@ def influence(
 
     Loads of all of them on the nodes of both surfaces, and on those before refinement.
     """
-    matrix = np.zeros((ends[-1], ends[-1]))
+    matrix = table(ends[-1], ends[-1])
     for i in range(teeth.size):
         for side in range(2):
             body = surfaces[side]
@@ -237,7 +250,9 @@ def influence(
                     seen = part_of(coarse[side], ends[i], ends[i + 1])
                     other = part_of(coarse[side], ends[j], ends[j + 1])
                     block = _product(seen, body.others[teeth[i] - teeth[j] + reach], other)
-                    matrix[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] += body.scale * block
+                    for a in range(block.shape[0]):
+                        for b in range(block.shape[1]):
+                            matrix[ends[i] + a, ends[j] + b] += body.scale * block[a, b]
     mirror(matrix)
     return matrix
 

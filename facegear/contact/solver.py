@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.contact.active_set import exchanges, solved, violation
+from facegear.contact.active_set import exchanges, solved
+from facegear.contact.bonded import violation
 from facegear.errors import NotConverged
 
 NEWTON_STEPS = 40

@@ -12,23 +12,27 @@ from typing import NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact import active_set, averages, displacement, influence
+from facegear.contact import active_set, averages, bonded, displacement, influence
 from facegear.contact.active_set import solved
 from facegear.contact.averages import HatPoints, Hats, Rows, closing, spread
 from facegear.contact.bodies import surface
 from facegear.contact.displacement import displacement as displaced
 from facegear.contact.influence import Surface
 from facegear.contact.influence import influence as influence_of
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.picked import empty_numbers, integers, marked, numbers, table, taken
 
 SOURCES = (
     Path(active_set.__file__),
     Path(averages.__file__),
+    Path(bonded.__file__),
     Path(displacement.__file__),
     Path(influence.__file__),
     Path(surface.__file__),
+    Path(picked.__file__),
 )
-compiled, inlined = compiler(*SOURCES), for_callers()
+compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 
 GAP, BAND = 0.8, 0.15
 """Parts of the rigid approach within which contact is sought: the least gap of a column of hats (the bodies
@@ -131,28 +135,30 @@ def touching(
             forward += 1
             overlap = max(overlap, -gap[i] / arm[i])
             drives |= keep[i]
-    if not drives:
-        keep[:] = True
-    cases = np.zeros(gap.size, np.int64)
-    rotation, slope, residual = np.zeros(torques.size), np.zeros(torques.size), np.zeros(torques.size)
-    steps, tried = np.zeros(torques.size, np.int64), forward > 0
-    which, force = np.zeros(0, np.int64), np.zeros((torques.size, 0))
-    ends = np.zeros(facing.teeth.size + 1, np.int64)
+    for i in range(0 if drives else gap.size):
+        keep[i] = True
+    count, cases = torques.size, integers(gap.size, 0)
+    rotation, slope, residual = numbers(count, 0.0), numbers(count, 0.0), numbers(count, 0.0)
+    steps, tried = integers(count, 0), forward > 0
+    which, force = integers(0, 0), table(count, 0)
+    ends = integers(facing.teeth.size + 1, 0)
     loads = _loads(hats.rows, which, at, surfaces)
     while tried:
-        which = np.flatnonzero(keep)
-        ends = _ends(hats.pair[which], facing.teeth.size)
+        which = marked(keep)
+        ends = _ends(taken(hats.pair, which), facing.teeth.size)
         loads = _loads(hats.rows, which, at, surfaces)
         matrix = influence_of(ends, facing.teeth, surfaces, loads[0], loads[1], coupled)
-        force = np.zeros((torques.size, which.size))
-        turn = limit
-        for t in range(torques.size):
+        force, turn = table(count, which.size), limit
+        apart, levers = taken(gap, which), taken(arm, which)
+        for t in range(count):
             if t:
                 turn = rotation[t - 1] * torques[t] / torques[t - 1]
-            start = _within(own, column_min, strip.start_gap * turn, strip.start_width * turn)[which]
-            steps[t], force[t], rotation[t], slope[t], residual[t] = solved(
-                matrix, gap[which], arm[which], torques[t], start, limits
+            start = _within(own, column_min, strip.start_gap * turn, strip.start_width * turn)
+            steps[t], forces, rotation[t], slope[t], residual[t] = solved(
+                matrix, apart, levers, torques[t], taken(start, which), limits
             )
+            for i in range(which.size):
+                force[t, i] = forces[i]
             tried = steps[t] > 0 and not rotation[0] > limit
             if not tried:
                 break
@@ -160,21 +166,21 @@ def touching(
             break
         for i in range(gap.size):
             cases[i] = 0
-            for t in range(0 if keep[i] else torques.size):
+            for t in range(0 if keep[i] else count):
                 if gap[i] < rotation[t] * arm[i]:
                     cases[i] = t + 1
-        others = np.flatnonzero(cases)
+        others = marked(cases)
         if not others.size:
             break
-        seen = others, _ends(hats.pair[others], facing.teeth.size), cases[others]
+        seen = others, _ends(taken(hats.pair, others), facing.teeth.size), taken(cases, others)
         loaded = ends, loads[0], loads[1]
         moved = displaced(seen, hats.rows, at, surfaces, facing.teeth, loaded, force, coupled)
         tried = False
         for number, hat in enumerate(others):
             inside = 0.0
             for t in range(cases[hat]):
-                apart = gap[hat] + moved[number, t] - rotation[t] * arm[hat]
-                part = -apart / (abs(rotation[t]) * longest)
+                distance = gap[hat] + moved[number, t] - rotation[t] * arm[hat]
+                part = -distance / (abs(rotation[t]) * longest)
                 inside, residual[t] = max(inside, part), max(residual[t], part)
             keep[hat] = inside > limits[1]
             tried |= keep[hat]
@@ -183,12 +189,15 @@ def touching(
             wider = _within(own, column_min, strip.gap * limit, band)
             for hat in others:
                 keep[hat] |= wider[hat]
-    on_any = np.zeros(which.size, np.bool_)
-    for t in range(torques.size):
-        on_any |= force[t] > 0.0
-    chosen = which[on_any]
+    carriers = _loaded(force)
+    chosen = taken(which, carriers)
     carrying = Hats(
-        hats.pair[chosen], hats.node[chosen], gap[chosen], arm[chosen], hats.fillet[chosen], hats.rows
+        taken(hats.pair, chosen),
+        taken(hats.node, chosen),
+        taken(gap, chosen),
+        taken(arm, chosen),
+        taken(hats.fillet, chosen),
+        hats.rows,
     )
     return Touching(
         facing.teeth,
@@ -201,29 +210,29 @@ def touching(
         which.size,
         overlap,
         carrying,
-        np.ascontiguousarray(force[:, on_any]),
+        _columns(force, carriers),
         _on_nodes(loads[1][0], ends, force, surfaces[0]),
         _on_nodes(loads[1][1], ends, force, surfaces[1]),
     )
 
 
-@inlined
+@called
 def _turns(hats: Hats, columns: int, pairs: int) -> tuple[Array, Array]:
     """Turn (n,) of the pinion that closes each hat's gap, and the least (n,) in its column of hats."""
     count = hats.gap.size
-    own, of_column = np.full(count, np.inf), np.full(pairs * columns, np.inf)
+    own, of_column = numbers(count, np.inf), numbers(pairs * columns, np.inf)
     for i in range(count):
         if hats.lever_arm[i] > 0.0:
             own[i] = hats.gap[i] / hats.lever_arm[i]
             column = hats.pair[i] * columns + hats.node[i] % columns
             of_column[column] = min(of_column[column], own[i])
-    column_min = np.empty(count)
+    column_min = empty_numbers(count)
     for i in range(count):
         column_min[i] = of_column[hats.pair[i] * columns + hats.node[i] % columns]
     return own, column_min
 
 
-@inlined
+@called
 def _within(own: Array, column_min: Array, min_turn: float, band: float) -> Mask:
     within = np.empty(own.size, np.bool_)
     for i in range(own.size):
@@ -231,23 +240,44 @@ def _within(own: Array, column_min: Array, min_turn: float, band: float) -> Mask
     return within
 
 
-@inlined
+@called
 def _ends(pair: Integers, pairs: int) -> Integers:
     """Where those of each pair end (p + 1,), 0 first, among hats whose pair (n,) rises."""
-    ends = np.zeros(pairs + 1, np.int64)
+    ends = integers(pairs + 1, 0)
     for number in pair:
         ends[number + 1] += 1
-    return np.cumsum(ends)
+    for number in range(pairs):
+        ends[number + 1] += ends[number]
+    return ends
 
 
-@inlined
+@called
+def _loaded(force: Array) -> Integers:
+    """The hats that carry any of the forces (t, n) N."""
+    on_any = np.zeros(force.shape[1], np.bool_)
+    for t in range(force.shape[0]):
+        for i in range(on_any.size):
+            on_any[i] |= force[t, i] > 0.0
+    return marked(on_any)
+
+
+@called
+def _columns(values: Array, chosen: Integers) -> Array:
+    result = table(values.shape[0], chosen.size)
+    for t in range(values.shape[0]):
+        for i in range(chosen.size):
+            result[t, i] = values[t, chosen[i]]
+    return result
+
+
+@called
 def _loads(rows: Rows, which: Integers, at: tuple[Array, Array], surfaces: tuple[Surface, Surface]) -> Loads:
     fine = spread(rows, which, at[0], surfaces[0].faces), spread(rows, which, at[1], surfaces[1].faces)
     coarse = spread(rows, which, at[0], surfaces[0].coarse), spread(rows, which, at[1], surfaces[1].coarse)
     return fine, coarse
 
 
-@inlined
+@called
 def _on_nodes(loads: Rows, ends: Integers, force: Array, body: Surface) -> Array:
     """Forces (t, p, n) N of pairs on nodes by forces (t, m) on hats."""
     pointer, index, weight = loads

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -20,6 +21,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_machinery import register_pass
 from numba.core.serialize import dumps
+from numba.core.targetconfig import TargetConfig
 from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
@@ -28,6 +30,21 @@ from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
 """How long (s) another process may compile a function before this one compiles it as well."""
+
+
+@cache
+def _defaults(kind: Any) -> dict[str, Any]:
+    return {name: option.default for name, option in kind.options.items()}
+
+
+def _values(flags: TargetConfig) -> dict[str, Any]:
+    """What numba's own function gives, which asks for one option after the other: flags are hashed and
+    compared wherever a type is found, a tenth of the time that compiling takes.
+    """
+    return {**_defaults(type(flags)), **flags._values}  # type: ignore[arg-type]
+
+
+TargetConfig.values = _values
 
 
 def _records(kind: Any) -> Iterator[type]:
@@ -138,20 +155,31 @@ def _wait(name: str) -> TextIO | None:
 
 def stored(*sources: Path, announced: str = "", **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Decorator that compiles a function and stores its machine code by the text of all of `sources`, and of
-    the function's own file.
+    the function's own file. Compiled callers have it as a part of their own code, called or inlined as the
+    compiler sees fit: only what Python calls is compiled to machine code.
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
-        dispatcher = njit(**options)(function)
+        dispatcher, part = njit(**options)(function), inlined(**{"forceinline": False, **options})(function)
         own = Path(function.__code__.co_filename)
         dispatcher._cache = SourcesCache(function, text_of(*sources, own), announced)
+        dispatcher.get_call_template, dispatcher.get_overload = part.get_call_template, part.get_overload
         return dispatcher
 
     return compiled
 
 
 class _CodeForCallers(JITCodeLibrary):
-    """LLVM code that waits, as it was written, to be linked into what calls it."""
+    """LLVM code that waits, as it was written, to be linked into what calls it.
+
+    Where sums may be added in any `order`, which one it is follows from the passes over each function.
+    """
+
+    order = False
+
+    def _optimize_functions(self, module: Any) -> None:
+        if self.order:
+            super()._optimize_functions(module)
 
     def _optimize_final_module(self) -> None:
         pass
@@ -168,6 +196,7 @@ class _LowerForCallers(NativeLowering):
         flags = state.flags
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
         state.library = _CodeForCallers(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.order = bool(flags.fastmath)
         super().run_pass(state)
         lowered = state["cr"]
 
@@ -192,14 +221,16 @@ class _ForCallers(Compiler):
 
 
 def inlined(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Decorator for functions that are inlined into compiled callers and have no machine code of their own.
+    """Decorator for functions that are a part of compiled callers and have no machine code of their own;
+    inlined into them unless the option `forceinline` is False.
 
     Numba optimises and compiles every function that another one calls, with all that it calls in turn, and
     so a function at depth d of a tree d times; here only the root is. Python cannot call such a function.
     """
 
     def typed(function: Callable[..., Any]) -> Any:
-        dispatcher = njit(forceinline=True, pipeline_class=_ForCallers, **options)(function)
+        options.setdefault("forceinline", True)
+        dispatcher = njit(pipeline_class=_ForCallers, **options)(function)
 
         def add_overload(overload: Any) -> None:
             dispatcher.overloads[tuple(overload.signature.args)] = overload

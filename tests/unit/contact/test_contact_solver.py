@@ -157,6 +157,11 @@ def test_no_point_that_can_carry_the_torque_is_reported_with_its_place():
         solve_contact(np.eye(3), np.zeros(3), -0.05 * np.ones(3), 600.0)
 
 
+def test_contact_without_a_solution_is_reported_with_the_steps_that_were_tried():
+    with pytest.raises(NotConverged, match="here: 40 Newton and 160 exchange steps"):
+        solver.check_solved(0, 0.0, 3, "here")
+
+
 def test_torque_that_does_not_drive_is_refused():
     with pytest.raises(ValueError, match="torque"):
         solve_contact(np.eye(3), np.zeros(3), np.ones(3), 0.0)

@@ -14,6 +14,7 @@ import pytest
 from force_tables import power_table
 from forked_python import run_together
 from lumped_machines import PLACES
+from numba.core.compiler import Flags
 from oscillators import backlash_oscillator
 from references import against, agrees
 
@@ -22,7 +23,7 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.prepare import _smallest
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.machine_code import kept, shipped
-from facegear.machine_code.compiler import for_callers
+from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.versions import KNOWN, is_known
 from facegear.mesh_law.terms import held_force
 from facegear.transmission.layout import Side
@@ -162,6 +163,27 @@ def test_a_function_for_compiled_callers_says_so_when_python_calls_it():
 
     with pytest.raises(TypeError, match=r"twice is only for compiled callers"):
         for_callers()(twice)(1.0)
+
+
+def test_what_compiled_callers_call_is_compiled_to_machine_code_only_where_python_calls_it_too(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setenv(kept.VARIABLE, str(tmp_path))
+    kernel = compiler()
+    called = kernel(lambda x: x + 1.0)
+    caller = kernel(lambda x: 2.0 * called(x))
+    assert caller(1.0) == 4.0
+    assert not called.signatures
+    assert called(1.0) == 2.0
+    assert called.signatures == caller.signatures
+
+
+def test_flags_of_numba_have_the_values_that_it_gives_them_itself():
+    compiler()(lambda x: x)
+    flags = Flags()
+    flags.fastmath = {"contract"}
+    assert flags.values() == {name: getattr(flags, name) for name in flags.options}
+    assert list(flags.values()) == list(flags.options)
 
 
 def test_a_law_without_an_implementation_is_named_in_one_line_with_the_function_that_misses_it():
