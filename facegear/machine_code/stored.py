@@ -9,7 +9,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -21,7 +20,6 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_machinery import register_pass
 from numba.core.serialize import dumps
-from numba.core.targetconfig import TargetConfig
 from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
@@ -30,21 +28,6 @@ from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
 """How long (s) another process may compile a function before this one compiles it as well."""
-
-
-@cache
-def _defaults(kind: Any) -> dict[str, Any]:
-    return {name: option.default for name, option in kind.options.items()}
-
-
-def _values(flags: TargetConfig) -> dict[str, Any]:
-    """What numba's own function gives, which asks for one option after the other: flags are hashed and
-    compared wherever a type is found, a tenth of the time that compiling takes.
-    """
-    return {**_defaults(type(flags)), **flags._values}  # type: ignore[arg-type]
-
-
-TargetConfig.values = _values
 
 
 def _records(kind: Any) -> Iterator[type]:

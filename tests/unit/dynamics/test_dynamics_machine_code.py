@@ -14,7 +14,6 @@ import pytest
 from force_tables import power_table
 from forked_python import run_together
 from lumped_machines import PLACES
-from numba.core.compiler import Flags
 from oscillators import backlash_oscillator
 from references import against, agrees
 
@@ -176,14 +175,6 @@ def test_what_compiled_callers_call_is_compiled_to_machine_code_only_where_pytho
     assert not called.signatures
     assert called(1.0) == 2.0
     assert called.signatures == caller.signatures
-
-
-def test_flags_of_numba_have_the_values_that_it_gives_them_itself():
-    compiler()(lambda x: x)
-    flags = Flags()
-    flags.fastmath = {"contract"}
-    assert flags.values() == {name: getattr(flags, name) for name in flags.options}
-    assert list(flags.values()) == list(flags.options)
 
 
 def test_a_law_without_an_implementation_is_named_in_one_line_with_the_function_that_misses_it():
