@@ -7,6 +7,7 @@ from references import against, agrees
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+from facegear.dynamics.courses import alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Settings, State
@@ -111,7 +112,12 @@ def jump(make, approach, first, last):
         sides.append(side(speed, respond(speed, sides[-1].state if sides else start)))
     changes = [abs(np.log(b.ac_rms[0] / a.ac_rms[0])) for a, b in pairwise(sides)]
     position = int(np.argmax(changes))
-    return bracket(sides[position], sides[position + 1], respond, 2e-6)
+
+    def course(speed, at):
+        return respond(speed, at)
+        yield
+
+    return alone(bracket(sides[position], sides[position + 1], course, 2e-6))
 
 
 @against(
