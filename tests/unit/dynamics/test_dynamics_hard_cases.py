@@ -86,7 +86,7 @@ def full_run(machine, speed, start, end):
         return np.concatenate([v, (applied - damping * v - bearing * q - directions.T @ force) / mass])
 
     # Contact switches limit any solver without events: many small steps instead.
-    solution = solve_ivp(rates, (0.0, end), start, "DOP853", rtol=1e-11, atol=1e-13, max_step=end / 40)
+    solution = solve_ivp(rates, (0.0, end), start, "DOP853", rtol=1e-11, atol=1e-13, max_step=end / 1000)
     assert solution.success
     angle = np.outer(omega * end - shift_e, order_e)
     error = np.sin(angle) @ machine.error.a + np.cos(angle) @ machine.error.b
