@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.averages import HatPoints, Lattice, NodalLoads, Rows, closing, rows_of
+from facegear.contact.averages import HatPoints, Rows, closing, rows_of
+from facegear.contact.spreading import Lattice, NodalLoads
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,15 +3,16 @@
 from pathlib import Path
 
 from facegear.arrays import Array, Integers
-from facegear.contact import averages, influence
-from facegear.contact.averages import Faces, Rows, functions_at, offsets
+from facegear.contact import influence, spreading
+from facegear.contact.averages import Rows
 from facegear.contact.bodies import surface
 from facegear.contact.influence import Surface, listed, part_of
+from facegear.contact.spreading import Faces, functions_at, offsets
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_numbers, empty_table, integers, marked, table, taken
 
-SOURCES = Path(averages.__file__), Path(influence.__file__), Path(surface.__file__), Path(picked.__file__)
+SOURCES = Path(spreading.__file__), Path(influence.__file__), Path(surface.__file__), Path(picked.__file__)
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""

@@ -9,7 +9,6 @@ import scipy.sparse as sp
 from skfem import Basis
 
 from facegear.arrays import Array, Integers
-from facegear.contact.averages import Lattice
 from facegear.contact.bodies.surface import (
     cell_areas,
     cell_points,
@@ -19,6 +18,7 @@ from facegear.contact.bodies.surface import (
     pressure_basis,
 )
 from facegear.contact.options import Refinement
+from facegear.contact.spreading import Lattice
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign

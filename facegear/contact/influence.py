@@ -6,11 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.contact import averages
-from facegear.contact.averages import Faces, Lattice, NodalLoads, Rows
+from facegear.contact import spreading
+from facegear.contact.averages import Rows
 from facegear.contact.bodies import surface
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
+from facegear.contact.spreading import Faces, Lattice, NodalLoads
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import (
@@ -23,7 +24,7 @@ from facegear.machine_code.picked import (
     taken,
 )
 
-SOURCES = Path(averages.__file__), Path(surface.__file__), Path(picked.__file__)
+SOURCES = Path(spreading.__file__), Path(surface.__file__), Path(picked.__file__)
 compiled, inlined, called = compiler(*SOURCES), for_callers(), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""

@@ -12,13 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact import active_set, averages, bonded, displacement, influence
+from facegear.contact import active_set, averages, bonded, displacement, influence, spreading
 from facegear.contact.active_set import solved
-from facegear.contact.averages import HatPoints, Hats, Rows, closing, spread
+from facegear.contact.averages import HatPoints, Hats, Rows, closing
 from facegear.contact.bodies import surface
 from facegear.contact.displacement import displacement as displaced
 from facegear.contact.influence import Surface
 from facegear.contact.influence import influence as influence_of
+from facegear.contact.spreading import spread
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_numbers, integers, marked, numbers, table, taken
@@ -29,6 +30,7 @@ SOURCES = (
     Path(bonded.__file__),
     Path(displacement.__file__),
     Path(influence.__file__),
+    Path(spreading.__file__),
     Path(surface.__file__),
     Path(picked.__file__),
 )

@@ -11,7 +11,6 @@ from math import acos, pi
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.contact.averages import Lattice
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import PinionSurface
@@ -19,6 +18,7 @@ from facegear.contact.influence import influence_matrix
 from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.options import Ends, Refinement
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
+from facegear.contact.spreading import Lattice
 from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.contact.touching import Touching
 from facegear.geometry import pinion

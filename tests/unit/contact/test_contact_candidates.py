@@ -7,7 +7,7 @@ from skfem import ElementQuad1, ElementQuad2
 from test_pair_contact import misaligned
 
 from facegear.contact import ltca
-from facegear.contact.averages import Lattice, closing, spread
+from facegear.contact.averages import closing
 from facegear.contact.bodies.surface import face_functions, interpolation
 from facegear.contact.candidates import candidates_of
 from facegear.contact.displacement import displacement
@@ -16,6 +16,7 @@ from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.search import cover_of, facing_points, find_candidates
+from facegear.contact.spreading import Lattice, spread
 from facegear.geometry.opposite import located
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
