@@ -10,7 +10,7 @@ from references import against, agrees
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.work import ABREAST
-from facegear.dynamics.steady_state.settle import Passed
+from facegear.dynamics.steady_state.passed import Passed
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.transmission.machine import mesh_frequency
 
