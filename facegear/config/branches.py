@@ -17,7 +17,10 @@ class Explore(Section):
     speeds_rpm: tuple[float, ...] = Field((), max_length=200, description="empty: the nominal speed alone")
     starts: int = Field(100, ge=1, le=1_000_000, description="at each speed")
     spread_um: float = Field(
-        100.0, gt=0, le=1e5, description="half width of the box of starts around rest, as mesh deflection"
+        100.0,
+        gt=0,
+        le=1e5,
+        description="half width of the box around rest: displacements, and rotations at the mesh radius",
     )
     seed: int = Field(0, ge=0, le=2**31)
 

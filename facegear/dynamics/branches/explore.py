@@ -94,13 +94,6 @@ def explore(
     ]
 
 
-def box(period_map: PeriodMap, value: float, centre: Array, half: Array, count: int, seed: int) -> Array:
-    """Weighted states (count, 2 n) spread evenly over centre +- half, each (2 n,)."""
-    size = period_map.integrator(float(np.log(value))).size
-    random = np.random.default_rng(seed)
-    return centre + half * random.uniform(-1.0, 1.0, size=(count, 2 * size))
-
-
 @dataclass(eq=False)
 class _Runs:
     """Runs at one parameter's logarithm u, and the motions that they have come to.

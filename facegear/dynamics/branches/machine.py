@@ -7,7 +7,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch, ContinuationSettings
-from facegear.dynamics.branches.explore import SettledMotion, box, explore
+from facegear.dynamics.branches.explore import SettledMotion, explore
 from facegear.dynamics.branches.family import machine_plane, speed_family
 from facegear.dynamics.branches.loci import Locus, LocusRun, follow_locus
 from facegear.dynamics.branches.margins import StabilityLimit, stability_limits
@@ -60,11 +60,21 @@ def random_starts(
     model: Model, plan: BranchPlan, speed_rpm: float, step: Callable[[], None] = lambda: None
 ) -> list[SettledMotion]:
     """Motions on which random starts around rest end at a speed."""
-    period_map = machine_period_map(model, plan)
-    rest = period_map.weighted(static_start(model), float(np.log(speed_rpm)))
-    half = np.full(rest.size, plan.spread / model.system.scale)
-    starts = box(period_map, speed_rpm, rest, half, plan.starts, plan.seed)
-    return explore(period_map, speed_rpm, starts, SETTLING, step)
+    period_map, u = machine_period_map(model, plan), float(np.log(speed_rpm))
+    rest, weights = period_map.weighted(static_start(model), u), period_map.weights(period_map.integrator(u))
+    moved = scattered(model, plan.spread, plan.starts, plan.seed)
+    return explore(period_map, speed_rpm, rest + weights * moved.reshape(plan.starts, -1), SETTLING, step)
+
+
+def scattered(model: Model, spread: float, count: int, seed: int) -> Array:
+    """Random places and velocities by mesh phase in the model's coordinates, (count, 2, n).
+
+    Displacements of the bodies, and rotations at the mesh radius, are spread evenly over -spread to spread
+    (m), and what the model leaves out of them is left out: they are the same in whatever basis it has.
+    """
+    linear = model.machine.linear
+    random = np.random.default_rng(seed).uniform(-1.0, 1.0, size=(count, 2, linear.size))
+    return spread * random / linear.lengths @ linear.momentum(model.reduced.basis)
 
 
 def machine_survey(
@@ -76,7 +86,7 @@ def machine_survey(
 ) -> Survey:
     """All branches of a machine: of period one, those that leave it, and those of motions found elsewhere.
 
-    found: motions of random starts at some speeds; swept: those of a sweep.
+    motions_by_speed: those of random starts; swept: those of a sweep.
     """
     start, period_map = first_orbit(model, plan), machine_period_map(model, plan)
     motions = [

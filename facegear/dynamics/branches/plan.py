@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BranchPlan:
-    """Speeds in rpm, lengths in m. spread: half width of the box of random starts as mesh deflection."""
+    """Speeds in rpm, lengths in m. spread: half width of the box of random starts, displacements and
+    rotations at the mesh radius.
+    """
 
     from_rpm: float
     to_rpm: float

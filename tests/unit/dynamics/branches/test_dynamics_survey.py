@@ -10,7 +10,7 @@ from oscillators import backlash_oscillator
 from references import against, agrees
 
 from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, branch_at, follow, turned
-from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
+from facegear.dynamics.branches.explore import crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
 from facegear.dynamics.branches.margins import passed_by, several, stability_limits
 from facegear.dynamics.branches.operating_tables import jump_table
@@ -35,10 +35,8 @@ def oscillator(amplitude=0.05):
 @pytest.fixture(scope="module")
 def starts():
     period_map = oscillator()
-    half = np.array([1.0, 0.5 / 0.75])
-    return period_map, explore(
-        period_map, 0.75, box(period_map, 0.75, np.array([1.0, 0.0]), half, 800, 1), QUICK
-    )
+    box = np.array([1.0, 0.5 / 0.75]) * np.random.default_rng(1).uniform(-1.0, 1.0, size=(800, 2))
+    return period_map, explore(period_map, 0.75, np.array([1.0, 0.0]) + box, QUICK)
 
 
 @against(
