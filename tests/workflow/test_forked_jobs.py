@@ -1,6 +1,9 @@
 """Scripts that begin as copies of one process: what they see, how they end, when Python starts instead."""
 
+import gc
+import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -12,7 +15,7 @@ import psutil
 import pytest
 from projects import ROOT
 
-from workflow.process import engine, forked_jobs
+from workflow.process import engine, forked_jobs, job_server
 from workflow.process.engine import Script
 from workflow.process.forked_jobs import ForkedJobs
 from workflow.process.orphans import end_orphans
@@ -87,10 +90,62 @@ def test_the_modules_of_a_rule_are_imported_once_for_all_its_jobs(run, tmp_path)
         ("import os; os._exit(7)", 7),
         ("import atexit, os; atexit.register(os._exit, 5)", 5),
         ("import threading, os; threading.Timer(0.2, lambda: os._exit(6)).start()", 6),
+        ("import sys; sys.stdout.close()", 0),
+        ("import sys; sys.stdout = None", 0),
+        ("import sys; sys.stdout = open('/dev/full', 'w'); print('lost')", 120),
     ],
 )
 def test_a_script_ends_as_it_would_by_itself(run, text, code):
     assert run(text)[0] == code
+
+
+def test_the_server_serves_on_after_a_request_that_was_cut_short(jobs, run):
+    """The server ended, and the jobs that were at work with it."""
+    for part in (b"", b'{"script": "st'):
+        ours, theirs = socket.socketpair()
+        with ours, theirs:
+            socket.send_fds(jobs._control, [b"."], [theirs.fileno()])
+            ours.sendall(part)
+    assert run("")[0] == 0
+
+
+def test_no_copy_is_made_where_the_system_has_no_room_for_it(monkeypatch):
+    """The server ended, and the jobs that were at work with it."""
+
+    def no_room():
+        raise BlockingIOError
+
+    monkeypatch.setattr(os, "fork", no_room)
+    monkeypatch.setattr(job_server, "_is_alone", lambda: True)
+    ours, theirs = socket.socketpair()
+    working = {}
+    with ours, theirs:
+        ours.sendall(b'{"modules": []}\n')
+        job_server._begin(theirs, working, ())
+        assert ours.recv(1) == b"" and not working
+    gc.unfreeze()
+
+
+def test_a_run_that_ended_before_it_heard_of_a_job_does_not_watch_it():
+    """The job printed a traceback after the run had ended."""
+    ours, theirs = socket.socketpair()
+    with theirs:
+        with ours:
+            theirs.sendall(b"17\n")
+        assert not job_server._is_watched(theirs)
+
+
+CHILD_OF_AN_IMPORT = """
+import os
+from workflow.process import job_server
+process = os.fork() or os._exit(0)
+os.waitid(os.P_PID, process, os.WEXITED | os.WNOWAIT)
+job_server._report_ended({})
+"""
+
+
+def test_the_end_of_what_an_import_has_started_is_no_job_s():
+    subprocess.run([sys.executable, "-c", CHILD_OF_AN_IMPORT], cwd=ROOT, check=True)
 
 
 def test_a_script_begins_when_it_is_watched(jobs, tmp_path, monkeypatch):

@@ -66,12 +66,13 @@ class ForkedJobs:
             },
             "modules": self._modules(script.rule),
         }
+        request = json.dumps(asked).encode() + b"\n"
         ours, theirs = socket.socketpair()
         with ours, ours.makefile("r", encoding="utf-8") as answers:
             try:
                 with theirs, self._turn:
                     socket.send_fds(self._control, [b"."], [theirs.fileno()])
-                ours.sendall(json.dumps(asked).encode() + b"\n")
+                ours.sendall(request)
                 process = int(answers.readline())
             except (OSError, ValueError):  # no server any more, or one that may not be copied
                 return None

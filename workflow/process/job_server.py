@@ -33,6 +33,8 @@ COMMON = (
     "facegear.plots.style",
 )
 """What most jobs import, made while the run still finds out what there is to do."""
+LOST = 120
+"""Exit code of Python where what it has printed cannot be written."""
 
 
 def main() -> None:
@@ -75,26 +77,49 @@ def _import(modules: Iterable[str]) -> None:
 
 
 def _begin(connection: socket.socket, jobs: dict[int, socket.socket], own: Iterable[int]) -> None:
-    with connection.makefile("r", encoding="utf-8") as stream:
-        asked = json.loads(stream.readline())
-    _import(asked["modules"])
-    if not _is_alone():
+    asked = _asked(connection)
+    process = _copied() if asked and _is_alone() else None
+    if asked is None or process is None:
         connection.close()
         return
-    gc.freeze()
-    process = os.fork()
     if not process:
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         for number in (*own, *(job.fileno() for job in jobs.values())):
             os.close(number)
         with connection:
-            if not connection.recv(1):  # the run has ended before it watched this process
+            if not _is_watched(connection):
                 os._exit(1)
         gc.enable()
         _run(asked)
     jobs[process] = connection
     _tell(connection, process)
+
+
+def _asked(connection: socket.socket) -> dict[str, Any] | None:
+    """What is asked for, its modules imported; None where the run has ended before it had said it all."""
+    try:
+        with connection.makefile("r", encoding="utf-8") as stream:
+            asked: dict[str, Any] = json.loads(stream.readline())
+    except (OSError, ValueError):
+        return None
+    _import(asked["modules"])
+    return asked
+
+
+def _copied() -> int | None:
+    """0 in a copy of this process, its number in this one; None where the system has no room for it."""
+    gc.freeze()
+    with suppress(OSError):
+        return os.fork()
+    return None
+
+
+def _is_watched(connection: socket.socket) -> bool:
+    """Whether the run says that it watches this process: it may have ended before."""
+    with suppress(OSError):
+        return bool(connection.recv(1))
+    return False
 
 
 def _is_alone() -> bool:
@@ -105,8 +130,9 @@ def _is_alone() -> bool:
 def _report_ended(jobs: dict[int, socket.socket]) -> None:
     with suppress(ChildProcessError):
         while (ended := os.waitpid(-1, os.WNOHANG))[0]:
-            with jobs.pop(ended[0]) as connection:
-                _tell(connection, os.waitstatus_to_exitcode(ended[1]))
+            if ended[0] in jobs:  # else something that an import has started
+                with jobs.pop(ended[0]) as connection:
+                    _tell(connection, os.waitstatus_to_exitcode(ended[1]))
 
 
 def _tell(connection: socket.socket, number: int) -> None:
@@ -141,8 +167,11 @@ def leave_after(work: Callable[[], object]) -> NoReturn:
     threading._shutdown()  # type: ignore[attr-defined]
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
-        with suppress(OSError):
-            stream.flush()
+        try:
+            if stream is not None and not stream.closed:
+                stream.flush()
+        except OSError:
+            code = LOST
     os._exit(code & 255)
 
 
