@@ -1,7 +1,5 @@
 """Quadrilaterals that fill the section of a gear body, made by gmsh."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +8,7 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.errors import InvalidInput, extras_named
 from facegear.gear_body.mesh_limits import ACROSS, require_meshable
 from facegear.gear_body.section import Section, thinnest
+from facegear.io.gmsh_session import gmsh_session
 
 with extras_named():
     import gmsh
@@ -54,7 +53,8 @@ def body_mesh(section: Section, across: int = ACROSS, finer: float = CORNER) -> 
     A line of element edges runs along height 0 between the radii of the teeth.
     """
     require_meshable(section.corners, across)
-    with _gmsh():
+    with gmsh_session("gear body"):
+        gmsh.option.setNumber("Geometry.Tolerance", MERGED)
         body, layer = _surfaces(section)
         _sizes(section, element_size(section, across), finer)
         gmsh.option.setNumber("Mesh.RecombineAll", 1)
@@ -69,18 +69,6 @@ def body_mesh(section: Section, across: int = ACROSS, finer: float = CORNER) -> 
     in_layer = np.repeat([False, True], [sum(len(quads) for quads in part) for part in parts])
     used, quads = np.unique(quads, return_inverse=True)
     return BodyMesh(places.reshape(-1, 3)[used, :2], quads.reshape(-1, 4), in_layer)
-
-
-@contextmanager
-def _gmsh() -> Iterator[None]:
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("Geometry.Tolerance", MERGED)
-        gmsh.model.add("gear body")
-        yield
-    finally:
-        gmsh.finalize()
 
 
 def _surfaces(section: Section) -> tuple[list[int], list[int]]:

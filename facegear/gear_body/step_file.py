@@ -1,7 +1,5 @@
 """The section of a gear body out of a STEP file: a solid of revolution or its half section."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -9,6 +7,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.errors import extras_named
+from facegear.io.gmsh_session import gmsh_session
 
 with extras_named():
     import gmsh
@@ -43,7 +42,8 @@ def read_section(path: str | Path) -> list[tuple[float, float]]:
     CHORD. Raises StepFault for anything but one solid of revolution or one face at y = 0, x > 0, with a bore.
     """
     _require_file(Path(path))
-    with _gmsh():
+    with gmsh_session("section"):
+        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
         dimension, tag = _read_shape(path)
         points = _outline(tag) if dimension == 2 else _cut(tag)
     return [(float(r), float(z)) for r, z in _ordered(points).round(DECIMALS)]
@@ -58,18 +58,6 @@ def _require_file(path: Path) -> None:
         raise StepFault("it is not a file")
     if size > LARGEST_FILE:
         raise StepFault(f"it is longer than {LARGEST_FILE} bytes")
-
-
-@contextmanager
-def _gmsh() -> Iterator[None]:
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
-        gmsh.model.add("section")
-        yield
-    finally:
-        gmsh.finalize()
 
 
 def _read_shape(path: str | Path) -> tuple[int, int]:

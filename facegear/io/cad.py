@@ -12,6 +12,7 @@ from scipy.interpolate import make_interp_spline
 from facegear.arrays import Array
 from facegear.errors import NotConverged, extras_named
 from facegear.io.atomic import atomic_path
+from facegear.io.gmsh_session import gmsh_session
 
 with extras_named():
     import gmsh
@@ -40,11 +41,8 @@ def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
     Returns its volume in m3 as OpenCASCADE integrates it, to about 2e-5. Raises NotConverged if the patches
     do not close.
     """
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with gmsh_session(name):
         gmsh.option.setNumber("Geometry.ToleranceBoolean", SEWN)
-        gmsh.model.add(name)
         tags = [_surface(1e3 * patch) for patch in patches]
         loop = gmsh.model.occ.addSurfaceLoop(tags, sewing=True)
         solid = gmsh.model.occ.addVolume([loop])
@@ -57,8 +55,6 @@ def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
         with atomic_path(path) as temporary, _silent():
             gmsh.write(str(temporary))
         return volume
-    finally:
-        gmsh.finalize()
 
 
 @contextmanager

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.arrays import Array
+from facegear.io.gmsh_session import gmsh_session
 from facegear.mesh.orderings import GMSH27, QUAD9
 from facegear.mesh.sector import SectorMesh
 
@@ -17,14 +18,9 @@ HEXAHEDRON_27, QUADRANGLE_9 = 12, 10
 
 @contextmanager
 def gmsh_model(sector: SectorMesh) -> Iterator[NDArray[np.uint64]]:
-    """A gmsh session holding the sector; yields the tags of its hexahedra. gmsh is global: one at a time."""
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add(sector.tooth.body)
+    """A gmsh session holding the sector; yields the tags of its hexahedra."""
+    with gmsh_session(sector.tooth.body):
         yield _fill(sector)
-    finally:
-        gmsh.finalize()
 
 
 def _fill(sector: SectorMesh) -> NDArray[np.uint64]:

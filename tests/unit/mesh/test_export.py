@@ -12,6 +12,7 @@ import pytest
 from references import against, agrees
 
 from facegear.errors import CorruptFile
+from facegear.io.gmsh_session import gmsh_session
 from facegear.io.meshes import read_msh
 from facegear.mesh.export import write_files
 from facegear.mesh.orderings import SERENDIPITY20, VTK27
@@ -47,15 +48,11 @@ def test_msh_keeps_volume_and_named_groups(written):
 )
 def test_gmsh_measures_the_same_volume_and_no_inverted_element(written):
     merged, (msh, _, _), table = written
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
+    with gmsh_session("read"):
         gmsh.open(str(msh))
         tags, _ = gmsh.model.mesh.getElementsByType(12)
         volumes = gmsh.model.mesh.getElementQualities(tags, "volume")
         smallest = gmsh.model.mesh.getElementQualities(tags, "minDetJac").min()
-    finally:
-        gmsh.finalize()
     agrees("volume of the mesh, m3", volumes.sum(), volume(merged.nodes, merged.hexes), relative=1e-10)
     assert smallest > 0
     worst = table.query("quantity == 'min_sicn' and statistic == 'quantile_0'")["value"].item()
