@@ -5,6 +5,7 @@ Neither changes as long as the size of the axis, its limits and the resolution a
 of a font ever.
 """
 
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import Any
@@ -16,6 +17,9 @@ from matplotlib.text import Text
 
 Method = Callable[..., Any]
 
+_TURN = threading.RLock()
+"""One thread at a time: what it has put in the place of matplotlib's methods it takes out again."""
+
 
 @contextmanager
 def found_once() -> Iterator[None]:
@@ -23,7 +27,7 @@ def found_once() -> Iterator[None]:
 
     The names are matplotlib's own, found in 3.11; where one is missing, that is found as often as before.
     """
-    with ExitStack() as stack:
+    with _TURN, ExitStack() as stack:
         for kind, name, keep in KEPT:
             method = getattr(kind, name, None)
             if method is not None:

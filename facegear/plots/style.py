@@ -50,14 +50,17 @@ def save(figure: Figure, *paths: str | Path) -> None:
     laid out once for all formats, and drawn once for svg and png; matplotlib would do so before each of them.
     """
     by_ending = {Path(path).suffix: path for path in paths}
-    both = [by_ending.pop(ending) for ending in (".svg", ".png")] if {".svg", ".png"} <= {*by_ending} else []
+    both = [by_ending[ending] for ending in (".svg", ".png")] if {".svg", ".png"} <= {*by_ending} else []
     with styled(), plt.rc_context({"figure.constrained_layout.use": False}), found_once():
         lay_out(figure)
         figure.set_dpi(STYLE["savefig.dpi"])
         if both:
             with atomic_path(both[0]) as svg, atomic_path(both[1]) as png:
                 draw_both(figure, svg, png)
-        for ending, path in by_ending.items():
+        for path in paths:
+            if path in both:
+                continue
+            ending = Path(path).suffix
             with atomic_path(path) as temporary:
                 if ending == ".json":
                     interactive.write(figure, temporary, bool(both))

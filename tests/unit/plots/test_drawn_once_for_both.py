@@ -40,6 +40,13 @@ def maps():
     return figure
 
 
+def test_every_path_is_written_though_several_have_one_ending(tmp_path):
+    """Of two paths with one ending only the last was written."""
+    paths = [tmp_path / f"{name}.{ending}" for name in ("first", "last") for ending in ("svg", "png", "json")]
+    style.save(curves(), *paths)
+    assert all(path.stat().st_size for path in paths)
+
+
 def drawing():
     """A drawing in space."""
     with style.styled():

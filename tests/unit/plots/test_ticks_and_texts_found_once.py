@@ -1,5 +1,6 @@
 """What is found once while a figure is written changes no byte of it."""
 
+import threading
 from contextlib import nullcontext
 
 import matplotlib.pyplot as plt
@@ -55,6 +56,29 @@ def test_nothing_is_kept_after_a_figure_is_written(tmp_path):
     before = Axis._update_ticks
     figure = stacked()
     style.save(figure, tmp_path / "a.png")
+    assert Axis._update_ticks is before
+
+
+def test_nothing_is_kept_where_two_threads_write_figures():
+    """The one that began first took its own methods out, and the other put them in again for good."""
+    before, begun, over = Axis._update_ticks, threading.Event(), threading.Event()
+
+    def first():
+        with found_once():
+            begun.set()
+            over.wait(0.3)
+
+    def second():
+        begun.wait()
+        with found_once():
+            over.set()
+            one.join(0.3)
+
+    one, other = threading.Thread(target=first), threading.Thread(target=second)
+    for thread in (one, other):
+        thread.start()
+    for thread in (one, other):
+        thread.join()
     assert Axis._update_ticks is before
 
 
