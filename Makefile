@@ -61,15 +61,18 @@ $(CLUSTER): requirements-cluster.lock $(TOOLS)
 	$(compile)
 	touch $@
 
+# A crash ends the tests and names its test: with a new worker for each crash, xdist waits for ever after the second.
+PYTEST = $(BIN)/python -m pytest -n $(CORES) --dist loadgroup --max-worker-restart=0
+
 check: env
 	@$(BIN)/python -m facegear.system_check
 
 test: check tools
-	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
+	$(PYTEST)
 
 # Properties alone, with fresh random examples each time: what one of them finds becomes a named case of its test.
 random: check tools
-	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup -m hypothesis --hypothesis-profile=random
+	$(PYTEST) -m hypothesis --hypothesis-profile=random
 
 lint: tools
 	$(BIN)/ruff check .
@@ -108,7 +111,7 @@ peers: check tools
 
 # The table of what was checked against which reference, for docs/verification.md.
 verification: check tools
-	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup -m reference --references=validation/references.csv
+	$(PYTEST) -m reference --references=validation/references.csv
 
 # How far these references move without MKL, on two threads and with old kernels.
 platforms: check tools
