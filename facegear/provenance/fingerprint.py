@@ -33,16 +33,19 @@ class _Source:
     names: tuple[str, ...]
 
 
+KEPT = 3000
+"""Source files that `remember` keeps: those of some versions, a kilobyte each."""
 _known: dict[str, _Source] = {}
-"""By name below the root, size and time of change: what `recall` read, and all that was parsed since."""
+"""By the hash of a file's text: what `recall` read, and all that was parsed since; used last stands last."""
 _recalled: set[str] = set()
 """Keys of `_known` that `recall` read."""
 
 
 def recall(file: Path) -> None:
-    """Take from `file` what counts of each source file, as `remember` left it; the others are parsed.
+    """Take from `file` what counts of source files, as `remember` left it; the others are parsed.
 
-    A file that cannot be read, or that another version wrote, is passed over.
+    Clones share such a file, as their sources are known by their text. One that cannot be read, or that
+    another version wrote, is passed over.
     """
     with suppress(OSError, ValueError, KeyError, TypeError):
         stored = json.loads(file.read_text(encoding="utf-8"))
@@ -54,12 +57,12 @@ def recall(file: Path) -> None:
 
 
 def remember(file: Path) -> None:
-    """Leave in `file` what counts of each source file for the next process, if any was parsed here.
+    """Leave in `file` what counts of the source files used last for the next process, if any was parsed here.
 
     Where nothing can be written the next process parses again.
     """
     if _known.keys() - _recalled:
-        files = {key: (source.code, source.names) for key, source in _known.items()}
+        files = {key: (source.code, source.names) for key, source in [*_known.items()][-KEPT:]}
         with suppress(OSError, FacegearError), atomic_path(file) as partial:
             partial.write_text(json.dumps({"version": _version(), "files": files}), encoding="utf-8")
 
@@ -75,7 +78,7 @@ def fingerprint(script: str | Path, root: str | Path, modules: Sequence[str] = (
     import itself, their own fingerprint follows after a dot, so that results can be known without the script.
     """
     root, script = Path(root), Path(script)
-    own = _hash(_source(script, root).code, reached_modules(script, root), root)
+    own = _hash(_source(script).code, reached_modules(script, root), root)
     return f"{own}.{stage_fingerprint(modules, root)}" if modules else own
 
 
@@ -90,7 +93,7 @@ def _hash(code: str, modules: Iterable[str], root: Path, *more: str) -> str:
     digest = hashlib.sha256(code.encode())
     for module in sorted({*modules, *more}):
         file = _file(module, root)
-        digest.update(module.encode() + b"\0" + _source(file, root).code.encode())
+        digest.update(module.encode() + b"\0" + _source(file).code.encode())
         if file.name == "__init__.py":
             for template in sorted(file.parent.glob("*.j2")):
                 digest.update(template.read_bytes())
@@ -101,31 +104,31 @@ def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
     """Names of the package's modules that a script imports, directly or through others, sorted."""
     root = Path(root)
     reached: set[str] = set()
-    todo = list(_source(Path(script), root).names)
+    todo = list(_source(Path(script)).names)
     while todo:
         module = todo.pop()
         if module not in reached and _exists(module, root):
             reached.add(module)
-            todo.extend(_source(_file(module, root), root).names)
+            todo.extend(_source(_file(module, root)).names)
     return tuple(sorted(reached))
 
 
-def _source(path: Path, root: Path) -> _Source:
+def _source(path: Path) -> _Source:
     status = os.stat(path)
-    return _looked_up(str(path), str(root), status.st_size, status.st_mtime_ns)
+    return _looked_up(str(path), status.st_size, status.st_mtime_ns)
 
 
 @cache
-def _looked_up(path: str, root: str, size: int, modified: int) -> _Source:
+def _looked_up(path: str, size: int, modified: int) -> _Source:
     """Texts, as they are compared faster than paths: a start of the workflow asks ten thousand times."""
-    key = f"{Path(path).relative_to(root).as_posix()} {size} {modified}"
-    if key not in _known:
-        _known[key] = _parsed(Path(path))
-    return _known[key]
+    text = Path(path).read_bytes()
+    key = hashlib.sha256(text).hexdigest()[:32]
+    _known[key] = source = _known.pop(key, None) or _parsed(text)
+    return source
 
 
-def _parsed(path: Path) -> _Source:
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+def _parsed(text: bytes) -> _Source:
+    tree = ast.parse(text)
     modules: set[str] = set()
     for node in _executed(tree):
         if isinstance(node, ast.Import | ast.ImportFrom):
@@ -139,12 +142,13 @@ def _parsed(path: Path) -> _Source:
     return _Source(hashlib.sha256(ast.unparse(tree).encode()).hexdigest(), tuple(sorted(modules)))
 
 
-def _executed(tree: ast.AST) -> Iterator[ast.AST]:
-    """A node and all inside it, but those that only a type checker reads."""
-    if not (isinstance(tree, ast.If) and ast.unparse(tree.test) == "TYPE_CHECKING"):
-        yield tree
-        for node in ast.iter_child_nodes(tree):
-            yield from _executed(node)
+def _executed(node: ast.AST) -> Iterator[ast.AST]:
+    """A node and all statements inside it, but those that only a type checker reads."""
+    if not (isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"):
+        yield node
+        for part in ("body", "orelse", "finalbody", "handlers", "cases"):
+            for inner in getattr(node, part, ()):
+                yield from _executed(inner)
 
 
 def _names(node: ast.Import | ast.ImportFrom) -> list[str]:

@@ -11,13 +11,14 @@ from pathlib import Path
 
 from snakemake_server import Server
 
+from facegear.machine_code import kept
 from facegear.pipeline.table import STAGES
-from facegear.provenance.fingerprint import fingerprint, remember, stage_fingerprint
+from facegear.provenance.fingerprint import fingerprint, recall, remember, stage_fingerprint
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "profiles", "facegear", "paper", "validation", "config")
 SCRIPTS = sorted(path for name in FOLDERS for path in (ROOT / name / "scripts").glob("*.py"))
-PARSED = "facegear_sources.json"
+SOURCES = kept.folder().with_name("sources.json")
 """In Snakemake's folder: what counts of each source file."""
 
 
@@ -32,10 +33,7 @@ class Project:
     sources: Path = ROOT
 
     def __post_init__(self) -> None:
-        parsed = self.folder / ".snakemake" / PARSED
-        parsed.parent.mkdir(parents=True, exist_ok=True)
-        if not parsed.exists():
-            parsed.write_bytes(parsed_sources())
+        parse_sources()
 
     def copied(self, folder: Path) -> "Project":
         """The same results, and what Snakemake knows of them, in another folder."""
@@ -84,16 +82,15 @@ def server() -> Server:
 
 
 @cache
-def parsed_sources() -> bytes:
-    """What `remember` stores of this checkout's sources."""
+def parse_sources() -> None:
+    """Leave what counts of this checkout's sources where each start looks for it."""
+    recall(SOURCES)
     for script in SCRIPTS:
         fingerprint(script, ROOT)
     for stage in STAGES.values():
         drawn = (stage.figures.draw.partition(":")[0],) if stage.figures else ()
         stage_fingerprint((*stage.modules, *drawn), ROOT)
-    with tempfile.TemporaryDirectory() as folder:
-        remember(Path(folder) / PARSED)
-        return (Path(folder) / PARSED).read_bytes()
+    remember(SOURCES)
 
 
 def rules_in(text: str) -> set[str]:

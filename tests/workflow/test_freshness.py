@@ -1,5 +1,6 @@
 """What is computed again, and what is not, after an edit of code or config."""
 
+import json
 import os
 import re
 import subprocess
@@ -32,6 +33,16 @@ def test_second_run_does_nothing_and_imports_no_tables_no_solvers_and_no_compile
     done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=False)
     assert "Nothing to be done" in done.stderr
     assert done.stdout.splitlines()[-1].split() == ["imported:"]
+
+
+def test_a_first_run_parses_the_sources_of_the_rules_that_it_needs_alone(tmp_path, monkeypatch):
+    """Those of all benchmarks, too, took a fresh clone a second before it could plan."""
+    monkeypatch.setenv("FACEGEAR_CACHE", str(tmp_path / "cache"))
+    Project(tmp_path / "run").run("results/paper/modal/frequencies.csv")
+    parsed = json.loads((tmp_path / "cache" / "sources.json").read_text())["files"]
+    names = {name for _, imported in parsed.values() for name in imported}
+    assert "facegear.transmission.modes" in names
+    assert "facegear.contact.bodies.factor" not in names
 
 
 @pytest.fixture(scope="session")

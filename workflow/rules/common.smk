@@ -19,6 +19,7 @@ from facegear.config.load import extended, load_config
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
+from facegear.machine_code import kept
 from facegear.pipeline.needs import require_section, resolved_needs, shared_sources, value_at
 from facegear.pipeline.rows.shared import MACHINE
 from facegear.pipeline.stage import Case, From
@@ -78,7 +79,7 @@ RUN_LOCKS = []  # held until this process ends
 
 
 # Only a run that is about to work comes here, no dry run, listing or report.
-SOURCES = Path(".snakemake/facegear_sources.json")
+SOURCES = kept.folder().with_name("sources.json")
 recall(SOURCES)
 
 

@@ -75,12 +75,14 @@ def test_package_never_imports_snakemake():
     assert guilty == []
 
 
-def test_what_is_remembered_gives_the_same_fingerprint_without_parsing(package, tmp_path, monkeypatch):
-    """A start parsed some 300 files each time, and so did every job."""
+def test_what_one_clone_has_parsed_gives_another_the_same_fingerprint_without_parsing(
+    package, tmp_path, monkeypatch
+):
+    """The first start of every clone parsed some 700 files, for three seconds, before it could plan."""
     file = tmp_path / "sources.json"
     before = fingerprint(package / "script.py", package)
     remember(file)
-    moved = shutil.copytree(package, tmp_path / "moved")
+    moved = shutil.copytree(package, tmp_path / "moved", copy_function=shutil.copyfile)  # with new times
     monkeypatch.setattr(provenance_fingerprint, "_known", {})
     monkeypatch.setattr(provenance_fingerprint, "_parsed", None)
     recall(file)
@@ -88,6 +90,21 @@ def test_what_is_remembered_gives_the_same_fingerprint_without_parsing(package, 
     monkeypatch.undo()
     edit(moved / "facegear/io/tables.py", "x = 2\n")
     assert fingerprint(moved / "script.py", moved) != before
+
+
+def test_sources_used_last_are_remembered_and_no_more_than_a_limit(package, tmp_path, monkeypatch):
+    """Every version of a file that was ever edited would stay."""
+    file = tmp_path / "sources.json"
+    monkeypatch.setattr(provenance_fingerprint, "_known", {})
+    monkeypatch.setattr(provenance_fingerprint, "KEPT", 3)
+    fingerprint(package / "script.py", package)
+    edit(package / "facegear/io/tables.py", "x = 3\n")
+    fingerprint(package / "script.py", package)
+    last = [*provenance_fingerprint._known][-3:]
+    remember(file)
+    monkeypatch.setattr(provenance_fingerprint, "_known", {})
+    recall(file)
+    assert [*provenance_fingerprint._known] == last
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"version": "another", "files": {}}', "\xff"])

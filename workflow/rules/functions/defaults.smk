@@ -13,4 +13,11 @@ def complete(job):
     job.docstring = job.docstring or TITLES[job.name]
     job.message = f"{job.docstring}: {{wildcards}}"
     script = job.basedir.join(job.script).get_path_or_uri(secret_free=True)
-    job.set_params(code=fingerprint(script, ROOT, MODULES.get(job.name, ())))
+    modules = MODULES.get(job.name, ())
+    job.set_params(code=lambda wildcards: code_of(script, modules))
+
+
+@cache
+def code_of(script, modules):
+    """Fingerprint of a script and of the modules that it calls, found once a run and for rules with jobs alone."""
+    return fingerprint(script, ROOT, modules)
