@@ -55,9 +55,9 @@ _KEPT = "_content"
 
 
 def _content(value: Any) -> tuple[Any, bool]:
-    """The content of a value, and whether it will be that for good: an array is read-only."""
+    """The content of a value, and whether it will be that for good."""
     if isinstance(value, np.ndarray):
-        return (value.dtype.str, value.shape, value.tobytes()), not value.flags.writeable
+        return (value.dtype.str, value.shape, value.tobytes()), _is_fixed(value)
     if isinstance(value, tuple | list):
         parts, fixed = _all([_content(part) for part in value])
         return (type(value), parts), fixed and isinstance(value, tuple)
@@ -67,6 +67,13 @@ def _content(value: Any) -> tuple[Any, bool]:
     if isinstance(value, Mapping):
         return (type(value), tuple([(key, content(part)) for key, part in value.items()])), False
     return (type(value), value), True
+
+
+def _is_fixed(array: Any) -> bool:
+    """Whether nothing can be written into an array, nor into one that it is a view of."""
+    while isinstance(array, np.ndarray) and not array.flags.writeable:
+        array = array.base
+    return array is None
 
 
 def _of_fields(value: Any, names: tuple[str, ...]) -> tuple[Any, bool]:

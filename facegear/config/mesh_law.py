@@ -35,7 +35,7 @@ def tables_of(law: Arrays) -> TablesOf:
 
 
 def _read_only(values: Array) -> Array:
-    """A view that nothing is written through."""
-    view = values[...]
-    view.flags.writeable = False
-    return view
+    """A copy that nothing is written into."""
+    copy = values.copy()
+    copy.flags.writeable = False
+    return copy

@@ -54,8 +54,10 @@ class Harmonics:
 
     @cached_property
     def amplitudes(self) -> Array:
-        """Amplitude of each order, shape (H+1,), N/m; the first entry is the mean."""
-        return np.hypot(self.a, self.b)
+        """Amplitude of each order, shape (H+1,), N/m, read-only; the first entry is the mean."""
+        found = np.hypot(self.a, self.b)
+        found.flags.writeable = False
+        return found
 
     def __call__(self, cycles: ArrayLike) -> Array:
         """Stiffness at `cycles` = w t / 2 pi (mesh periods since the start), any shape, N/m."""

@@ -61,6 +61,17 @@ def test_content_is_kept_of_what_cannot_change_and_of_nothing_else():
     assert content(Table((1.0, loose.values))) != content(Table((1.0, closed)))
 
 
+def test_content_of_a_read_only_view_is_seen_to_change_with_what_it_is_a_view_of():
+    """It was kept as that of what nothing can change."""
+    numbers = np.arange(3.0)
+    view = numbers[...]
+    view.flags.writeable = False
+    table = Table(view)
+    before = content(table)
+    numbers[0] = 5.0
+    assert content(table) != before
+
+
 def test_machines_of_one_layout_share_what_no_error_changes():
     layout = make_layout(kinematics=GEOMETRIC)
     models = [

@@ -36,3 +36,9 @@ def test_kept_series_drops_the_higher_orders_only():
 def test_malformed_series_is_refused(a, b):
     with pytest.raises(ValueError):
         Harmonics(np.array(a), np.array(b))
+
+
+def test_amplitudes_that_are_kept_cannot_be_overwritten():
+    """They are found once: written into, they would have been wrong for the next who asks."""
+    with pytest.raises(ValueError, match="read-only"):
+        SERIES.amplitudes[1] = 0.0
