@@ -26,7 +26,8 @@ def alone(course: Course[T]) -> T:
 
 
 def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
-    """What each of many courses comes to; stretches of one kind and length run in lanes where they can.
+    """What each of many courses comes to; stretches of one kind run in lanes where they can, whatever their
+    lengths.
 
     The kind that most courses ask for at a time is run, while the others wait for more of their own: so lanes
     are as full as they can be. Raises NotConverged if any of the courses does.
@@ -46,10 +47,10 @@ def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
 
 
 def _largest_group(asked: Mapping[int, Stretch]) -> list[int]:
-    """Numbers of the courses in the largest group that asks for stretches of one kind and length."""
+    """Numbers of the courses in the largest group that asks for stretches of one kind."""
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
     for number, stretch in asked.items():
-        groups[(stretch.periods, *stretch.asks)].append(number)
+        groups[stretch.asks].append(number)
     return max(groups.values(), key=len, default=[])
 
 

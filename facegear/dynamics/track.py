@@ -74,7 +74,8 @@ class SampledTrack:
         """y places + dy/dt speeds (columns, K)."""
         total = places.T @ self.samples.T
         moving = speeds.any(axis=0)
-        total[moving] += speeds.T[moving] @ self.rates.T
+        if moving.any():
+            total[moving] += speeds.T[moving] @ self.rates.T
         return total
 
 

@@ -1,14 +1,18 @@
 """Load sharing of one machine at one speed: averages and the curve over a mesh cycle."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import Course, alone
+from facegear.dynamics.courses import Course, alone, side_by_side
 from facegear.dynamics.dense_motion import DenseMotion
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.guide import Guide, guide_of
+from facegear.dynamics.steady_state.guide import Guide
+from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import (
     Model,
@@ -30,6 +34,8 @@ WATCHED, TORUS_WATCHED = 2, 8
 """Times the cycles averaged for which a motion is watched, and again before it is called quasi-periodic."""
 SAMPLES = 64
 """At most so many a cycle from other starts, whose means alone are wanted."""
+TOGETHER = 16
+"""Machines whose motions are kept at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,23 +78,79 @@ def load_sharing(
     irregular one, the range over the starts says how much that choice matters. Raises NotConverged if an
     integration fails.
     """
-    model = build_model(machine) if isinstance(machine, Machine) else machine
+    return load_sharing_of_many([(machine, speed_rpm)], settings, options, start)[0]
+
+
+def load_sharing_of_many(
+    cases: Sequence[tuple[Machine | Model, float]],
+    settings: Settings,
+    options: SharingOptions,
+    start: int = 0,
+) -> list[Sharing]:
+    """load_sharing() of machines, each at its speed in rpm; TOGETHER of them run side by side."""
     settings = replace(settings, window=options.cycles, samples=options.samples)
-    groups = load_groups(model.machine.layout)
-    states = starting_states(model, options, max(options.starts, start + 1))
-    response = watched_motion(model, speed_rpm, settings, options, states[start])
-    coarse = replace(settings, samples=min(SAMPLES, options.samples))
-    motions, means, known = [response.label], [], guide_of(response.system, response.orbit)
-    for state in [state for number, state in enumerate(states[: options.starts]) if number != start]:
-        other = watched_motion(model, speed_rpm, coarse, options, state, known)
-        motions.append(other.label)
-        if not same_orbit(response, other):
-            means.append(_means(densely_sampled(other), groups))
-    dense = densely_sampled(response)
-    shared = tuple(
-        _group(dense, group, options, [mean[i] for mean in means]) for i, group in enumerate(groups)
-    )
-    return Sharing(dense, shared, tuple(motions))
+    runs = [
+        _Run(build_model(machine) if isinstance(machine, Machine) else machine, speed, settings, options)
+        for machine, speed in cases
+    ]
+    shared: list[Sharing] = []
+    for first in range(0, len(runs), TOGETHER):
+        shared += _side_by_side(runs[first : first + TOGETHER], start)
+    return shared
+
+
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """A machine at a speed in rpm that runs from several starts."""
+
+    model: Model
+    speed_rpm: float
+    settings: Settings
+    options: SharingOptions
+
+    def motion(self, state: State) -> Course[SteadyState]:
+        """The motion that counts."""
+        return watching(self.model, self.speed_rpm, self.settings, self.options, state)
+
+    def other(self, state: State, known: KnownOrbit | None) -> Course[SteadyState | None]:
+        """That from another start, coarsely sampled; None where it comes to the known orbit."""
+        coarse = replace(self.settings, samples=min(SAMPLES, self.options.samples))
+        watched = watched_for(coarse, self.options, WATCHED)
+        begun = yield from started(self.model, self.speed_rpm, watched, state, known=known)
+        return None if begun.known else (yield from followed(self.model, begun, coarse, self.options))
+
+    def known(self, response: SteadyState) -> KnownOrbit | None:
+        """The orbit of a response that other starts may come to."""
+        precision = self.settings.tolerance, self.settings.order
+        return known_orbit(Integrator(response.system, response.frequency, *precision), response.orbit)
+
+    def sharing(self, response: SteadyState, others: list[SteadyState | None]) -> Sharing:
+        """What the motion that counts and those from the other starts say."""
+        groups = load_groups(self.model.machine.layout)
+        elsewhere = [other for other in others if other is not None and not same_orbit(response, other)]
+        means = [_means(densely_sampled(other), groups) for other in elsewhere]
+        dense = densely_sampled(response)
+        shared = tuple(
+            _group(dense, group, self.options, [mean[i] for mean in means]) for i, group in enumerate(groups)
+        )
+        return Sharing(dense, shared, tuple((other or response).label for other in (None, *others)))
+
+
+def _side_by_side(runs: Sequence[_Run], start: int) -> list[Sharing]:
+    """The motions from number `start` of the starting states, then those from the others."""
+    states = [starting_states(run.model, run.options, max(run.options.starts, start + 1)) for run in runs]
+    responses = side_by_side([run.motion(own[start]) for run, own in zip(runs, states, strict=True)])
+    courses, counts = [], []
+    for run, own, response in zip(runs, states, responses, strict=True):
+        known = run.known(response)
+        others = [state for number, state in enumerate(own[: run.options.starts]) if number != start]
+        courses += [run.other(state, known) for state in others]
+        counts.append(len(others))
+    motions = iter(side_by_side(courses))
+    return [
+        run.sharing(response, list(islice(motions, count)))
+        for run, response, count in zip(runs, responses, counts, strict=True)
+    ]
 
 
 def measured_motion(
@@ -100,7 +162,7 @@ def measured_motion(
     """
     settings = replace(settings, window=options.cycles, samples=options.samples)
     start = static_start(model)
-    return densely_sampled(watched_motion(model, speed_rpm, settings, options, start, guide))
+    return densely_sampled(alone(watching(model, speed_rpm, settings, options, start, guide)))
 
 
 def starting_states(model: Model, options: SharingOptions, count: int) -> list[State]:
@@ -109,20 +171,20 @@ def starting_states(model: Model, options: SharingOptions, count: int) -> list[S
     return [rest, *(disturb(model, rest, options.spread, random) for _ in range(count - 1))]
 
 
-def watched_motion(
+def watching(
     model: Model,
     speed_rpm: float,
     settings: Settings,
     options: SharingOptions,
-    start: State | None,
+    start: State,
     guide: Guide | None = None,
-) -> SteadyState:
+) -> Course[SteadyState]:
     """The motion from a start: what has not closed after a few times the cycles averaged is measured.
 
-    `guide`: an orbit that the run may come to, or one of a like machine.
+    `guide`: an orbit of a like machine.
     """
-    begin = started(model, speed_rpm, watched_for(settings, options, WATCHED), start, guide)
-    return alone(followed(model, alone(begin), settings, options))
+    begun = yield from started(model, speed_rpm, watched_for(settings, options, WATCHED), start, guide)
+    return (yield from followed(model, begun, settings, options))
 
 
 def followed(

@@ -4,6 +4,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,7 @@ from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.run import Sharing, group_average, load_sharing
+from facegear.load_sharing.run import Sharing, group_average, load_sharing_of_many
 from facegear.load_sharing.sampling import densely_sampled
 from facegear.load_sharing.statistics import Average
 from facegear.transmission.machine import Machine
@@ -58,20 +59,21 @@ def sharing_costs(
     step: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
     """One row for each random machine: its factors and speed_rpm, motion, motions_from_starts, periods_run,
-    seconds (median CPU time of warm runs with all starts), mean, error, chance, motion_exact.
+    seconds (median CPU time of warm runs with all starts), seconds_together (the same where all machines run
+    side by side, over their number), mean, error, chance, motion_exact.
 
     error: largest change of a group's mean coefficient, which lies between one and the number of paths, when
     a periodic motion is run again from its own state at 1e-10 and 4096 samples, or an irregular one for ten
     times as long at a hundredth of the tolerance. chance: what of that the 95 % intervals of both explain.
     mean is that of the group with the largest error.
     """
-    rows = []
-    for case in random_machines(machine, count):
-        times = []
-        for _ in range(REPEATS):
-            begin = time.process_time()
-            sharing = load_sharing(case.machine, case.speed_rpm, settings, options)
-            times.append(time.process_time() - begin)
+    rows, machines = [], list(random_machines(machine, count))
+    cases = [(case.machine, case.speed_rpm) for case in machines]
+    together, _ = _timed(partial(load_sharing_of_many, cases, settings, options))
+    for case in machines:
+        seconds, (sharing,) = _timed(
+            partial(load_sharing_of_many, [(case.machine, case.speed_rpm)], settings, options)
+        )
         finer = _again(case, sharing, settings, options)
         rows.append(
             {
@@ -82,13 +84,24 @@ def sharing_costs(
                 "motion": sharing.response.label,
                 "motions_from_starts": "; ".join(dict.fromkeys(sharing.motions)),
                 "periods_run": sharing.response.periods_run,
-                "seconds": statistics.median(times),
+                "seconds": seconds,
+                "seconds_together": together / count,
                 **_error(sharing, finer, options),
                 "motion_exact": finer.label,
             }
         )
         step()
     return pd.DataFrame(rows)
+
+
+def _timed(run: Callable[[], list[Sharing]]) -> tuple[float, list[Sharing]]:
+    """Median processor time of REPEATS calls, s, and what they give."""
+    times, sharings = [], []
+    for _ in range(REPEATS):
+        begin = time.process_time()
+        sharings = run()
+        times.append(time.process_time() - begin)
+    return statistics.median(times), sharings
 
 
 def _again(case: RandomMachine, sharing: Sharing, settings: Settings, options: SharingOptions) -> SteadyState:
@@ -126,7 +139,8 @@ def sharing_summary(table: pd.DataFrame) -> str:
     times = 1e3 * table["seconds"]
     within = (table["error"] <= table["chance"])[~periodic].sum()
     return (
-        f"{times.median():.0f} ms in the median, {times.mean():.0f} ms on average; "
+        f"{times.median():.0f} ms in the median, {times.mean():.0f} ms on average, "
+        f"{1e3 * table['seconds_together'].mean():.0f} ms side by side; "
         f"{periodic.sum()} periodic: {times[periodic].median():.0f} ms, error at most "
         f"{table['error'][periodic].max():.1e}; {(~periodic).sum()} irregular: "
         f"{times[~periodic].median():.0f} ms, {within} within chance"

@@ -1,6 +1,7 @@
 """Periodic orbits by Newton shooting (Parker and Chua 1989), and their Floquet multipliers (Seydel 2010)."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -60,9 +61,12 @@ class Orbit:
 
     def parts(self, off: Array) -> ComplexArray:
         """Components (..., 2 n) of states (..., 2, n) off the orbit along its own directions."""
-        flat = off.reshape(*off.shape[:-2], -1)
-        coefficients = np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0]
-        return np.reshape(coefficients.T, flat.shape)
+        return np.asarray(off.reshape(*off.shape[:-2], -1) @ self._inverse.T)
+
+    @cached_property
+    def _inverse(self) -> ComplexArray:
+        """Pseudoinverse (2 n, 2 n) of the directions, some of which may be parallel to rounding."""
+        return np.asarray(np.linalg.pinv(self.vectors, rcond=len(self.vectors) * np.finfo(float).eps))
 
     def distance(self, integrator: Integrator, state: Array, rates: float = 1.0) -> float:
         """How far a state (2, n) is off, as a change(), whatever its neutral directions.

@@ -15,8 +15,9 @@ from facegear.dynamics.courses import Course
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.closing import SMALL
+from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.orbits import change, largest
-from facegear.dynamics.steady_state.settle import KnownOrbit, Settled, settling
+from facegear.dynamics.steady_state.settle import Settled, settling
 
 WANDERED = 16
 """After so many periods with changes that are not small the orbit reached may be a matter of chance."""

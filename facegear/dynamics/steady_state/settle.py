@@ -1,6 +1,6 @@
 """From any start to the periodic motion that the run itself comes to, if it does."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,14 +10,13 @@ from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
+from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.orbits import (
     MATRICES,
     UNIT_TOLERANCE,
     Orbit,
     changes,
     drawn_in,
-    largest,
-    near_for_ever,
     shoot,
 )
 from facegear.dynamics.steady_state.passed import Passed
@@ -48,6 +47,7 @@ class Settled:
     """Where a run came to rest: state (2, n) by phase, period (0: none found), residual over it, periods run.
 
     ends (periods, 2, n): the last states at the end of a period. orbit: with its multipliers, if refined.
+    known: whether it is the orbit that was known before.
     """
 
     state: Array
@@ -56,19 +56,7 @@ class Settled:
     orbit: Orbit | None
     periods_run: int
     ends: Array
-
-
-@dataclass(frozen=True, eq=False)
-class KnownOrbit:
-    """A stable orbit that a run may come to once more; states (period, 2, n) at the end of its periods."""
-
-    orbit: Orbit
-    states: Array
-
-    def reached(self, integrator: Integrator, state: Array) -> float | None:
-        """How far a state (2, n) is off if it is so near that nothing can lead it away again, else None."""
-        distance = float(largest(integrator, self.states - state).min())
-        return distance if near_for_ever(integrator, self.orbit, distance) else None
+    known: bool = False
 
 
 def settle(
@@ -134,13 +122,10 @@ class SettlingRun:
         """Go on, block by block, until the run has settled or patience ends."""
         while True:
             yield from self._advance()
+            if known := self._known():
+                return known
             if self.periods_run < self.dwell and not self.known:
                 continue
-            if (
-                self.known_orbit
-                and (off := self.known_orbit.reached(self.integrator, self.state)) is not None
-            ):
-                return self._result(self.known_orbit.orbit.period, off, None)
             last = self.periods_run >= self.settings.settle
             near = closing(self.integrator, self.ends, self.settings)
             result = self._refined(near, last) if self.settings.refine else None
@@ -154,10 +139,20 @@ class SettlingRun:
             if last and not (closer and self.periods_run < LONGER * self.settings.settle):
                 return self._in_noise(near) or self._result(0, near.residual, None)
 
+    def _known(self) -> Settled | None:
+        """The orbit that was known before, if the run has come to it."""
+        if self.known_orbit is None or not len(self.ends):
+            return None
+        reached = self.known_orbit.reached(self.integrator, self.ends)
+        if reached is None:
+            return None
+        state, off = reached
+        return replace(self._result(self.known_orbit.orbit.period, off, None), state=state, known=True)
+
     def _advance(self) -> Course[None]:
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
-        if not self.known:
+        if not self.known and self.known_orbit is None:
             block = max(block, self.dwell - self.periods_run)
         if self.periods_run < settings.settle:
             block = min(block, settings.settle - self.periods_run)

@@ -16,6 +16,7 @@ from facegear.dynamics.integrator.reduction import Reduced, reduce
 from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.guide import Guide
+from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.response import SteadyState, response_of
 from facegear.dynamics.steady_state.second_look import disagreeing
@@ -92,6 +93,11 @@ class Started:
     speed_rpm: float
 
     @property
+    def known(self) -> bool:
+        """Whether it came to the orbit that was known before, so that nothing is left to follow."""
+        return self.begun.settled.known
+
+    @property
     def state(self) -> State:
         """What it may hand on to a motion at another speed: a state of its own, the last that was seen."""
         return self.begun.integrator.by_time(self.begun.state)
@@ -110,13 +116,14 @@ def started(
     settings: Settings | None = None,
     start: State | None = None,
     guide: Guide | None = None,
+    known: KnownOrbit | None = None,
 ) -> Course[Started]:
-    """The first watch of simulate()."""
+    """The first watch of simulate(); it is over where the run comes to a `known` orbit of the model."""
     model = build_model(model) if isinstance(model, Machine) else model
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
     start = static_start(model) if start is None else start
     with _naming(speed_rpm):
-        begun = yield from _begun(model.system, frequency, settings or Settings(), start, guide)
+        begun = yield from _begun(model.system, frequency, settings or Settings(), start, guide, known)
     return Started(model.system, begun, speed_rpm)
 
 
@@ -157,13 +164,18 @@ def steady_state(
 
 
 def _begun(
-    system: System, frequency: float, settings: Settings, start: State, guide: Guide | None
+    system: System,
+    frequency: float,
+    settings: Settings,
+    start: State,
+    guide: Guide | None,
+    known: KnownOrbit | None = None,
 ) -> Course[Begun]:
     """The first watch of a system from a start."""
     prepare_for(system)
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
     serves = guide is not None and settings.refine and guide.serves(system)
-    return begin(integrator, integrator.by_phase(start), settings, guide if serves else None)
+    return begin(integrator, integrator.by_phase(start), settings, guide if serves else None, known)
 
 
 def _steady(system: System, begun: Begun) -> Course[SteadyState]:

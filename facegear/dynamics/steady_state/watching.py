@@ -9,6 +9,7 @@ from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing, wanders
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
 from facegear.dynamics.steady_state.guide import Guide, guided
+from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
 from facegear.dynamics.steady_state.second_look import wandering
 from facegear.dynamics.steady_state.settle import Settled, settling
@@ -54,15 +55,21 @@ class Begun:
 
 
 def begin(
-    integrator: Integrator, state: Array, settings: Settings, guide: Guide | None = None
+    integrator: Integrator,
+    state: Array,
+    settings: Settings,
+    guide: Guide | None = None,
+    known: KnownOrbit | None = None,
 ) -> Course[Begun]:
     """Watch a run from a state (2, n) by phase until it settles or patience ends for the first time.
 
     A `guide` of a system with the same coordinates makes it short where it leads to an orbit like its own.
+    `known`: an orbit of this system, at which the run is over with nothing seen.
     """
     settled = None if guide is None else guided(integrator, state, guide)
-    settled = settled or (yield from settling(integrator, state, settings))
-    seen = _periodic(integrator, settled, settings, settled.periods_run) if settled.period else None
+    settled = settled or (yield from settling(integrator, state, settings, known=known))
+    new = settled.period and not settled.known
+    seen = _periodic(integrator, settled, settings, settled.periods_run) if new else None
     return Begun(integrator, settings, state, settled, seen)
 
 

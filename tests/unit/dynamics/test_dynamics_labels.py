@@ -15,9 +15,10 @@ from facegear.config.model import resolved
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.orbits import change
 from facegear.dynamics.steady_state.second_look import CHANCE, never_closing, other_starts
-from facegear.dynamics.steady_state.settle import KnownOrbit, settle
+from facegear.dynamics.steady_state.settle import settle
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
 from facegear.dynamics.sweeps.summary import response_summary
 from facegear.harmonics.series import Harmonics
@@ -242,3 +243,23 @@ def test_a_run_that_comes_near_a_known_stable_orbit_is_over_with_the_same_period
     assert first.orbit is not None and again.period == first.period
     assert again.periods_run <= first.periods_run
     assert change(integrator, again.state, states[-1]) < 1e-4
+
+
+def test_a_run_is_over_once_a_known_orbit_of_several_periods_draws_it_in():
+    """It went on until it was within the error of the steps, or Newton's method had found the orbit again."""
+    *_, oscillator = random_oscillators(6)
+    integrator = Integrator(oscillator.system, oscillator.speed)
+    first = settle(integrator, integrator.by_phase(oscillator.start), Settings())
+    known = known_orbit(integrator, first.orbit)
+    assert first.period == 2 and known is not None
+    aside = integrator.run(first.state, 1).state + 5e-3
+    again = settle(integrator, aside, Settings(), known=known)
+    assert again.known and again.period == 2
+    assert again.periods_run == 16, "the first look"
+    assert near(integrator, again.state, known.states) < 1e-9
+    assert near(integrator, again.ends[-1], known.states) > 1e-6, "far beyond the error of the steps"
+
+
+def near(integrator, state, states):
+    """How near a state (2, n) is to one of some states."""
+    return min(change(integrator, state, other) for other in states)

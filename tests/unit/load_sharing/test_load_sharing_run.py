@@ -9,12 +9,12 @@ from references import against, agrees
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.dynamics.track import periodic_track
+from facegear.dynamics.track import SampledTrack, periodic_track
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.options import SharingOptions, SpeedRange
 from facegear.load_sharing.reference import reference_table, slow_forces, speed_range_table
-from facegear.load_sharing.run import load_sharing, measured_motion
+from facegear.load_sharing.run import load_sharing, load_sharing_of_many, measured_motion
 from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
@@ -115,6 +115,25 @@ def test_averages_belong_to_the_start_that_is_asked_for_and_the_range_to_all(pap
     assert means[1] - means[0] > 0.05
     for group in groups:
         assert [group.starts_low, group.starts_high] == pytest.approx(means, rel=1e-3)
+
+
+def test_machines_side_by_side_share_as_each_does_by_itself(paper_machine):
+    """Some start on one of two motions, others on the other, which the range over the starts shows."""
+    speeds = (3000.0, 5000.0, 6000.0, 7500.0, 9500.0, 10_000.0)
+    together = load_sharing_of_many([(paper_machine, speed) for speed in speeds], SETTINGS, OPTIONS)
+    for speed, many in zip(speeds, together, strict=True):
+        one = load_sharing(paper_machine, speed, SETTINGS, OPTIONS)
+        assert many.motions == one.motions
+        assert many.response.period
+        for group, expected in zip(many.groups, one.groups, strict=True):
+            shares = [[part.average.mean, part.starts_low, part.starts_high] for part in (group, expected)]
+            np.testing.assert_allclose(shares[0], shares[1], rtol=1e-9)
+
+
+def test_places_alone_ask_for_no_slopes_of_a_motion_without_a_period():
+    """A spline through all samples was made, and thrown away."""
+    lone = SampledTrack(np.array([[1.0, 2.0]]), 1.0)
+    assert lone.along(np.eye(2), np.zeros((2, 2))).tolist() == [[1.0], [2.0]]
 
 
 def test_lost_contact_shows_where_a_coefficient_reaches_its_bound(paper_machine):

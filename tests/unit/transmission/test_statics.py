@@ -10,6 +10,7 @@ from references import against, agrees
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.linear import linear_law
+from facegear.transmission import dense_statics
 from facegear.transmission.dense_statics import Contacts, Line
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side
@@ -148,3 +149,18 @@ def test_the_line_search_of_the_statics_stops_where_the_slope_comes_to_zero(
 def test_a_mesh_that_next_to_never_moves_leaves_the_line_search_to_the_others():
     line = Line(-1.0, 1.0, np.zeros(1), np.array([1e-320]), dead_zones(np.ones(1), 1e-4))
     assert line.minimum() == pytest.approx(1.0)
+
+
+def test_a_round_of_the_statics_ends_with_the_whole_step_that_presses_the_same_contacts(
+    machine_of, monkeypatch
+):
+    """It went on until a step moved nothing: one more solution of the equations in each round."""
+    solved = []
+    plain = np.linalg.solve
+    monkeypatch.setattr(np.linalg, "solve", lambda *given: solved.append(1) or plain(*given))
+    shortened = static_equilibrium(machine_of(backlash=0.0)).displacements
+    fewer = len(solved)
+    monkeypatch.setattr(dense_statics, "WHOLE", -1.0)
+    exact = static_equilibrium(machine_of(backlash=0.0)).displacements
+    assert 1.25 * fewer < len(solved) - fewer
+    np.testing.assert_allclose(shortened, exact, rtol=0.0, atol=1e-12 * np.abs(exact).max())
