@@ -92,6 +92,7 @@ def test_the_modules_of_a_rule_are_imported_once_for_all_its_jobs(run, tmp_path)
         ("import threading, os; threading.Timer(0.2, lambda: os._exit(6)).start()", 6),
         ("import sys; sys.stdout.close()", 0),
         ("import sys; sys.stdout = None", 0),
+        ("import sys; sys.stdout = object()", 120),
         ("import sys; sys.stdout = open('/dev/full', 'w'); print('lost')", 120),
     ],
 )

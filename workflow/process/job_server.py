@@ -168,9 +168,9 @@ def leave_after(work: Callable[[], object]) -> NoReturn:
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         try:
-            if stream is not None and not stream.closed:
+            if stream is not None and not getattr(stream, "closed", False):
                 stream.flush()
-        except OSError:
+        except Exception:
             code = LOST
     os._exit(code & 255)
 
