@@ -246,6 +246,22 @@ def test_a_script_of_another_snakemake_is_started_by_it(scripts, monkeypatch, na
     assert job.started == "stage.py"
 
 
+def test_what_another_snakemake_hands_to_its_own_names_is_handed_on(scripts, monkeypatch):
+    """It ended in a TypeError."""
+
+    def execute_script(job, file, edit, shell):
+        job.started = file, edit, shell
+
+    monkeypatch.setattr(scripts, "execute_script", execute_script)
+    assert engine.run_scripts_by(lambda script: None)
+    job = scripts()
+    job.execute_script("stage.py", True, shell="sh")
+    assert job.started == ("stage.py", True, "sh")
+    workflow = SimpleNamespace(_build_dag=lambda *given, **named: (given, named))
+    assert engine.before_planning(workflow, lambda: None)
+    assert workflow._build_dag(1, forced=2) == ((1,), {"forced": 2})
+
+
 def test_without_scripts_or_a_plan_snakemake_goes_on_as_ever(scripts, monkeypatch):
     assert not engine.before_planning(SimpleNamespace(), None)
     monkeypatch.setattr(engine, "import_module", lambda name: SimpleNamespace())

@@ -75,10 +75,10 @@ def before_planning(workflow: Any, begin: Callable[[], None]) -> bool:
     if plan is None:
         return False
 
-    def begin_and_plan() -> None:
+    def begin_and_plan(*given: Any, **named: Any) -> Any:
         if works_here(workflow):
             begin()
-        plan()
+        return plan(*given, **named)
 
     workflow._build_dag = begin_and_plan
     return True
@@ -96,11 +96,11 @@ def run_scripts_by(run: Callable[[Script], int | None]) -> bool:
     except (ImportError, AttributeError):
         return False
 
-    def execute_script(job: Any, file: str, edit: bool = False) -> None:
+    def execute_script(job: Any, file: str, *given: Any, **named: Any) -> None:
         script = _plain_script(job, file, benchmarked)
         code = run(script) if script else None
         if code is None:
-            start_python(job, file, edit=edit)
+            start_python(job, file, *given, **named)
         elif code:
             raise subprocess.CalledProcessError(code, [sys.executable, file])
 
