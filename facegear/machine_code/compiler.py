@@ -1,6 +1,7 @@
 """Decorators for compiled functions; the plain `njit` where the version of numba is not known."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
 from typing import Any, Protocol
@@ -8,6 +9,7 @@ from typing import Any, Protocol
 from numba import njit
 from numba.extending import overload
 
+from facegear.machine_code.kept import NotStored
 from facegear.machine_code.versions import NUMBA_IS_KNOWN, warn_once
 
 PRIVATE_OPTIONS = ("_nrt",)
@@ -39,6 +41,20 @@ def compiler(*sources: Path, announced: str = "", **options: Any) -> Decorator:
         return stored(*sources, announced=announced, **options)
     warn_once()
     return njit(**_public(options))
+
+
+@contextmanager
+def nothing_compiled() -> Iterator[None]:
+    """Have functions raise NotStored where their machine code is not stored, instead of being compiled."""
+    if not NUMBA_IS_KNOWN:
+        raise NotStored
+    from facegear.machine_code.stored import SourcesCache
+
+    SourcesCache.compiles = False
+    try:
+        yield
+    finally:
+        SourcesCache.compiles = True
 
 
 def for_callers(**options: Any) -> Decorator:

@@ -47,6 +47,9 @@ class SourcesCache(_Cache):
     the others wait for what it stores.
     """
 
+    compiles = True
+    """Whether the caller may compile what is not found."""
+
     def __init__(self, function: Callable[..., Any], text: str, announced: str) -> None:
         self._function = function
         self._text = text
@@ -64,6 +67,8 @@ class SourcesCache(_Cache):
         processor = target_context.codegen().magic_tuple()
         name = self._name(sig, processor)
         content = kept.read(name) or self._shipped(sig, processor)
+        if content is None and not self.compiles:
+            raise kept.NotStored(name)
         if content is None and name not in self._locks:
             if (lock := _wait(name)) is not None:
                 self._locks[name] = lock

@@ -150,6 +150,7 @@ class Stage:
       or where its file is asked for by name
     - section: optional section of the config without which there is nothing to do
     - resumable: file beside which finished parts are kept, so that a killed job goes on after the last
+    - runs: stages whose machine code its jobs run
     - local: short enough for the computer that submits jobs to a cluster
     - priority: long jobs, and those that long ones wait for, start first
     """
@@ -167,6 +168,7 @@ class Stage:
     folder: str = ""
     memory_mb: int | None = None
     minutes: int | None = None
+    runs: tuple[str, ...] = ()
     local: bool = False
     priority: int = 0
 

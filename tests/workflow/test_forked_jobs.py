@@ -32,24 +32,36 @@ def jobs(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(tmp_path_factory.mktemp("run"))
         patch.setenv("PYTHONPATH", str(ROOT))
-        jobs = ForkedJobs(lambda rule: {"figures": ["colorsys"]}.get(rule, []))
+        jobs = ForkedJobs(
+            lambda rule: {"figures": ["colorsys"]}.get(rule, []),
+            lambda rule: {
+                "sweep": [("logging:addLevelName", {"level": 5, "levelName": "loaded"}), ("logging:none", {})]
+            }.get(rule, []),
+        )
         jobs.start()
         yield jobs
 
 
 @pytest.fixture
-def run(jobs, tmp_path, monkeypatch):
+def used():
+    """What the script that ran last has used, at its end."""
+    return []
+
+
+@pytest.fixture
+def run(jobs, tmp_path, monkeypatch, used):
     """Exit code of a text run as a script of this folder, and the processes that were watched."""
     monkeypatch.chdir(tmp_path)
 
     def run(text, rule="modal", threads=1, temporary=""):
         (tmp_path / "stage.py").write_text(text)
         watched = []
+        used.clear()
 
         @contextmanager
         def watch(process):
             watched.append(psutil.Process(process))
-            yield
+            yield used.append
 
         return jobs.run(Script(rule, "stage.py", threads, temporary, watch)), watched
 
@@ -78,6 +90,52 @@ def test_the_modules_of_a_rule_are_imported_once_for_all_its_jobs(run, tmp_path)
     text = "import sys; from pathlib import Path; Path('seen').write_text(str('colorsys' in sys.modules))"
     assert run(text)[0] == 0 and (tmp_path / "seen").read_text() == "False"
     assert run(text, rule="figures")[0] == 0 and (tmp_path / "seen").read_text() == "True"
+
+
+def test_machine_code_of_a_rule_is_loaded_once_for_all_its_jobs_and_what_cannot_be_loaded_stops_none(
+    run, tmp_path
+):
+    """Each of a dozen jobs read and linked that of the time integration, for a third of a second."""
+    text = "import logging; from pathlib import Path; Path('seen').write_text(logging.getLevelName(5))"
+    assert run(text, rule="sweep")[0] == 0
+    assert (tmp_path / "seen").read_text() == "loaded"
+
+
+def test_what_a_job_has_used_counts_from_its_begin_to_its_end(run, used):
+    """Samples every half second missed all of a short job, and of any other what came after the last one."""
+    text = """
+import time
+kept, start = b"1" * 400_000_000, time.process_time()
+while time.process_time() < start + 0.3:
+    pass
+"""
+    assert run(text)[0] == 0 and len(used) == 1
+    assert used[0].processor >= 0.3 and used[0].memory >= 4e8
+
+
+def test_what_a_job_has_used_is_written_to_its_benchmark(scripts):
+    from snakemake.benchmark import BenchmarkRecord
+
+    def run(script):
+        with script.watched(17) as note:
+            note(engine.Used(processor=1.5, memory=2**28, read=0, written=2**20))
+        return 0
+
+    assert engine.run_scripts_by(run)
+    job = scripts()
+    job.bench_record = BenchmarkRecord()
+    job.execute_script("stage.py")
+    row = dict(zip(BenchmarkRecord.get_header(), job.bench_record.to_tsv(False).split("\t"), strict=True))
+    wanted = {"cpu_time": "1.50", "max_rss": "256.00", "io_in": "0.00", "io_out": "1.00", "max_pss": "-"}
+    assert wanted.items() <= row.items() and not job.bench_record.errors
+
+
+def test_a_benchmark_of_another_snakemake_is_measured_by_it(scripts):
+    assert engine.run_scripts_by(lambda script: 0)
+    job = scripts()
+    job.bench_record = SimpleNamespace(cpu_time=0)
+    job.execute_script("stage.py")
+    assert job.started == "stage.py"
 
 
 @pytest.mark.parametrize(
@@ -121,7 +179,7 @@ def test_no_copy_is_made_where_the_system_has_no_room_for_it(monkeypatch):
     ours, theirs = socket.socketpair()
     working = {}
     with ours, theirs:
-        ours.sendall(b'{"modules": []}\n')
+        ours.sendall(b'{"modules": [], "machine_code": []}\n')
         job_server._begin(theirs, working, ())
         assert ours.recv(1) == b"" and not working
     gc.unfreeze()
@@ -132,7 +190,7 @@ def test_a_run_that_ended_before_it_heard_of_a_job_does_not_watch_it():
     ours, theirs = socket.socketpair()
     with theirs:
         with ours:
-            theirs.sendall(b"17\n")
+            theirs.sendall(b"[17]\n")
         assert not job_server._is_watched(theirs)
 
 
@@ -158,7 +216,7 @@ def test_a_script_begins_when_it_is_watched(jobs, tmp_path, monkeypatch):
     def watch(process):
         time.sleep(0.3)
         assert psutil.pid_exists(process) and not Path("begun").exists()
-        yield
+        yield lambda used: None
 
     assert jobs.run(Script("modal", "stage.py", 1, "", watch)) == 0 and Path("begun").exists()
 
@@ -186,7 +244,7 @@ def test_a_job_whose_server_is_killed_is_ended_and_the_next_one_is_python_s_own(
     def watch(number):
         watched.append(process := psutil.Process(number))
         process.parent().kill()
-        yield
+        yield lambda used: pytest.fail("nobody knows what it has used")
 
     script = Script("modal", "stage.py", 1, "", watch)
     assert jobs.run(script) == -signal.SIGKILL
@@ -208,7 +266,7 @@ class Job:
 def scripts(monkeypatch):
     """The class of scripts of a Snakemake, which the test may change."""
     scripts = type("PythonScript", (Job,), {"execute_script": Job.execute_script})
-    module = SimpleNamespace(PythonScript=scripts, benchmarked=None)
+    module = SimpleNamespace(PythonScript=scripts)
     monkeypatch.setattr(engine, "import_module", lambda name: module)
     return scripts
 
@@ -299,7 +357,7 @@ from workflow.process.engine import Script
 from workflow.process.forked_jobs import ForkedJobs
 jobs = ForkedJobs(lambda rule: [])
 jobs.start()
-watched = lambda process: nullcontext(Path("working").write_text(f"{process}."))
+watched = lambda process: nullcontext(Path("working").write_text(f"{process}.") and (lambda used: None))
 jobs.run(Script("modal", "long.py", 1, "", watched))
 """
 
@@ -319,4 +377,4 @@ def test_a_job_that_a_killed_run_left_here_is_ended_and_our_own_server_is_not(tm
     own.start()
     assert end_orphans()
     assert not psutil.pid_exists(int(Path("working").read_text()[:-1])) and not end_orphans()
-    assert own.run(Script("modal", "short.py", 1, "", lambda process: nullcontext())) == 0
+    assert own.run(Script("modal", "short.py", 1, "", lambda process: nullcontext(lambda used: None))) == 0

@@ -46,28 +46,43 @@ def test_a_snakemake_without_these_names_shows_more_and_trusts_less():
 
 
 def test_parameters_are_written_without_pandas_where_snakemake_can_and_else_as_it_likes(monkeypatch):
-    plain = SimpleNamespace(_serialize_param_builtin=repr)
-    known = SimpleNamespace(PersistenceBase=plain)
+    plain, scripts = SimpleNamespace(_serialize_param_builtin=repr), SimpleNamespace(_safely_store_params=str)
+    known = SimpleNamespace(PersistenceBase=plain, Snakemake=scripts)
     monkeypatch.setattr(engine, "import_module", lambda name: known)
     assert engine.write_parameters_without_pandas() and plain._serialize_param is repr
+    assert scripts._safely_store_params is not str
     known.PersistenceBase = SimpleNamespace(_serialize_param=str)
     assert not engine.write_parameters_without_pandas() and known.PersistenceBase._serialize_param is str
+    known.PersistenceBase = SimpleNamespace(_serialize_param_builtin=repr, _serialize_param=str)
+    known.Snakemake = SimpleNamespace()
+    assert not engine.write_parameters_without_pandas() and known.PersistenceBase._serialize_param is str
+
+
+def test_a_script_finds_the_parameters_that_its_job_was_given_though_no_table_was_looked_for():
+    import snakemake.api  # noqa: F401
+    from snakemake.iocontainers import Params, Snakemake
+
+    params = Params(fromdict={"needs": {"teeth": 23}, "code": "abc"})
+    script = SimpleNamespace()
+    engine._store_parameters(script, params)
+    restored = Snakemake.params.fget(script)
+    assert dict(restored.items()) == {"needs": {"teeth": 23}, "code": "abc"}
+    assert restored.needs == {"teeth": 23}
 
 
 def test_the_snakemake_that_is_locked_has_every_name():
     """Where this fails a run still works, but look what `workflow.process.engine` can do with the new one."""
     import snakemake.api  # noqa: F401  (its parts import each other in this order alone)
-    from snakemake.benchmark import benchmarked
+    from snakemake.benchmark import BenchmarkRecord
+    from snakemake.iocontainers import Snakemake
     from snakemake.persistence import PersistenceBase
     from snakemake.script import PythonScript
     from snakemake.workflow import Workflow
     from snakemake_interface_logger_plugins.common import LogEvent
 
     assert hasattr(PersistenceBase, "_serialize_param_builtin") and hasattr(PersistenceBase, "finished")
-    assert callable(benchmarked) and list(signature(PythonScript.execute_script).parameters)[1:] == [
-        "fname",
-        "edit",
-    ]
+    assert hasattr(Snakemake, "_safely_store_params") and vars(BenchmarkRecord()).keys() >= engine.RECORDED
+    assert list(signature(PythonScript.execute_script).parameters)[1:] == ["fname", "edit"]
     for name in ("_build_dag", "dryrun", "non_local_exec", "async_run", "persistence", "overwrite_workdir"):
         assert hasattr(Workflow, name) or name in Workflow.__dataclass_fields__, name
     assert {"JOB_INFO", "JOB_FINISHED", "JOB_ERROR"} <= {event.name for event in LogEvent}

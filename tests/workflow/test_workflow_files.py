@@ -26,7 +26,7 @@ def record(rule):
     return {
         "log": list(rule.log), "benchmark": rule.benchmark, "threads": rule.resources["_cores"].value,
         "memory": "mem_mb" in rule.resources, "runtime": "runtime" in rule.resources, "message": rule.message,
-        "environment": rule.conda_env, "code": rule.params.get("code"), "script": rule.script,
+        "environment": rule.conda_env, "code": rule.params["code"](None), "script": rule.script,
         "outputs": [str(file) for file in rule.output],
         "taken": [list(rule.input.keys()), sorted({*rule.params.keys()} - {"code", "needs"})],
         "sections": [*values(SimpleNamespace(case=CASE))] if values else ["none"],

@@ -5,12 +5,26 @@ Found in Snakemake 9.27. Where a name is missing a run does more work or prints 
 
 import subprocess
 import sys
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import AbstractContextManager, nullcontext
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
+
+RECORDED = {"running_time", "cpu_time", "cpu_usage", "max_rss", "io_in", "io_out", "data_collected"}
+"""What is written to the record of a benchmark."""
+
+
+@dataclass(frozen=True)
+class Used:
+    """What a process has used: processor (s), memory at most, data read from and written to disks (bytes)."""
+
+    processor: float
+    memory: float
+    read: float
+    written: float
 
 
 @dataclass(frozen=True)
@@ -19,27 +33,36 @@ class Script:
 
     - file: its path
     - temporary: folder for temporary files, empty for that of the run
-    - watched: measures a process by its number, for the job's benchmark
+    - watched: around the life of a process, given by its number; takes what it has used, for its benchmark
     """
 
     rule: str
     file: str
     threads: int
     temporary: str
-    watched: Callable[[int], AbstractContextManager[Any]]
+    watched: Callable[[int], AbstractContextManager[Callable[[Used], None]]]
 
 
 def write_parameters_without_pandas() -> bool:
-    """Spare every start the import of pandas, 0.5 s, by which Snakemake asks whether a parameter is a table.
+    """Spare a run the import of pandas, 0.5 s, by which Snakemake asks whether a parameter is a table.
 
     None is here. Returns whether Snakemake still writes parameters that way; else it goes on as it likes.
     """
     try:
         persistence = import_module("snakemake.persistence").PersistenceBase
-        persistence._serialize_param = persistence._serialize_param_builtin
+        plainly = persistence._serialize_param_builtin
+        scripts = import_module("snakemake.iocontainers").Snakemake
     except (ImportError, AttributeError):
         return False
+    if not hasattr(scripts, "_safely_store_params"):
+        return False
+    persistence._serialize_param, scripts._safely_store_params = plainly, _store_parameters
     return True
+
+
+def _store_parameters(script: Any, params: Any) -> None:
+    script._params_store, script._params_types = type(params)(toclone=list(params)), {}
+    script._params_store._take_names(params._get_names())
 
 
 def is_run(workflow: Any) -> bool:
@@ -91,13 +114,12 @@ def run_scripts_by(run: Callable[[Script], int | None]) -> bool:
     """
     try:
         scripts = import_module("snakemake.script").PythonScript
-        benchmarked = import_module("snakemake.benchmark").benchmarked
         start_python = scripts.execute_script
     except (ImportError, AttributeError):
         return False
 
     def execute_script(job: Any, file: str, *given: Any, **named: Any) -> None:
-        script = _plain_script(job, file, benchmarked)
+        script = _plain_script(job, file)
         code = run(script) if script else None
         if code is None:
             start_python(job, file, *given, **named)
@@ -108,21 +130,45 @@ def run_scripts_by(run: Callable[[Script], int | None]) -> bool:
     return True
 
 
-def _plain_script(job: Any, file: str, benchmarked: Callable[..., Any]) -> Script | None:
+def _plain_script(job: Any, file: str) -> Script | None:
     """The script of a job that runs in the environment of the run. Without an answer: none."""
     try:
         if job.container_img or job.conda_env or job.env_modules or job.shadow_dir:
             return None
         record = job.bench_record
+        if record and not all(hasattr(record, name) for name in RECORDED):
+            return None
         return Script(
             job.rulename,
             file,
             job.threads,
             job.resources.get("tmpdir") or "",
-            (lambda process: benchmarked(process, record)) if record else lambda process: nullcontext(),
+            lambda process: _measured(record) if record else nullcontext(lambda used: None),
         )
     except AttributeError:
         return None
+
+
+@contextmanager
+def _measured(record: Any) -> Iterator[Callable[[Used], None]]:
+    """Fill the record of a benchmark with the time until the end, and with what the process has used then.
+
+    Snakemake would look at the process every half second, which takes some hundredths of a core, and would
+    miss what happens after its last look. How much of its memory the process shares with others is not said.
+    """
+
+    def note(used: Used) -> None:
+        record.cpu_time, record.cpu_usage = used.processor, 100 * used.processor
+        record.max_rss, record.io_in, record.io_out = (
+            size / 2**20 for size in (used.memory, used.read, used.written)
+        )
+        record.data_collected = True
+
+    start = time.time()
+    try:
+        yield note
+    finally:
+        record.running_time = time.time() - start
 
 
 def planned_jobs(workflow: Any) -> Iterable[Any]:

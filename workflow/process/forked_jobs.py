@@ -11,10 +11,11 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from typing import Any
 
-from workflow.process.engine import Script
+from workflow.process.engine import Script, Used
 
 VARIABLE = "FACEGEAR_FORK"
 """Environment variable; with the value `no` Python is started for each job."""
@@ -33,11 +34,16 @@ ALONE = {**dict.fromkeys(THREADS, "1"), "JE_ARROW_MALLOC_CONF": "background_thre
 class ForkedJobs:
     """The connection to the server of a run.
 
-    modules: what a rule's script will import, by the rule's name
+    - modules: what a rule's script will import, by the rule's name
+    - machine_code: functions (`module:function`, arguments) that load the machine code which it will run
     """
 
-    def __init__(self, modules: Callable[[str], Sequence[str]]) -> None:
-        self._modules = modules
+    def __init__(
+        self,
+        modules: Callable[[str], Sequence[str]],
+        machine_code: Callable[[str], Sequence[tuple[str, Mapping[str, Any]]]] = lambda rule: (),
+    ) -> None:
+        self._modules, self._machine_code = modules, machine_code
         self._control: socket.socket | None = None
         self._turn = threading.Lock()
 
@@ -65,6 +71,7 @@ class ForkedJobs:
                 **dict.fromkeys(FOLDERS if script.temporary else (), script.temporary),
             },
             "modules": self._modules(script.rule),
+            "machine_code": self._machine_code(script.rule),
         }
         request = json.dumps(asked).encode() + b"\n"
         ours, theirs = socket.socketpair()
@@ -73,16 +80,19 @@ class ForkedJobs:
                 with theirs, self._turn:
                     socket.send_fds(self._control, [b"."], [theirs.fileno()])
                 ours.sendall(request)
-                process = int(answers.readline())
+                (process,) = json.loads(answers.readline())
             except (OSError, ValueError):  # no server any more, or one that may not be copied
                 return None
-            with script.watched(process):
+            with script.watched(process) as note:
                 with suppress(OSError):
                     ours.sendall(b"\n")
                 ended = answers.readline()
-            if not ended:
-                _kill(process)
-            return int(ended or -signal.SIGKILL)
+                if not ended:
+                    _kill(process)
+                    return -signal.SIGKILL
+                code, *used = json.loads(ended)
+                note(Used(*used))
+            return int(code)
 
 
 def started() -> tuple[socket.socket, subprocess.Popen[bytes]]:

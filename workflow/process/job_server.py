@@ -37,6 +37,10 @@ LOST = 120
 """Exit code of Python where what it has printed cannot be written."""
 
 
+KILOBYTE, BLOCK = 1024, 512
+"""Bytes in the units of the system's account of a process."""
+
+
 def main() -> None:
     """Serve on the connection whose number the command line ends with."""
     serve(socket.socket(fileno=int(sys.argv[-1])), list(COMMON))
@@ -45,9 +49,10 @@ def main() -> None:
 def serve(control: socket.socket, modules: list[str]) -> None:
     """Answer requests until the other end of `control` is closed, and import modules as long as none comes.
 
-    Each byte of `control` brings the connection of one job, on which its script, folder, environment and
-    modules are named. The answer is the number of its process, and at its end its exit code; nothing where no
-    copy can be made. Jobs that still work when the run is gone go on, as those that Python starts would.
+    Each byte of `control` brings the connection of one job, on which its script, folder, environment, modules
+    and machine code are named. What is stored of the machine code is loaded here, once for all. The answer is
+    the number of its process, and at its end its exit code and what it has used; nothing where no copy can be
+    made. Jobs that still work when the run is gone go on, as those that Python starts would.
     """
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # Ctrl-C ends the run, which ends its jobs
     ended, ends = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
@@ -104,7 +109,15 @@ def _asked(connection: socket.socket) -> dict[str, Any] | None:
     except (OSError, ValueError):
         return None
     _import(asked["modules"])
+    _load(asked["machine_code"])
     return asked
+
+
+def _load(functions: Iterable[tuple[str, dict[str, Any]]]) -> None:
+    """Call functions, `module:function` with arguments, that load machine code, where it is stored."""
+    for name, arguments in functions:
+        with suppress(Exception), import_module("facegear.machine_code.compiler").nothing_compiled():
+            import_module("facegear.pipeline.stage").load(name)(**arguments)
 
 
 def _copied() -> int | None:
@@ -129,15 +142,23 @@ def _is_alone() -> bool:
 
 def _report_ended(jobs: dict[int, socket.socket]) -> None:
     with suppress(ChildProcessError):
-        while (ended := os.waitpid(-1, os.WNOHANG))[0]:
-            if ended[0] in jobs:  # else something that an import has started
-                with jobs.pop(ended[0]) as connection:
-                    _tell(connection, os.waitstatus_to_exitcode(ended[1]))
+        while (ended := os.wait4(-1, os.WNOHANG))[0]:
+            process, status, used = ended
+            if process in jobs:  # else something that an import has started
+                with jobs.pop(process) as connection:
+                    _tell(
+                        connection,
+                        os.waitstatus_to_exitcode(status),
+                        used.ru_utime + used.ru_stime,
+                        used.ru_maxrss * KILOBYTE,
+                        used.ru_inblock * BLOCK,
+                        used.ru_oublock * BLOCK,
+                    )
 
 
-def _tell(connection: socket.socket, number: int) -> None:
+def _tell(connection: socket.socket, *numbers: float) -> None:
     with suppress(OSError):  # the run may be gone
-        connection.sendall(f"{number}\n".encode())
+        connection.sendall(json.dumps(numbers).encode() + b"\n")
 
 
 def _run(asked: dict[str, Any]) -> NoReturn:

@@ -71,7 +71,7 @@ wildcard_constraints:
     case="|".join(re.escape(case) for case in CASES),
 
 
-FORKED = ForkedJobs(lambda rule: MODULES.get(rule, ()))
+FORKED = ForkedJobs(lambda rule: MODULES.get(rule, ()), lambda rule: machine_code_of(rule))
 if before_planning(workflow, FORKED.start):
     run_scripts_by(FORKED.run)
 QUIET = quieten(workflow, logger)

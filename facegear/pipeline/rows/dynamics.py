@@ -5,6 +5,7 @@ from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
     HARMONICS,
+    INTEGRATION,
     MACHINE,
     MOVING,
     SPEED,
@@ -17,6 +18,7 @@ ROWS = (
     Stage(
         name="machine_code",
         title="Machine code of the time integration",
+        runs=INTEGRATION,
         needs={"mesh_law": "mesh_stiffness.mesh_law"},
         folder="dynamics",
         asked=asked.machine,
@@ -25,6 +27,7 @@ ROWS = (
     Stage(
         name="machine_code_abreast",
         title="Machine code of machines side by side",
+        runs=("machine_code_abreast",),
         folder="dynamics",
         asked=asked.side_by_side,
         priority=70,
@@ -32,6 +35,7 @@ ROWS = (
     Stage(
         name="dynamics_response",
         title="Response at the nominal speed",
+        runs=INTEGRATION,
         needs={**MACHINE, **ACCURACY, **SPEED},
         upstream=MOVING,
         files={
@@ -82,6 +86,7 @@ ROWS = (
     Stage(
         name="dynamics_sweep_chunk",
         title="Speed sweep, one chunk",
+        runs=(*INTEGRATION, "machine_code_abreast"),
         needs={**MACHINE, **SWEEP},
         upstream=MOVING,
         files={
@@ -96,6 +101,7 @@ ROWS = (
     Stage(
         name="dynamics_sweep",
         title="Jumps and resonances",
+        runs=(*INTEGRATION, "machine_code_abreast"),
         needs={**MACHINE, **SWEEP},
         upstream={**MOVING, "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks)},
         files={

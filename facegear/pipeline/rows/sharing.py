@@ -5,6 +5,7 @@ from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
     HARMONICS,
+    INTEGRATION,
     MACHINE,
     MOVING,
     SHARING,
@@ -19,6 +20,7 @@ ROWS = (
     Stage(
         name="load_sharing",
         title="Load sharing at the nominal speed",
+        runs=INTEGRATION,
         needs=SHARING,
         upstream=MOVING,
         files={
@@ -83,6 +85,7 @@ ROWS = (
     Stage(
         name="load_sharing_reference",
         title="Load sharing at rest, running slowly and over a range of speeds",
+        runs=INTEGRATION,
         needs={
             **MACHINE,
             **ACCURACY,
@@ -132,6 +135,7 @@ ROWS = (
     Stage(
         name="following",
         title="Load sharing of the running machine while its runouts turn",
+        runs=INTEGRATION,
         needs={
             **MACHINE,
             **ACCURACY,

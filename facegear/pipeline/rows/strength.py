@@ -6,6 +6,7 @@ from facegear.pipeline.rows.shared import (
     BODIES,
     FLANKS,
     HARMONICS,
+    INTEGRATION,
     MACHINE,
     MESHES,
     MOVING,
@@ -85,6 +86,7 @@ LOAD_ROWS = (
     Stage(
         name="duty_loads",
         title="Loads of the running machine in every bin of the duty cycle",
+        runs=INTEGRATION,
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
         section="strength",
         upstream={**MOVING, **TOOTH_ERRORS},

@@ -115,6 +115,18 @@ def test_kernels_run_where_no_cache_can_be_written(tmp_path, clone):
     assert printed(tmp_path, folder) == printed(tmp_path, folder) == ["4.0", "0"]
 
 
+def test_where_nothing_is_to_be_compiled_what_is_stored_is_loaded_and_what_is_not_is_refused(tmp_path, clone):
+    """Else the process that jobs are copies of would compile for a minute while they wait for it."""
+    code = (
+        "from caller import caller\nfrom facegear.machine_code.compiler import nothing_compiled\n"
+        "try:\n    with nothing_compiled():\n        print(caller(1.0))\n"
+        "except LookupError as error:\n    print(type(error).__name__)\n    print(caller(1.0))"
+    )
+    known = environment(tmp_path, clone("one"))
+    first, second = (run_together([code], known)[0].stdout.split() for _ in range(2))
+    assert first == ["NotStored", "4.0"] and second == ["4.0"]
+
+
 def test_code_of_a_release_is_run_from_an_empty_cache_and_compiled_where_it_is_damaged(
     tmp_path, clone, monkeypatch
 ):

@@ -11,6 +11,12 @@ MODULES = {stage.name: stage.modules for stage in STAGES.values()} | {
 """Modules that decide the files of a rule, beside its script."""
 
 
+def machine_code_of(rule):
+    """Functions that load what jobs of a rule run, with their arguments."""
+    codes = [STAGES[name] for name in STAGES[rule].runs] if rule in STAGES else []
+    return [(code.function, resolved_needs(code.needs, BASE)) for code in codes]
+
+
 def inputs(upstream, stage):
     """Files of earlier stages that a stage, or its figures, take, each from the case whose files are shared."""
     return {name: read_from(source, stage.name) for name, source in upstream.items()}
