@@ -55,9 +55,9 @@ class Harmonics:
     @cached_property
     def amplitudes(self) -> Array:
         """Amplitude of each order, shape (H+1,), N/m, read-only; the first entry is the mean."""
-        found = np.hypot(self.a, self.b)
-        found.flags.writeable = False
-        return found
+        sizes = np.hypot(self.a, self.b)
+        sizes.flags.writeable = False
+        return sizes
 
     def __call__(self, cycles: ArrayLike) -> Array:
         """Stiffness at `cycles` = w t / 2 pi (mesh periods since the start), any shape, N/m."""
