@@ -91,12 +91,28 @@ def movable(
 
 def moved(values: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
     """Values made by `movable` with the changes added to their nominal values; the others are shared."""
-    changed: Any = values
+    changed: dict[str, Any] = dict(values)
+    copies: dict[str, Any] = {}
     for key, added in changes.items():
-        parts = key.split(".")
-        inside, last = _holder(changed, parts)
-        changed = _with(changed, parts, inside[last] + added)
-    return dict(changed)
+        path, _, last = key.rpartition(".")
+        holder = _own_copy(changed, path, copies)
+        holder[_index_of(holder, last)] += added
+    return changed
+
+
+def _own_copy(changed: dict[str, Any], path: str, copies: dict[str, Any]) -> Any:
+    """What stands at a dotted path of values, copied with all that it stands in; `copies` has what was copied
+    before, by path.
+    """
+    if not path:
+        return changed
+    if path not in copies:
+        above, _, part = path.rpartition(".")
+        holder = _own_copy(changed, above, copies)
+        index = _index_of(holder, part)
+        inside = holder[index]
+        copies[path] = holder[index] = list(inside) if isinstance(inside, list | tuple) else dict(inside)
+    return copies[path]
 
 
 def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
@@ -110,18 +126,13 @@ def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
 
 def placed(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
     """Values made by `movable` with numbers in the place of nominal ones; those of teeth are rounded."""
-    changed: Any = values
+    changed: dict[str, Any] = dict(values)
+    copies: dict[str, Any] = {}
     for key, number in numbers.items():
-        changed = _with(changed, key.split("."), round(number) if key.endswith("teeth") else number)
-    return dict(changed)
-
-
-def _with(values: Any, parts: list[str], number: float) -> Any:
-    """A copy of nested mappings and lists with a number at a dotted key; it shares all else."""
-    copied: Any = list(values) if isinstance(values, list | tuple) else dict(values)
-    index = _index_of(values, parts[0])
-    copied[index] = _with(values[index], parts[1:], number) if len(parts) > 1 else number
-    return copied
+        path, _, last = key.rpartition(".")
+        holder = _own_copy(changed, path, copies)
+        holder[_index_of(holder, last)] = round(number) if key.endswith("teeth") else number
+    return changed
 
 
 def _to_each_side(transmission: Mapping[str, Any]) -> None:
