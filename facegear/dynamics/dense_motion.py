@@ -10,6 +10,7 @@ from facegear.dynamics.steady_state.mesh_samples import errors_of_period
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.track import Track
 from facegear.mesh_law.law import beyond_edges
+from facegear.transmission.flanks import carried
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +43,11 @@ class DenseMotion:
             return forces
         drive, back = np.split(forces, 2)
         return drive - back
+
+    @cached_property
+    def loads(self) -> Array:
+        """The same without those that are rounding beside the largest."""
+        return carried(self.forces)
 
     @property
     def past_law(self) -> Array:

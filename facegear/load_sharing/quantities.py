@@ -19,7 +19,7 @@ from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.quantity_names import PAST_LAW, quantity_names
 from facegear.load_sharing.run import measured_motion
 from facegear.load_sharing.tally import tally
-from facegear.transmission.flanks import carried, past_law
+from facegear.transmission.flanks import past_law
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
 
@@ -78,7 +78,7 @@ def dynamic_quantities(
     """
     model = build_model(machine)
     motion = measured_motion(model, speed_rpm, settings, options, guide)
-    forces = carried(motion.forces)
+    forces = motion.loads
     groups, shared = _groups(machine.layout)
     counted = tally(
         np.concatenate([np.maximum(forces, 0.0), np.maximum(-forces, 0.0)]), motion.per_period, groups

@@ -27,7 +27,6 @@ from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statistics import Average, average, defined_mean
-from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
 
 WATCHED, TORUS_WATCHED = 2, 8
@@ -218,7 +217,7 @@ def disturb(model: Model, start: State, spread: float, random: np.random.Generat
 
 def cycle_forces(motion: DenseMotion) -> Array:
     """Elastic mesh forces by cycle, shape (meshes, cycles, samples), N."""
-    return carried(motion.forces).reshape(len(motion.forces), -1, motion.per_period)
+    return motion.loads.reshape(len(motion.loads), -1, motion.per_period)
 
 
 def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> tuple[Array, Mask, Average]:

@@ -79,8 +79,8 @@ def mesh_fractions(system: System, fractions: Array, each: Array) -> Array:
     """
     lower, upper = system.lower[: system.contacts], system.upper[: system.contacts]
     touching = fractions[1] if system.two_flanks else 1.0 - fractions[0]
-    depths = np.maximum(each - upper, lower - each)
-    never = (upper > lower) & _never_pressed(depths, touching)
+    deepest = np.maximum(each.max(axis=0) - upper, lower - each.min(axis=0))
+    never = (upper > lower) & _never_pressed(deepest, touching, len(each))
     if not system.two_flanks:
         return np.where(never, np.array([[1.0], [0.0], [0.0]]), fractions)
     drive, back = np.split(np.where(never, 0.0, touching), 2)
@@ -88,9 +88,8 @@ def mesh_fractions(system: System, fractions: Array, each: Array) -> Array:
     return np.stack([1.0 - drive - back + wedged, drive, back])
 
 
-def _never_pressed(depths: Array, fractions: Array) -> Mask:
+def _never_pressed(deepest: Array, fractions: Array, samples: int) -> Mask:
     """Which contacts touch for longer than a sample (fractions (m,)) without ever being pressed by more than
-    rounding; depths (K, m) beyond the edge.
+    rounding; deepest (m,) of the samples beyond the edge.
     """
-    deepest = depths.max(axis=0)
-    return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (fractions * len(depths) > 1.0)
+    return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (fractions * samples > 1.0)
