@@ -20,10 +20,12 @@ from facegear.machine_code.lanes import (
     take,
 )
 from facegear.machine_code.memory import aligned
+from facegear.machine_code.records import Record
 
 inlined = for_callers(**FAST)
 
 
+@Record.register
 class FourierScratch(NamedTuple):
     """powers (rows, harmonics): Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0,
     shared and only read; parts (2, harmonics, LANES): scratch space. angles (2, harmonics): cosines and sines

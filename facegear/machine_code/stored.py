@@ -14,7 +14,8 @@ from typing import Any, TextIO
 
 import llvmlite
 import numba
-from numba import njit, types
+from llvmlite import binding
+from numba import config, njit, types
 from numba.core.caching import _Cache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
@@ -23,7 +24,7 @@ from numba.core.serialize import dumps
 from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
-from facegear.machine_code import kept, shipped
+from facegear.machine_code import addresses, kept, shipped
 from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
@@ -32,7 +33,7 @@ PATIENCE = 300.0
 
 def _records(kind: Any) -> Iterator[type]:
     """All classes of NamedTuples that a numba type consists of."""
-    if isinstance(kind, types.NamedTuple):
+    if isinstance(kind, types.NamedTuple | addresses.Address):
         yield kind.instance_class
     for part in kind.types if isinstance(kind, types.BaseTuple) else ():
         yield from _records(part)
@@ -141,20 +142,36 @@ def _wait(name: str) -> TextIO | None:
     return None
 
 
-def stored(*sources: Path, announced: str = "", **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Decorator that compiles a function and stores its machine code by the text of all of `sources`, and of
-    the function's own file. Compiled callers have it as a part of their own code, called or inlined as the
-    compiler sees fit: only what Python calls is compiled to machine code.
+class _CodeAsWritten(JITCodeLibrary):
+    """LLVM code whose loops are neither unrolled nor made vectors.
+
+    Those of the time integration are short, or vectors already: LLVM would make twice the code of them, which
+    takes three times as long to compile and runs no faster.
     """
 
-    def compiled(function: Callable[..., Any]) -> Any:
-        dispatcher, part = njit(**options)(function), inlined(**{"forceinline": False, **options})(function)
-        own = Path(function.__code__.co_filename)
-        dispatcher._cache = SourcesCache(function, text_of(*sources, own), announced)
-        dispatcher.get_call_template, dispatcher.get_overload = part.get_call_template, part.get_overload
-        return dispatcher
+    def _optimize_final_module(self) -> None:
+        module, codegen = self._final_module, self._codegen
+        passes, builder = codegen._module_pass_manager(
+            loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
+        )
+        passes.run(module, builder)
+        options = binding.create_pipeline_tuning_options(speed_level=config.OPT)
+        options.loop_unrolling = options.loop_vectorization = False
+        options.slp_vectorization = config.SLP_VECTORIZE
+        builder = binding.create_pass_builder(codegen._tm, options)
+        passes = builder.getModulePassManager()
+        passes.run(module, builder)
 
-    return compiled
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LowerAsWritten(NativeLowering):
+    _name = "lower_as_written"
+
+    def run_pass(self, state: Any) -> bool:
+        state.flags.no_cfunc_wrapper = True
+        state.library = _CodeAsWritten(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return bool(super().run_pass(state))
 
 
 class _CodeForCallers(JITCodeLibrary):
@@ -196,16 +213,46 @@ class _LowerForCallers(NativeLowering):
         return True
 
 
-class _ForCallers(Compiler):
-    def define_pipelines(self) -> list[Any]:
-        pipelines = super().define_pipelines()
-        for pipeline in pipelines:
-            pipeline.passes = [
-                (_LowerForCallers, name) if step is NativeLowering else (step, name)
-                for step, name in pipeline.passes
-            ]
-            pipeline.finalize()
-        return pipelines
+def _with(lowering: type[NativeLowering]) -> type[Compiler]:
+    """Numba's compiler with another way to make LLVM code."""
+
+    class Lowering(Compiler):
+        def define_pipelines(self) -> list[Any]:
+            pipelines = super().define_pipelines()
+            for pipeline in pipelines:
+                pipeline.passes = [
+                    (lowering, name) if step is NativeLowering else (step, name)
+                    for step, name in pipeline.passes
+                ]
+                pipeline.finalize()
+            return pipelines
+
+    return Lowering
+
+
+_AsWritten, _ForCallers = _with(_LowerAsWritten), _with(_LowerForCallers)
+
+
+def stored(
+    *sources: Path, announced: str = "", as_written: bool = False, **options: Any
+) -> Callable[[Callable[..., Any]], Any]:
+    """Decorator that compiles a function and stores its machine code by the text of all of `sources`, and of
+    the function's own file. Compiled callers have it as a part of their own code, called or inlined as the
+    compiler sees fit: only what Python calls is compiled to machine code.
+
+    as_written: no loop is unrolled or made vectors.
+    """
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        pipeline = _AsWritten if as_written else Compiler
+        dispatcher = njit(pipeline_class=pipeline, **options)(function)
+        part = inlined(**{"forceinline": False, **options})(function)
+        own = Path(function.__code__.co_filename)
+        dispatcher._cache = SourcesCache(function, text_of(*sources, own), announced)
+        dispatcher.get_call_template, dispatcher.get_overload = part.get_call_template, part.get_overload
+        return dispatcher
+
+    return compiled
 
 
 def inlined(**options: Any) -> Callable[[Callable[..., Any]], Any]:

@@ -8,6 +8,7 @@ from facegear.arrays import Array, Integers
 from facegear.machine_code.compiler import FAST, for_callers
 from facegear.machine_code.fourier import FourierScratch, fourier_terms, give, shifted
 from facegear.machine_code.lanes import load, multiply, multiply_add, splat
+from facegear.machine_code.records import Record
 from facegear.mesh_law import terms
 
 inlined = for_callers(**FAST)
@@ -19,6 +20,7 @@ class LinearHeld(NamedTuple):
     stiffness: Array
 
 
+@Record.register
 class LinearTerms(NamedTuple):
     """fourier (harmonics + 1, 2, width): the stiffness of each kind, sine part first; kind (M,) of each
     contact. pieces (pieces, degree + 1, width) add a polynomial of the phase since the last break.
@@ -29,6 +31,7 @@ class LinearTerms(NamedTuple):
     pieces: Array
 
 
+@Record.register
 class LinearSeries(NamedTuple):
     """slope (rows, width); per_kind and polynomial: scratch space."""
 

@@ -8,6 +8,7 @@ from facegear.arrays import Array, Integers
 from facegear.machine_code.compiler import FAST, for_callers
 from facegear.machine_code.fourier import FourierScratch, set_angle, terms_at_angle
 from facegear.machine_code.lanes import LANES, add, load, multiply, multiply_add, splat, store
+from facegear.machine_code.records import Record
 from facegear.mesh_law import terms
 from facegear.mesh_law.linear_terms import product_of, product_terms, values_ahead
 
@@ -25,6 +26,7 @@ class LoadDependentHeld(NamedTuple):
     kind: Integers
 
 
+@Record.register
 class LoadDependentTerms(NamedTuple):
     """table (kinds, L, harmonics + 1, 2, 4): series of the coefficients of the pieces, by powers of the
     amount since the piece began; levels (kinds, L) at which they begin; kind (M,) of each contact.
@@ -35,6 +37,7 @@ class LoadDependentTerms(NamedTuple):
     kind: Integers
 
 
+@Record.register
 class LoadDependentSeries(NamedTuple):
     """slope (rows, width); coefficients of the pieces that the contacts are in, zero where they are open;
     four (rows, 4): coefficients of one contact. With d the deflection the force is

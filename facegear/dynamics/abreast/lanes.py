@@ -10,10 +10,12 @@ from facegear.dynamics.abreast.wide import WIDTH
 from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
 from facegear.machine_code.fourier import fourier_scratch
 from facegear.machine_code.memory import aligned
+from facegear.machine_code.records import Record
 
 NONE = -1
 
 
+@Record.register
 class Tally(NamedTuple):
     """What lanes add up over a batch of periods, or over all periods of a machine; the last dimension is the
     lane.
@@ -39,6 +41,7 @@ class Tally(NamedTuple):
     stiffness: Array
 
 
+@Record.register
 class Lanes(NamedTuple):
     """The last dimension of all but the tables is the lane, and WIDTH long.
 

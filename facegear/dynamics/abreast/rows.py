@@ -7,9 +7,11 @@ import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.compiled import Packed, Sparse
+from facegear.machine_code.records import Record
 from facegear.mesh_law.linear_terms import LinearTerms
 
 
+@Record.register
 class Structure(NamedTuple):
     """What machines must share to run side by side.
 

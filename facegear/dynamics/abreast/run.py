@@ -35,8 +35,10 @@ from facegear.dynamics.abreast.wide import (
 from facegear.dynamics.integrator.advance import MAX_GUESSES, ROUNDING
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.periods import DONE, MAX_STEPS, NOT_FINITE, TOO_MANY_STEPS
+from facegear.machine_code.records import Record
 
 
+@Record.register
 class Queue(NamedTuple):
     """Machines that wait for a lane, and what they leave.
 

@@ -28,8 +28,10 @@ from facegear.dynamics.abreast.wide import (
 )
 from facegear.dynamics.integrator.sums import LOOKS, TURNS
 from facegear.machine_code.lanes import take
+from facegear.machine_code.records import Record
 
 
+@Record.register
 class ManySums(NamedTuple):
     """What is added up of each machine of a queue, in B batches of its periods; B = 0: nothing.
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.machine_code.memory import LANES, aligned
+from facegear.machine_code.records import Record
 
 ROUNDING = 1e-15
 """Entries below this fraction of a matrix' largest are zeros that rounding has left."""
@@ -18,6 +19,7 @@ ZEROS = 8
 """A block is continued by the next vector of coordinates if that brings no more vectors of zeros into it."""
 
 
+@Record.register
 class Blocks(NamedTuple):
     """B dense blocks of the mesh Jacobian: coordinates next to each other, and the rows that touch them.
 
@@ -34,6 +36,7 @@ class Blocks(NamedTuple):
     columns: Integers
 
 
+@Record.register
 class Strips(NamedTuple):
     """A matrix in strips of LANES rows and one column.
 
@@ -45,6 +48,7 @@ class Strips(NamedTuple):
     values: Array
 
 
+@Record.register
 class Coupled(NamedTuple):
     """What the kernels take of a system whose coordinates are coupled beside the meshes.
 

@@ -11,12 +11,14 @@ from facegear.dynamics.integrator.blocks import Blocks, Coupled, blocks_of, coup
 from facegear.dynamics.integrator.coupling import Coupling
 from facegear.dynamics.integrator.system import System
 from facegear.machine_code.memory import aligned, divided, padded, whole_lanes
+from facegear.machine_code.records import Record
 from facegear.mesh_law.linear import fourier_columns
 
 TAU = 2.0 * np.pi
 MIN_CLEARANCE = 1e-12
 
 
+@Record.register
 class Rings(NamedTuple):
     """Bearings with clearance.
 
@@ -41,6 +43,7 @@ class Rings(NamedTuple):
     lag: float
 
 
+@Record.register
 class Rubbing(NamedTuple):
     """Forces of friction: their number K, the flank (K,) of each, its ratio as Fourier columns, and the
     direction (K, n) in which it acts.
@@ -52,6 +55,7 @@ class Rubbing(NamedTuple):
     directions: Array
 
 
+@Record.register
 class Sparse(NamedTuple):
     """A matrix row by row: the entries of row i are those from starts[i] to starts[i + 1], which are left out
     where they are zero but for rounding.
@@ -62,6 +66,7 @@ class Sparse(NamedTuple):
     values: Array
 
 
+@Record.register
 class Packed(NamedTuple):
     """Arrays padded to whole SIMD lanes; padded meshes and coordinates are zero and stay at rest.
 

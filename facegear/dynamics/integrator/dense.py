@@ -9,11 +9,13 @@ from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.roots import refine_root
 from facegear.dynamics.integrator.work import Work
+from facegear.machine_code.records import Record
 
 PARTS = 4
 """A step is looked through in this many parts, each for one change of direction."""
 
 
+@Record.register
 class Steps(NamedTuple):
     """Polynomials of the first S steps of a run; of length 0 where none are kept.
 
@@ -29,6 +31,7 @@ class Steps(NamedTuple):
     states: Integers
 
 
+@Record.register
 class Extrema(NamedTuple):
     """Deflections where they change direction: values (m, 2, K), maxima, then minima, in the order in which
     they are met; counts (m, 2), also of those that have no room. K = 0 where none are looked for.

@@ -16,12 +16,14 @@ from facegear.dynamics.integrator.sums import Sums, add_step, start_sums
 from facegear.dynamics.integrator.tangents import move_tangents, switch_tangents, tangent_step
 from facegear.dynamics.integrator.taylor import values
 from facegear.dynamics.integrator.work import Work
+from facegear.machine_code.records import Record
 from facegear.mesh_law.terms import slope_terms
 
 MAX_STEPS = 2_000_000
 DONE, TOO_MANY_STEPS, NOT_FINITE = 0, 1, 2
 
 
+@Record.register
 class Log(NamedTuple):
     """What a run writes.
 

@@ -29,6 +29,7 @@ from facegear.machine_code.lanes import (
     store,
 )
 from facegear.machine_code.memory import aligned
+from facegear.machine_code.records import Record
 from facegear.mesh_law.terms import force_ahead
 
 LOOKS = 8
@@ -36,6 +37,7 @@ LOOKS = 8
 TURNS = 4
 
 
+@Record.register
 class Sums(NamedTuple):
     """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
 

@@ -11,11 +11,13 @@ from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
 from facegear.dynamics.integrator.system import System
 from facegear.machine_code.fourier import FourierScratch, fourier_scratch
 from facegear.machine_code.memory import LANES, aligned, aligned_together
+from facegear.machine_code.records import Record
 
 ABREAST = 3 * LANES
 """Tangents moved side by side: as many vectors as the registers hold with what they are multiplied by."""
 
 
+@Record.register
 class RingSeries(NamedTuple):
     """Series of bearings with clearance (rows, rings): displacement, its tangent, r^2 and its powers, forces,
     their slopes; reciprocal (rings,) of r^2 where a ring presses, else 0.
@@ -37,6 +39,7 @@ class RingSeries(NamedTuple):
     slope_yy: Array
 
 
+@Record.register
 class RubbingSeries(NamedTuple):
     """Series of friction: ratios (rows, forces of friction) and elastic forces (rows, flanks)."""
 
@@ -44,6 +47,7 @@ class RubbingSeries(NamedTuple):
     forces: Array
 
 
+@Record.register
 class Pressing(NamedTuple):
     """Rows of every block that may hold a force: those of block b are rows[starts[b]:starts[b + 1]]."""
 
@@ -51,6 +55,7 @@ class Pressing(NamedTuple):
     rows: Integers
 
 
+@Record.register
 class Work(NamedTuple):
     """Scratch space for one thread and one order p: coefficient tables have one row for each power of s.
 
