@@ -6,11 +6,11 @@ from facegear.arrays import Array, Integers
 from facegear.contact import influence, spreading
 from facegear.contact.averages import Rows
 from facegear.contact.bodies import surface
-from facegear.contact.influence import Surface, listed, part_of
+from facegear.contact.influence import Surface, part_of
 from facegear.contact.spreading import Faces, functions_at, offsets
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import empty_numbers, empty_table, integers, marked, table, taken
+from facegear.machine_code.picked import empty_numbers, empty_table, integers, listed, marked, table, taken
 
 SOURCES = Path(spreading.__file__), Path(influence.__file__), Path(surface.__file__), Path(picked.__file__)
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)

@@ -12,12 +12,13 @@ from facegear.contact.flanks import FlankPair
 from facegear.contact.influence import Surface, surface_of
 from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try
-from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
+from facegear.contact.position import MARGIN, LoadedPosition, first_turn, solve_position
 from facegear.contact.search import cover_of, facing_points
 from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
 from facegear.contact.touching import (
     BAND,
     GAP,
+    GROWTH,
     START_GAP,
     START_WIDTH,
     WIDER,
@@ -78,9 +79,10 @@ def loaded_contact(
     another take several times the work. Raises NotConverged naming the position and the torque.
     """
     options = options or ContactOptions()
-    phi1 = pinion_angle(model.design, positions)
-    phi2, unloaded = unloaded_motion(model.design, phi1)
-    guess = first = FIRST_GUESS / model.design.pinion_base_radius
+    design, face = model.design, model.design.face_gear
+    phi1 = pinion_angle(design, positions)
+    phi2, unloaded = unloaded_motion(design, phi1)
+    guess = first = first_turn(torques, design.pinion_base_radius, face.outer_radius - face.inner_radius)
     progress = Progress("loaded contact", len(phi1))
     searched = _Searched(model, options, list(zip(phi1.tolist(), phi2.tolist(), strict=True)))
     results: list[LoadedPosition] = []
@@ -143,6 +145,6 @@ class _PairAtPosition:
     def touching(self, torques: Array, limit: float) -> Touching:
         searched = self.searched
         facing, coupled = searched.at(self.row, limit), searched.options.coupled
-        parts = Strip(GAP, BAND, WIDER, START_GAP, START_WIDTH)
+        parts = Strip(GAP, BAND, WIDER, START_GAP, START_WIDTH, GROWTH, 1.0 / MARGIN)
         accuracy = NEWTON_STEPS, TOLERANCE
         return touching(facing, searched.cover, searched.surfaces, torques, limit, parts, coupled, accuracy)

@@ -13,8 +13,9 @@ from facegear.contact.touching import Touching
 from facegear.errors import NotConverged
 from facegear.geometry.unloaded import PAIRS
 
-FIRST_GUESS = 40e-6
-"""Approach (m) that the candidates of the first solution must cover; later ones follow the solutions."""
+STIFFNESS = 2e10
+"""Of teeth of steel in mesh over the width of the face (N/m2), as ISO 6336 takes it: for the approach that
+the candidates of the first solution must cover; later ones follow the solutions."""
 
 MARGIN = 1.15
 
@@ -106,6 +107,11 @@ class LoadedPosition:
     @property
     def pairs_in_contact(self) -> int:
         return int(np.count_nonzero(self.load_share))
+
+
+def first_turn(torques: Sequence[float], base_radius: float, width: float) -> float:
+    """A guess of the largest turn (rad) under torques (N m) of a pinion whose teeth mesh over a width (m)."""
+    return max(torques) / (base_radius**2 * width * STIFFNESS)
 
 
 def solve_position(

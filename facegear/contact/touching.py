@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact import active_set, averages, bonded, displacement, influence, spreading
+from facegear.contact import active_set, averages, bonded, both_sides, displacement, influence, spreading
 from facegear.contact.active_set import solved
 from facegear.contact.averages import HatPoints, Hats, Rows, closing
 from facegear.contact.bodies import surface
@@ -28,6 +28,7 @@ SOURCES = (
     Path(active_set.__file__),
     Path(averages.__file__),
     Path(bonded.__file__),
+    Path(both_sides.__file__),
     Path(displacement.__file__),
     Path(influence.__file__),
     Path(spreading.__file__),
@@ -43,21 +44,32 @@ give way by the rest) and, above that, the gap of the others in it (the strip's 
 WIDER = 1.6
 """Factor on the second part where contact is missed beside the strip."""
 
-START_GAP, START_WIDTH = 0.6, 0.055
-"""The same parts for the first guess of what touches."""
+START_GAP, START_WIDTH = 0.6, 0.14
+"""First guess of what touches: the least gap of a column of hats as a part of the approach, and the gap of
+the others in it as a part of what the least gap is below that.
+"""
+
+GROWTH = 0.75
+"""Exponent of the load by which the approach is taken to another torque for that guess: between those of a
+point (2/3) and of a line (nearly 1).
+"""
 
 Loads = tuple[tuple[Rows, Rows], tuple[Rows, Rows]]
 """Loads of hats on the nodes of both surfaces, and on those before refinement."""
 
 
 class Strip(NamedTuple):
-    """How wide a strip contact is sought in: GAP, BAND, WIDER, START_GAP and START_WIDTH."""
+    """How wide a strip contact is sought in, GAP, BAND and WIDER; where the search starts, START_GAP,
+    START_WIDTH and GROWTH, from the turn under the first torque that is `expected` as a part of the limit.
+    """
 
     gap: float
     band: float
     wider: float
     start_gap: float
     start_width: float
+    growth: float
+    expected: float
 
 
 class Cover(NamedTuple):
@@ -150,12 +162,12 @@ def touching(
         ends = _ends(taken(hats.pair, which), facing.teeth.size)
         loads = _loads(hats.rows, which, at, surfaces)
         matrix = influence_of(ends, facing.teeth, surfaces, loads[0], loads[1], coupled)
-        force, turn = table(count, which.size), limit
+        force, turn = table(count, which.size), strip.expected * limit
         apart, levers = taken(gap, which), taken(arm, which)
         for t in range(count):
             if t:
-                turn = rotation[t - 1] * torques[t] / torques[t - 1]
-            start = _within(own, column_min, strip.start_gap * turn, strip.start_width * turn)
+                turn = rotation[t - 1] * (torques[t] / torques[t - 1]) ** strip.growth
+            start = _expected(own, column_min, strip.start_gap * turn, strip.start_width)
             steps[t], forces, rotation[t], slope[t], residual[t] = solved(
                 matrix, apart, levers, torques[t], taken(start, which), limits
             )
@@ -240,6 +252,15 @@ def _within(own: Array, column_min: Array, min_turn: float, band: float) -> Mask
     for i in range(own.size):
         within[i] = own[i] < column_min[i] + band and column_min[i] < min_turn
     return within
+
+
+@called
+def _expected(own: Array, column_min: Array, min_turn: float, width: float) -> Mask:
+    """Hats that a first guess takes to touch: the lesser a column's least gap, the wider."""
+    expected = np.empty(own.size, np.bool_)
+    for i in range(own.size):
+        expected[i] = own[i] - column_min[i] < width * (min_turn - column_min[i])
+    return expected
 
 
 @called

@@ -73,3 +73,21 @@ def empty_numbers(count: int) -> Array:
 def empty_integers(count: int) -> Integers:
     """Room for integers (n,)."""
     return np.empty(count, np.int64)
+
+
+@called
+def unsigned(index: Integers) -> AnyArray:
+    """The same indices as numbers without a sign: compiled loops look for one at every use of others."""
+    result = np.empty(index.size, np.uint64)
+    for i in range(index.size):
+        result[i] = index[i]
+    return result
+
+
+@called
+def listed(mark: Integers) -> tuple[Integers, Integers]:
+    """The indices whose marks (n,) are not 0, rising, and the index of each among them, -1 of the others."""
+    used, slot = marked(mark), integers(mark.size, -1)
+    for i in range(used.size):
+        slot[used[i]] = i
+    return used, slot

@@ -19,7 +19,7 @@ from facegear.contact.flanks import FlankPair, flank_pair
 from facegear.contact.influence import product
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pair import BUILDERS
-from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
+from facegear.contact.position import LoadedPosition, first_turn, solve_position
 from facegear.contact.search import find_candidates
 from facegear.contact.teeth import LOADED_SIDE, contact_side, elastic_tooth
 from facegear.contact.touching import Touching
@@ -46,7 +46,8 @@ class SectorPair:
         Raises NotConverged naming position and torque.
         """
         pair = _SectorAtPosition(self, position)
-        return solve_position(pair, torques, FIRST_GUESS / pair.base_radius)[0]
+        guess = first_turn(torques, pair.base_radius, self.flanks.pinion.width)
+        return solve_position(pair, torques, guess)[0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from facegear.contact.flanks import PinionSurface
 from facegear.contact.influence import influence_matrix
 from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.options import Ends, Refinement
-from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
+from facegear.contact.position import LoadedPosition, first_turn, solve_position
 from facegear.contact.spreading import Lattice
 from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.contact.touching import Touching
@@ -112,7 +112,7 @@ def analyse_twin(model: TwinModel, positions: Array, line_loads: list[float]) ->
     thickness = float(np.ptp(model.surface.side.v))
     base = model.pinion.pinion_base_radius
     torques = [load * thickness * base for load in line_loads]
-    guess, results = FIRST_GUESS / base, []
+    guess, results = first_turn(torques, base, thickness), []
     for position in positions:
         solved, guess = solve_position(_TwinAtPosition(model, float(position)), torques, guess)
         results += solved
