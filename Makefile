@@ -1,6 +1,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+LIBRARIES := $(VENV)/.libraries
 READY := $(VENV)/.locked
 TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
@@ -8,8 +9,15 @@ CORES ?= 2
 IDLE := tests?|testing|fontTools|lexers|docutils|cuda|distutils|pip
 .PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks ratios peers verification platforms mutation lock clean
 
-all: check
-	$(BIN)/snakemake --cores $(CORES)
+# A run needs the libraries alone: what else belongs to the environment is made beside it, and while Snakemake starts
+# a new environment compiles what its jobs will import.
+all: $(LIBRARIES)
+	@(test -e $(READY) || $(BIN)/python -m workflow.process.imports; $(finish)) & \
+		$(BIN)/python -m facegear.system_check && PYTHONPATH=$(CURDIR) $(BIN)/snakemake --cores $(CORES); \
+		ended=$$?; wait $$! && exit $$ended
+
+# By another name, as make works even where it is only to print (-n) if it sees its own.
+finish = $(MAKE) -s $(READY)
 
 env: $(READY)
 
@@ -37,15 +45,18 @@ all: export PYTHONDONTWRITEBYTECODE =
 
 # What a run needs. Where Python may not keep what it compiles (PYTHONDONTWRITEBYTECODE) all is compiled here, else
 # every start would compile the libraries anew.
-# The repository installs itself editable, so that notebooks and scripts find it from any folder.
-$(READY): requirements-run.lock pyproject.toml
+$(LIBRARIES): requirements-run.lock
 	$(PYTHON) -m venv --without-pip $(VENV)
 	awk '/^[^ ]/ {wanted = /^uv==/} wanted' requirements.lock > $(VENV)/uv.lock
 	awk '/^[^ ]/ {wanted = /^(setuptools|setuptools-scm|packaging)==/} wanted' requirements.lock > $(VENV)/installers.lock
 	$(call pip,install --quiet --no-compile --require-hashes -r $(VENV)/uv.lock)
 	$(call install,requirements-run.lock -r $(VENV)/installers.lock)
-	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
 	test -z "$$PYTHONDONTWRITEBYTECODE" || $(compile)
+	touch $@
+
+# The repository installs itself editable, so that notebooks and scripts find it from any folder.
+$(READY): $(LIBRARIES) pyproject.toml
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
 	touch $@
 
 # What tests, checks, documentation and benchmarks need beside it.
