@@ -123,16 +123,18 @@ def _add_averages(
     pointer, index, weight = rows
     base, values, _, slot, _ = nodes
     offset = offsets(faces)
-    there = table(base.size, moved.shape[1])
-    for point in range(base.size):
-        for a in range(offset.size if base[point] >= 0 else 0):
-            node, value = slot[base[point] + offset[a]], values[point, a]
-            for t in range(moved.shape[1]):
-                there[point, t] += value * (scale * moved[node, t])
-    for number in range(which.size):
-        for k in range(pointer[which[number]], pointer[which[number] + 1]):
-            for t in range(cases[number]):
-                total[number, t] += weight[k] * there[index[k], t]
+    there = empty_numbers(base.size)
+    for t in range(moved.shape[1]):
+        for point in range(base.size):
+            if base[point] >= 0:
+                mean = 0.0
+                for a in range(offset.size):
+                    mean += values[point, a] * moved[slot[base[point] + offset[a]], t]
+                there[point] = scale * mean
+        for number in range(which.size):
+            if t < cases[number]:
+                for k in range(pointer[which[number]], pointer[which[number] + 1]):
+                    total[number, t] += weight[k] * there[index[k]]
 
 
 @called

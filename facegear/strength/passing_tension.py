@@ -139,8 +139,9 @@ def _bounded(
                 row = loaded * positions + position
                 for entry in range(starts[row], starts[row + 1]):
                     size, sign = abs(force[entry]), 0 if force[entry] > 0.0 else 1
-                    for plane in range(limits.shape[2]):
-                        limits[read, position, plane] += size * bounds[sign, apart, nodes[entry], plane]
+                    of_node, limit = bounds[sign, apart, nodes[entry]], limits[read, position]
+                    for plane in range(limit.size):
+                        limit[plane] += size * of_node[plane]
     return limits
 
 
