@@ -1,5 +1,7 @@
 """What compiled functions ask of a law; every law is a NamedTuple type with implementations of its own.
 
+The terms and the series of a law in a motion are records (facegear.machine_code.records).
+
 The state of a contact is 0 where it is open, p in piece p of the law on its drive flank, and -p on the back
 flank of a mesh whose two flanks share one line. `deflection` (rows, width) holds the Taylor coefficients of
 the deflections, counted from the level at which the piece begins; on a back flank they are negative.

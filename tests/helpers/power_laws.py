@@ -14,11 +14,13 @@ from facegear.machine_code.compiler import FAST, for_callers
 from facegear.machine_code.fourier import fourier_terms
 from facegear.machine_code.lanes import LANES, load, multiply_add, splat, take
 from facegear.machine_code.memory import aligned
+from facegear.machine_code.records import Record
 from facegear.mesh_law import terms
 
 inlined = for_callers(**FAST)
 
 
+@Record.register
 class PowerTerms(NamedTuple):
     """size c over the squared frequency; below `level` size (a x^2 + b x^3); fourier (2, 2, LANES)."""
 
@@ -30,6 +32,7 @@ class PowerTerms(NamedTuple):
     fourier: np.ndarray
 
 
+@Record.register
 class PowerSeries(NamedTuple):
     """Series (rows, width) of slope, force and what they are made of; factor (rows, LANES), alike in all."""
 
