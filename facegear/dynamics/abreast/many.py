@@ -1,8 +1,9 @@
 """Runs of many machines over whole mesh periods, side by side where the lanes have their physics."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from heapq import heapreplace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -71,7 +72,7 @@ def run_stretches(
         if row is not None and (stretch.tangents is None or len(stretch.tangents) == 1):
             groups[(stretch.integrator.order, *row.key, *stretch.asks)].append(number)
     for alike in groups.values():
-        if numbers := _in_lanes(alike, fewest):
+        if numbers := _in_lanes({number: stretches[number].periods for number in alike}, fewest):
             group = [stretches[number] for number in numbers]
             of_group = [row for stretch in group if (row := rows[id(stretch.integrator)])]
             runs |= zip(numbers, _side_by_side(of_group, group, kept), strict=True)
@@ -80,13 +81,28 @@ def run_stretches(
     ]
 
 
-def _in_lanes(numbers: list[int], fewest: int) -> list[int]:
-    """Those of machines that are alike which run in lanes: fewer than `fewest` would leave too many empty."""
+def _in_lanes(periods: Mapping[int, int], fewest: int) -> list[int]:
+    """Those of machines that are alike, with their mesh periods by number, which run in lanes, longest first.
+
+    Lanes take as long for one machine as for all: time is counted as if each period of theirs cost as much as
+    `fewest` of a single run. The longest run singly where the other lanes would wait for them.
+    """
     # The lanes are compiled only where they are asked for.
     from facegear.dynamics.abreast.wide import WIDTH
 
-    left = len(numbers) % WIDTH
-    return numbers if left >= fewest else numbers[: len(numbers) - left]
+    order = sorted(periods, key=lambda number: -periods[number])
+    lengths = [periods[number] for number in order]
+    singly = [*range(min(WIDTH, len(order))), len(order)]
+    costs = [sum(lengths[:count]) + fewest * _busy(lengths[count:], WIDTH) for count in singly]
+    return order[singly[costs.index(min(costs))] :]
+
+
+def _busy(lengths: Sequence[int], lanes: int) -> int:
+    """How long lanes are busy with runs of these lengths, each of which takes the lane that is free first."""
+    ends = [0] * lanes
+    for length in lengths:
+        heapreplace(ends, ends[0] + length)
+    return max(ends)
 
 
 def _row_of(integrator: Integrator) -> Row | None:

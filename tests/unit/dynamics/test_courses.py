@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.abreast.many import FEWEST
+from facegear.dynamics.abreast.many import FEWEST, _in_lanes
+from facegear.dynamics.abreast.wide import WIDTH
 from facegear.dynamics.courses import alone, side_by_side
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
@@ -61,3 +62,13 @@ def test_what_a_course_does_not_catch_is_raised():
     beyond = [starts[0] * np.nan, *starts[1:]]
     with pytest.raises(NotConverged, match="beyond all bounds"):
         side_by_side([settling(*pair, SETTINGS) for pair in zip(found, beyond, strict=True)])
+
+
+def test_the_longest_of_few_runs_does_not_keep_the_other_lanes_waiting():
+    """Lanes take as long for one machine as for all."""
+    even = dict.fromkeys(range(WIDTH + 1), 16)
+    assert len(_in_lanes(even, FEWEST)) == WIDTH, "the last one alone would cost as much as all"
+    assert _in_lanes({**even, 3: 200}, FEWEST) == [0, 1, 2, *range(4, WIDTH + 1)]
+    assert not _in_lanes({0: 16, 1: 16, 2: 200}, FEWEST)
+    mixed = {number: 16 + number for number in range(5 * WIDTH)}
+    assert _in_lanes(mixed, FEWEST) == list(mixed)[::-1], "longest first, so that the lanes end together"
