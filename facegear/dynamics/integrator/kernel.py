@@ -18,6 +18,4 @@ longest = compiler(*SOURCES, announced="the time integration once, some 15 s", a
 """The same for the one that takes so long to compile that the user reads so."""
 
 inlined = for_callers(**FAST)
-"""The same for functions of a Packed and a Work: handing over these hundreds of words would cost more than
-most of the functions do. They are compiled as part of the kernels that call them.
-"""
+"""The same for what kernels call: it is compiled as a part of them."""
