@@ -11,7 +11,7 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.dynamics.abreast.contact_states import correct_states, find_states
 from facegear.dynamics.abreast.functions import SMALLEST, exponential, logarithm
-from facegear.dynamics.abreast.kernel import inlined, longest
+from facegear.dynamics.abreast.kernel import called, inlined, longest
 from facegear.dynamics.abreast.lanes import NONE, Lanes
 from facegear.dynamics.abreast.rows import SCALE, TOLERANCE, WEIGHTS, Structure
 from facegear.dynamics.abreast.sums import ManySums, add_step, clear, keep_batch, keep_whole
@@ -100,7 +100,7 @@ def _refill(
     return waiting + 1, running + 1
 
 
-@inlined
+@called
 def _enter(shape: Structure, lanes: Lanes, queue: Queue, lane: int, number: int) -> None:
     """Put a machine at its start into a lane."""
     for i in range(queue.rows.shape[1]):
@@ -159,7 +159,7 @@ def _step_lengths(shape: Structure, lanes: Lanes) -> None:
     store(lanes.length, 0, where_positive(subtract(rest, length), shared, rest))
 
 
-@inlined
+@called
 def _sample(shape: Structure, lanes: Lanes, queue: Queue) -> None:
     """Write the coordinates at all samples that lie within the steps, one of each lane at a time."""
     while True:
@@ -182,7 +182,7 @@ def _sample(shape: Structure, lanes: Lanes, queue: Queue) -> None:
             lanes.sampled[lane] += 1
 
 
-@inlined
+@called
 def _at_end(shape: Structure, lanes: Lanes, queue: Queue, lane: int) -> bool:
     """Move the phase of a lane; at the end of a period write its state. True if its machine is done."""
     phase = lanes.phase[lane] + lanes.length[lane]

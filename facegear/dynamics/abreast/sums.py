@@ -6,7 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.abreast.functions import Wide
-from facegear.dynamics.abreast.kernel import inlined
+from facegear.dynamics.abreast.kernel import called, inlined
 from facegear.dynamics.abreast.lanes import Lanes
 from facegear.dynamics.abreast.rows import Structure
 from facegear.dynamics.abreast.switches import put_down
@@ -70,7 +70,7 @@ def many_sums(machines: int, n: int, m: int, batches: int) -> ManySums:
     )
 
 
-@inlined
+@called
 def add_step(shape: Structure, lanes: Lanes) -> None:
     """Add the steps of all lanes."""
     length = load(lanes.length, 0)

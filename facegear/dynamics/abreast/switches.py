@@ -1,7 +1,7 @@
 """The first contact switch of every lane inside its step."""
 
 from facegear.dynamics.abreast.functions import Wide
-from facegear.dynamics.abreast.kernel import inlined
+from facegear.dynamics.abreast.kernel import called, inlined
 from facegear.dynamics.abreast.lanes import Lanes
 from facegear.dynamics.abreast.rows import LOWER, UPPER, Structure
 from facegear.dynamics.abreast.wide import (
@@ -27,7 +27,7 @@ NEVER = 2.0
 ITERATIONS = 100
 
 
-@inlined
+@called
 def until_switch(shape: Structure, lanes: Lanes) -> None:
     """Shorten the step of each lane to the first contact switch inside it."""
     if not shape.opens:

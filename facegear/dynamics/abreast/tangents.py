@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from facegear.dynamics.abreast.kernel import inlined
+from facegear.dynamics.abreast.kernel import called, inlined
 from facegear.dynamics.abreast.lanes import Lanes
 from facegear.dynamics.abreast.rows import JACOBIAN, WEIGHTS, Structure
 from facegear.dynamics.abreast.taylor import deflect, move, recurrence
@@ -18,7 +18,7 @@ from facegear.dynamics.abreast.wide import (
 from facegear.machine_code.lanes import take
 
 
-@inlined
+@called
 def move_tangents(shape: Structure, lanes: Lanes) -> None:
     """Move the disturbances to the ends of the steps whose coefficients the lanes hold."""
     if not shape.damping_when_open:
