@@ -6,7 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.kernel import called
 from facegear.dynamics.integrator.roots import refine_root
 from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.records import Record
@@ -65,7 +65,7 @@ def make_extrema(packed: Packed, count: int) -> Extrema:
     return Extrema(values, np.zeros((packed.m, 2), dtype=np.int64))
 
 
-@inlined
+@called
 def keep_step(packed: Packed, work: Work, s: float, length: float, steps: Steps, number: int) -> None:
     """Write the polynomials of a step that begins at s."""
     steps.starts[number] = s
@@ -80,7 +80,7 @@ def keep_step(packed: Packed, work: Work, s: float, length: float, steps: Steps,
         steps.states[number, m] = work.state[m]
 
 
-@inlined
+@called
 def add_extrema(packed: Packed, work: Work, length: float, extrema: Extrema) -> None:
     """Write every deflection at which a mesh changes its direction within a step."""
     order = work.order

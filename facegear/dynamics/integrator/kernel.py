@@ -19,3 +19,6 @@ longest = compiler(*SOURCES, announced="the time integration once, some 15 s", a
 
 inlined = for_callers(**FAST)
 """The same for what kernels call: it is compiled as a part of them."""
+
+called = for_callers(forceinline=False, **FAST)
+"""The same for the large ones that run at most once in a step: it compiles sooner than one huge function."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.kernel import called, inlined
 from facegear.dynamics.integrator.taylor import values
 from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.lanes import (
@@ -114,7 +114,7 @@ def start_sums(packed: Packed, work: Work, sums: Sums) -> None:
         sums.level[m] = _between(packed, sums.level, sums.level, m)
 
 
-@inlined
+@called
 def add_step(packed: Packed, work: Work, length: float, sums: Sums, batch: int) -> None:
     """Add a step to the batch; work.scaled is used up."""
     for node in range(work.nodes.shape[1]):

@@ -2,7 +2,7 @@
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.contact_states import BACK, DRIVE, OPEN, SHORTEST, end_of_piece
-from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.kernel import called, inlined
 from facegear.dynamics.integrator.parting import parting_time
 from facegear.dynamics.integrator.roots import first_root, refine_root, root_after
 from facegear.dynamics.integrator.work import Work
@@ -19,7 +19,7 @@ from facegear.machine_code.lanes import (
 )
 
 
-@inlined
+@called
 def until_switch(packed: Packed, work: Work, length: float) -> float:
     """Shorten the step to the first contact switch inside it."""
     _over_step(work, length)

@@ -9,7 +9,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed, Sparse
-from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.kernel import called, inlined
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_switches
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
@@ -54,7 +54,7 @@ def tangent_step(packed: Packed, work: Work, length: float, tolerance: float) ->
     return length
 
 
-@inlined
+@called
 def move_tangents(packed: Packed, work: Work, length: float, tangents: Array, tolerance: float) -> None:
     """Move tangents (columns, 2, n) over the step whose polynomials `work` holds."""
     order = work.order if is_curved(packed.law) else _order_needed(packed, work.order, length, tolerance)
