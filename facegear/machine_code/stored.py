@@ -3,6 +3,7 @@
 Made of numba's private parts: `compiler.py` lets only known versions of numba come here.
 """
 
+import gc
 import hashlib
 import pickle
 import sys
@@ -213,10 +214,23 @@ class _LowerForCallers(NativeLowering):
         return True
 
 
+class _Compiler(Compiler):
+    """Numba's compiler without the collection of garbage: nearly all that it makes is used to the end."""
+
+    def _compile_core(self) -> Any:
+        collects = gc.isenabled()
+        gc.disable()
+        try:
+            return super()._compile_core()
+        finally:
+            if collects:
+                gc.enable()
+
+
 def _with(lowering: type[NativeLowering]) -> type[Compiler]:
     """Numba's compiler with another way to make LLVM code."""
 
-    class Lowering(Compiler):
+    class Lowering(_Compiler):
         def define_pipelines(self) -> list[Any]:
             pipelines = super().define_pipelines()
             for pipeline in pipelines:
@@ -244,7 +258,7 @@ def stored(
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
-        pipeline = _AsWritten if as_written else Compiler
+        pipeline = _AsWritten if as_written else _Compiler
         dispatcher = njit(pipeline_class=pipeline, **options)(function)
         part = inlined(**{"forceinline": False, **options})(function)
         own = Path(function.__code__.co_filename)
