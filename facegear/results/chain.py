@@ -33,8 +33,9 @@ class Chain:
 
     @cached_property
     def case(self) -> Case:
-        """The case among those of its config."""
-        return Case(self.values, self.cases, lambda stage, case: shared_sources(self.cases, stage)[case])
+        """The case among those of its config. It holds no chain: memory is free once nobody has the results."""
+        cases = self.cases
+        return Case(self.values, cases, lambda stage, case: shared_sources(cases, stage)[case])
 
     def result(self, kind: type[Kind], **more: Any) -> Kind:
         """What the stage of a kind of result gives; `more`: arguments that decide no number, as threads."""
