@@ -33,7 +33,7 @@ class Chain:
 
     @cached_property
     def case(self) -> Case:
-        """The case among those of its config. It holds no chain: memory is free once nobody has the results."""
+        """The case among those of its config. It does not hold the chain: results are freed with it."""
         cases = self.cases
         return Case(self.values, cases, lambda stage, case: shared_sources(cases, stage)[case])
 
