@@ -123,18 +123,20 @@ def _add_averages(
     pointer, index, weight = rows
     base, values, _, slot, _ = nodes
     offset = offsets(faces)
-    there = empty_numbers(base.size)
-    for t in range(moved.shape[1]):
-        for point in range(base.size):
-            if base[point] >= 0:
-                mean = 0.0
-                for a in range(offset.size):
-                    mean += values[point, a] * moved[slot[base[point] + offset[a]], t]
-                there[point] = scale * mean
-        for number in range(which.size):
-            if t < cases[number]:
-                for k in range(pointer[which[number]], pointer[which[number] + 1]):
-                    total[number, t] += weight[k] * there[index[k]]
+    asked, there = integers(base.size, 0), empty_table(base.size, moved.shape[1])
+    for number in range(which.size):
+        for k in range(pointer[which[number]], pointer[which[number] + 1]):
+            asked[index[k]] = max(asked[index[k]], cases[number])
+    for point in range(base.size):
+        for t in range(asked[point]):
+            mean = 0.0
+            for a in range(offset.size):
+                mean += values[point, a] * moved[slot[base[point] + offset[a]], t]
+            there[point, t] = scale * mean
+    for number in range(which.size):
+        for k in range(pointer[which[number]], pointer[which[number] + 1]):
+            for t in range(cases[number]):
+                total[number, t] += weight[k] * there[index[k], t]
 
 
 @called
