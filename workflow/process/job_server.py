@@ -35,8 +35,6 @@ COMMON = (
 """What most jobs import, made while the run still finds out what there is to do."""
 LOST = 120
 """Exit code of Python where what it has printed cannot be written."""
-
-
 KILOBYTE, BLOCK = 1024, 512
 """Bytes in the units of the system's account of a process."""
 
