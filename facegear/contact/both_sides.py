@@ -52,12 +52,12 @@ def add_averages(
     for start in range(0, wanted.size, BLOCK):
         size = min(BLOCK, wanted.size - start)
         for a in range(used.size):
-            row, ends = used[a], _within(low_of[a], high_of[a], start, size)
+            row, ends = used[a], _clipped(low_of[a], high_of[a], start, size)
             for b in range(ends[0], ends[1]):
                 part[a, b] = compliance[row, column[np.uint64(start) + b]]
         for group in range(0, count, TOGETHER):
             met = min(group + TOGETHER, last) if own else last
-            ends = _within(low[met], high[met], start, size)
+            ends = _clipped(low[met], high[met], start, size)
             for i in range(min(TOGETHER, count - group)):
                 for b in range(ends[0], ends[1]):
                     lines[i, b] = 0.0
@@ -69,7 +69,7 @@ def add_averages(
     for start in range(0, count, BLOCK):
         end = min(start + BLOCK, count)
         for j in range(min(end, last) if own else last):
-            ends = _within(max(j, start) if own else start, end, 0, end)
+            ends = _clipped(max(j, start) if own else start, end, 0, end)
             span, begin = (loads[0][j], loads[0][j + 1]), (corner[0] + j, corner[1])
             _add_rows(matrix, begin, scale, span, to, loads[2], half, ends)
 
@@ -104,7 +104,7 @@ def _add_rows(
 
 
 @inlined
-def _within(low: int, high: int, start: int, size: int) -> Ends:
+def _clipped(low: int, high: int, start: int, size: int) -> Ends:
     """A range of columns as part of `size` columns from `start` on; empty ranges end where they begin."""
     begin = min(max(low - start, 0), size)
     return np.uint64(begin), np.uint64(max(min(high - start, size), begin))

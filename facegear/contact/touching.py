@@ -140,7 +140,7 @@ def touching(
     at = facing.points.pinion, facing.points.gear
     own, column_min = _turns(hats, cover.shape[1], facing.teeth.size)
     gap, arm, band = hats.gap, hats.lever_arm, strip.band * limit
-    keep = _within(own, column_min, strip.gap * limit, band)
+    keep = _in_strip(own, column_min, strip.gap * limit, band)
     forward, overlap, longest = 0, 0.0, 0.0
     drives = False
     for i in range(gap.size):
@@ -200,7 +200,7 @@ def touching(
             tried |= keep[hat]
         if tried:
             band *= strip.wider
-            wider = _within(own, column_min, strip.gap * limit, band)
+            wider = _in_strip(own, column_min, strip.gap * limit, band)
             for hat in others:
                 keep[hat] |= wider[hat]
     carriers = _loaded(force)
@@ -247,11 +247,12 @@ def _turns(hats: Hats, columns: int, pairs: int) -> tuple[Array, Array]:
 
 
 @called
-def _within(own: Array, column_min: Array, min_turn: float, band: float) -> Mask:
-    within = np.empty(own.size, np.bool_)
+def _in_strip(own: Array, column_min: Array, min_turn: float, band: float) -> Mask:
+    """Hats that close within a band above the least turn of their column, where that is below min_turn."""
+    inside = np.empty(own.size, np.bool_)
     for i in range(own.size):
-        within[i] = own[i] < column_min[i] + band and column_min[i] < min_turn
-    return within
+        inside[i] = own[i] < column_min[i] + band and column_min[i] < min_turn
+    return inside
 
 
 @called
