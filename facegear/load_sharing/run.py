@@ -26,7 +26,7 @@ from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.sampling import densely_sampled, same_orbit
-from facegear.load_sharing.statistics import Average, average, defined_mean
+from facegear.load_sharing.statistics import Average, average, defined_mean, held_over_starts
 from facegear.transmission.machine import Machine
 
 WATCHED, TORUS_WATCHED = 2, 8
@@ -128,9 +128,15 @@ class _Run:
         groups = load_groups(self.model.machine.layout)
         elsewhere = [other for other in others if other is not None and not same_orbit(response, other)]
         means = [_means(densely_sampled(other), groups) for other in elsewhere]
+        again = [
+            mean
+            for other, mean in zip(elsewhere, means, strict=True)
+            if response.motion is not Motion.PERIODIC and other.label == response.label
+        ]
         dense = densely_sampled(response)
         shared = tuple(
-            _group(dense, group, self.options, [mean[i] for mean in means]) for i, group in enumerate(groups)
+            _group(dense, group, self.options, [mean[i] for mean in means], [mean[i] for mean in again])
+            for i, group in enumerate(groups)
         )
         return Sharing(dense, shared, tuple((other or response).label for other in (None, *others)))
 
@@ -235,9 +241,9 @@ def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
 
 
 def _group(
-    motion: DenseMotion, group: LoadGroup, options: SharingOptions, others: list[float]
+    motion: DenseMotion, group: LoadGroup, options: SharingOptions, others: list[float], again: list[float]
 ) -> GroupSharing:
-    """`others`: the means from other starts."""
+    """`others`: the means from other starts, of which `again` are those of the same irregular motion."""
     coefficients, lost, first = group_average(motion, group, options.confidence)
     every = max(coefficients.shape[1] // options.samples, 1)
     defined = [mean for mean in (first.mean, *others) if not np.isnan(mean)] or [float("nan")]
@@ -245,7 +251,7 @@ def _group(
         group=group,
         coefficients=coefficients[:, ::every],
         lost=lost[:, ::every],
-        average=first,
+        average=held_over_starts(first, again, options.confidence),
         starts_low=min(defined),
         starts_high=max(defined),
     )

@@ -1,13 +1,17 @@
 """Averages of a coefficient over many mesh cycles, and how well they are known."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.steady_state.averages import mean_interval
 
 BATCHES = 10
+SIGNIFICANCE = 0.05
+"""Chance at which means from several starts are wrongly taken to differ by more than batches say."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +79,26 @@ def average(
         undefined=float(undefined.mean()),
         cycles=count,
     )
+
+
+def held_over_starts(own: Average, again: Sequence[float], confidence: float) -> Average:
+    """The average of an irregular motion with a half-width that holds for its means `again` (n,) as well,
+    those of the same motion from other starts.
+
+    Batches of one run show nothing of what changes more slowly than the run lasts, other runs do. Where the
+    variance of the means is more than chance makes of that of the batches (F test at SIGNIFICANCE), the
+    half-width is Student's of a single one of n + 1 runs.
+    """
+    means = [own.mean, *(mean for mean in again if not np.isnan(mean))]
+    freedom = len(means) - 1
+    if freedom < 1 or not own.half_width > 0.0:
+        return own
+    batches = min(BATCHES, own.cycles) - 1
+    error = own.half_width / scipy.special.stdtrit(batches, 0.5 + 0.5 * confidence)
+    spread = float(np.std(means, ddof=1))
+    if (spread / error) ** 2 <= scipy.special.fdtri(freedom, batches, 1.0 - SIGNIFICANCE):
+        return own
+    return replace(own, half_width=float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence)) * spread)
 
 
 def defined_mean(coefficients: Array) -> float:
