@@ -9,7 +9,7 @@ from facegear.arrays import Array
 from facegear.dynamics.courses import Course
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
+from facegear.dynamics.steady_state.averages import BATCHES, independent_interval
 from facegear.dynamics.steady_state.window import Window, window
 from facegear.dynamics.stretch import Stretch
 
@@ -77,7 +77,7 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
 def _judged(rates: Array) -> tuple[Growth, float, float]:
     """What growth rates (periods,) say, their mean and its half-width."""
     batches = np.array([part.mean() for part in np.array_split(rates, BATCHES)])
-    mean, half = float(batches.mean()), float(mean_interval(batches))
+    mean, half = float(batches.mean()), float(independent_interval(batches))
     if mean - half > NEUTRAL:
         return Growth.GROWS, mean, half
     smooth, doubt = smooth_mean(rates)
