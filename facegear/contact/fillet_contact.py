@@ -36,12 +36,12 @@ def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
     if not spot.fillet.any():
         return spot
     row, plane = np.divmod(spot.hats, surface.shape[1])
-    keep = _kept(row, plane, spot.fillet, line, APART)
+    keep = kept_hats(row, plane, spot.fillet, line, APART)
     return replace(spot, hats=spot.hats[keep], force=spot.force[keep], fillet=spot.fillet[keep])
 
 
 @compiler()
-def _kept(row: Integers, plane: Integers, fillet: Mask, line: Array, apart: float) -> Mask:
+def kept_hats(row: Integers, plane: Integers, fillet: Mask, line: Array, apart: float) -> Mask:
     """Which loaded hats, in rows and planes (m,), are neither in a fillet nor part of a contact in one.
 
     A contact: hats of a plane no more than `apart` rows from the next. One that reaches a fillet lies in it,

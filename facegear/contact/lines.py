@@ -158,7 +158,7 @@ def _sampled_gaps(
     seen = np.isfinite(gap).any(axis=1, keepdims=True)
     near = np.abs(number - np.argmin(gap, axis=1)[:, None]) < EVERY
     wanted = (number % EVERY > 0) & np.where(seen, near, seen.any(axis=2, keepdims=True))
-    pair, sample, plane = np.nonzero(wanted)
+    pair, sample, plane = (np.ascontiguousarray(part) for part in np.nonzero(wanted))
     points = flank_points(design, np.sqrt(np.maximum(roll_squared[sample], 0.0)), y[plane])
     gap[wanted] = separation_each(design, points, placement, pair, design.module).continued
     return gap

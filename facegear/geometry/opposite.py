@@ -139,7 +139,7 @@ def _fillet_feet(
     low, high = curve.min(axis=0) - search_radius, curve.max(axis=0) + search_radius
     close = np.flatnonzero(((section[:, :2] > low) & (section[:, :2] < high)).all(axis=1))
     here = section[close]
-    nearest = _nearest(np.ascontiguousarray(here), curve)
+    nearest = nearest_of(np.ascontiguousarray(here), curve)
     apart = np.sum((here[:, :2] - curve[nearest]) * normal[nearest], axis=1)
     apart += pinion.removed(design, pinion.junction_roll(design), here[:, 2])
     on = (nearest > 0) & (nearest < len(curve) - 1) & (np.abs(apart) < search_radius)
@@ -150,7 +150,7 @@ def _fillet_feet(
 
 
 @compiled
-def _nearest(points: Array, curve: Array) -> Integers:
+def nearest_of(points: Array, curve: Array) -> Integers:
     """The point (n,) of a curve (m, 2) nearest to each of points (n, 3) in their first two coordinates."""
     nearest = np.zeros(points.shape[0], np.int64)
     for i in range(points.shape[0]):

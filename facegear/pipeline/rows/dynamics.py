@@ -22,7 +22,7 @@ ROWS = (
         needs={"mesh_law": "mesh_stiffness.mesh_law"},
         folder="dynamics",
         asked=asked.machine,
-        priority=100,
+        priority=85,
     ),
     Stage(
         name="machine_code_abreast",

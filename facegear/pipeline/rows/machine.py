@@ -1,7 +1,18 @@
 """The machine at rest: ratings and modes."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import BODIES, FLANKS, HARMONICS, LAW, MACHINE, MESHES, PAIR, POSES, SPEED
+from facegear.pipeline.rows.shared import (
+    BODIES,
+    CONTACTS,
+    FLANKS,
+    HARMONICS,
+    LAW,
+    MACHINE,
+    MESHES,
+    PAIR,
+    POSES,
+    SPEED,
+)
 from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 ROWS = (
@@ -77,6 +88,7 @@ ROWS = (
     Stage(
         name="operating_pose",
         title="Teeth where the machine's own forces put them",
+        runs=CONTACTS,
         needs={**MACHINE, **PAIR, "contact": "contact"},
         upstream={"surface": From("pose_surface", "surface"), **FLANKS, **MESHES, **BODIES},
         files={

@@ -4,6 +4,7 @@ from facegear.pipeline import asked
 from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
+    CONTACTS,
     FLANKS,
     HARMONICS,
     INTEGRATION,
@@ -56,6 +57,7 @@ LOAD_ROWS = (
     Stage(
         name="posed_stress",
         title="Pressure and root stress of every mesh where its teeth stand",
+        runs=CONTACTS,
         needs={**MACHINE, **PAIR, "contact": "contact", **GEARS},
         upstream={"surface": From("pose_surface", "surface"), **FLANKS, **STRESS, **MESHES, **BODIES},
         files={

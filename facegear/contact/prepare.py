@@ -1,0 +1,62 @@
+"""The machine code of a contact, compiled once for all processes that start together."""
+
+from functools import cache
+
+import numpy as np
+
+from facegear.contact.averages import HatPoints
+from facegear.contact.bodies.surface import face_functions
+from facegear.contact.fillet_contact import kept_hats
+from facegear.contact.flanks import PinionPoints
+from facegear.contact.influence import Surface
+from facegear.contact.loads import EdgePoints, gathered
+from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
+from facegear.contact.spreading import Faces
+from facegear.contact.touching import Cover, Facing, Strip, touching
+from facegear.geometry.opposite import nearest_of
+from facegear.geometry.ray_blank import Blank
+from facegear.geometry.rays import cut
+from facegear.geometry.separation import placed_rays
+
+NONE, NUMBERS, MARKS, BEGIN = np.zeros(0), np.zeros(0, np.int64), np.zeros(0, bool), np.zeros(1, np.int64)
+PLACES, RAYS, FOUR = np.zeros((0, 2)), np.zeros((0, 3)), (np.zeros((0, 4), np.int64), np.zeros((0, 4)))
+
+
+@cache
+def prepare() -> None:
+    """Load the stored machine code of a contact, or compile and store it while others wait.
+
+    Nothing is set against nothing: the types are those of any pair.
+    """
+    _touch()
+    blank = Blank(*[0.0] * len(Blank._fields))
+    cut(blank, RAYS, RAYS, 0.0, RAYS, RAYS, NONE, NONE, MARKS, 0.0)
+    placed_rays(np.zeros((0, 3, 3)), RAYS, NUMBERS, RAYS, RAYS)
+    _gather()
+    face_functions(PLACES, (3, 3))
+    nearest_of(RAYS, np.asfortranarray(np.zeros((2, 2))))
+    kept_hats(NUMBERS, NUMBERS, MARKS, NONE, 0.0)
+
+
+def _touch() -> None:
+    """No point of either tooth faces the other."""
+    faces = Faces((1, 1), (1, 1), np.zeros((1, 2), np.int64))
+    surface = Surface(faces, faces, np.zeros((1, 1)), np.zeros((1, 1, 1)), 1.0)
+    touching(
+        Facing(HatPoints(NONE, NONE, PLACES, PLACES, *FOUR, NONE), BEGIN, NUMBERS),
+        Cover(NONE, 0, (1, 1), (0.0, 0.0)),
+        (surface, surface),
+        np.ones(1),
+        1.0,
+        Strip(*[1.0] * len(Strip._fields)),
+        True,
+        (NEWTON_STEPS, TOLERANCE),
+    )
+
+
+def _gather() -> None:
+    """No points of no pairs."""
+    points = PinionPoints(RAYS, RAYS, PLACES, NONE, *FOUR, NONE)
+    under = np.zeros((0, 2), np.int64), PLACES
+    edge = EdgePoints(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((0, 0, 2)), PLACES, *under)
+    gathered(points, 0, (NUMBERS, BEGIN, NONE, PLACES), edge)

@@ -1,0 +1,45 @@
+"""Machine code of a contact, compiled before there is one."""
+
+import os
+import sys
+
+from forked_python import run_together
+
+PROGRAM = """
+from contact_bodies import COARSE, STEEL, pair_design
+
+from facegear.contact.ltca import loaded_contact
+from facegear.contact.options import ContactOptions, ContactPlan, Sector
+from facegear.contact.pair import contact_model, gear_flank
+from facegear.contact.prepare import prepare
+from facegear.contact.pressure import flank_pressure
+from facegear.machine_code.stored import SourcesCache
+
+asked, load = [], SourcesCache.load_overload
+
+
+def noted(cache, *types):
+    asked.append(cache._function.__name__)
+    return load(cache, *types)
+
+
+SourcesCache.load_overload = noted
+design, (sizes, cuts) = pair_design(), COARSE
+plan = ContactPlan((600.0,), 4, cuts, Sector(), ContactOptions())
+flanks = [gear_flank(design, body, sizes, STEEL, plan) for body in ("pinion", "face_gear")]
+model = contact_model(design, *flanks)
+of_bodies = len(asked)
+prepare()
+print(*asked[of_bodies:])
+prepared = len(asked)
+flank_pressure(loaded_contact(model, [0.1, 0.4], [100.0, 600.0]), model.flanks, (STEEL, STEEL))
+print(*asked[prepared:])
+"""
+
+
+def test_a_contact_of_bodies_that_are_known_compiles_nothing_once_its_machine_code_is_prepared():
+    (done,) = run_together([PROGRAM], {"PYTHONPATH": os.pathsep.join(sys.path)})
+    assert done.returncode == 0, done.stderr
+    prepared, compiled = done.stdout.splitlines()
+    assert {"touching", "cut"} <= set(prepared.split())
+    assert compiled.split() == []
