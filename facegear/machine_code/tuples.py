@@ -1,4 +1,4 @@
-"""The same functions as in `vectors.py` on tuples of four doubles, by the public part of numba alone.
+"""The functions of `lanes.py` on tuples of four doubles, by the public part of numba alone.
 
 Slower by a factor of a few. Arrays are C-contiguous, indices are flat.
 """

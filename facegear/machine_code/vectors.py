@@ -1,7 +1,8 @@
-"""Vectors of four doubles inside compiled functions, made of numba's code generator and LLVM.
+"""Vectors of doubles inside compiled functions, made of numba's code generator and LLVM.
 
 LLVM leaves loops as short as these (10 meshes, 17 coordinates) scalar; with explicit vectors an order of the
-Taylor recurrence costs a third. Vectors of four are plain LLVM and run on any processor.
+Taylor recurrence costs a third. Vectors are plain LLVM and run on any processor. Arithmetic is for vectors of
+any width; those that are read or made here, and whose lanes are mixed, have LANES doubles.
 """
 
 from typing import Any
@@ -13,23 +14,28 @@ from numba.extending import intrinsic, models, register_model
 
 from facegear.machine_code.memory import LANES
 
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+DOUBLE = ir.DoubleType()
 
 
-class LanesType(types.Type):
-    """Compile-time type of LANES doubles."""
+class VectorType(types.Type):
+    """Compile-time type of `width` doubles."""
 
-    def __init__(self) -> None:
-        super().__init__(name=f"lanes{LANES}")
+    def __init__(self, width: int) -> None:
+        super().__init__(name=f"vector{width}")
+        self.width = width
+
+    def of(self, number: ir.Type) -> ir.VectorType:
+        """LLVM's type of as many numbers of a type."""
+        return ir.VectorType(number, self.width)
 
 
-lanes = LanesType()
+@register_model(VectorType)
+class _VectorModel(models.PrimitiveModel):
+    def __init__(self, manager: Any, kind: VectorType) -> None:
+        super().__init__(manager, kind, kind.of(DOUBLE))
 
 
-@register_model(LanesType)
-class _LanesModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: LanesType) -> None:
-        super().__init__(manager, kind, _VECTOR)
+lanes = VectorType(LANES)
 
 
 def _is_plain(array: Any) -> bool:
@@ -40,50 +46,70 @@ def _place(context: Any, builder: Any, kind: types.Array, array: Any, index: Any
     return builder.gep(context.make_array(kind)(context, builder, array).data, [index])
 
 
-def _pointer(context: Any, builder: Any, kind: types.Array, array: Any, index: Any) -> Any:
-    return builder.bitcast(_place(context, builder, kind, array, index), _VECTOR.as_pointer())
+def _pointer(
+    context: Any, builder: Any, array: types.Array, args: Any, kind: VectorType, counted: ir.Type
+) -> Any:
+    data = context.make_array(array)(context, builder, args[0]).data
+    first = builder.gep(builder.bitcast(data, counted.as_pointer()), [args[1]])
+    return builder.bitcast(first, kind.of(DOUBLE).as_pointer())
 
 
-def _splat(builder: Any, value: Any) -> Any:
-    vector = ir.Constant(_VECTOR, ir.Undefined)
-    for lane in range(LANES):
-        vector = builder.insert_element(vector, value, ir.Constant(ir.IntType(32), lane))
-    return vector
+def _splat(builder: Any, kind: VectorType, value: Any) -> Any:
+    zero = ir.Constant(ir.IntType(32), 0)
+    first = builder.insert_element(ir.Constant(kind.of(DOUBLE), ir.Undefined), value, zero)
+    return builder.shuffle_vector(first, first, ir.Constant(kind.of(zero.type), [0] * kind.width))
+
+
+def loaded(kind: VectorType, array: Any, counted: ir.Type = DOUBLE) -> Any:
+    """What an intrinsic returns that reads a vector of a C-contiguous float64 array, at an index that counts
+    doubles, or vectors.
+    """
+    if not _is_plain(array):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.load(_pointer(context, builder, array, args, kind, counted), align=8)
+
+    return kind(array, types.intp), code
+
+
+def written(kind: VectorType, array: Any, counted: ir.Type = DOUBLE) -> Any:
+    """The same for one that writes a vector."""
+    if not _is_plain(array):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        builder.store(args[2], _pointer(context, builder, array, args, kind, counted), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, kind), code
+
+
+def splatted(kind: VectorType) -> Any:
+    """The same for one that puts a double in every lane."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return _splat(builder, kind, args[0])
+
+    return kind(types.float64), code
 
 
 @intrinsic
 def load(typing_context: Any, array: Any, index: Any) -> Any:
     """LANES values of a C-contiguous float64 array from a flat index on."""
-    if not _is_plain(array):
-        return None
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.load(_pointer(context, builder, array, *args), align=8)
-
-    return lanes(array, types.intp), code
+    return loaded(lanes, array)
 
 
 @intrinsic
 def store(typing_context: Any, array: Any, index: Any, value: Any) -> Any:
     """Write LANES values to a C-contiguous float64 array from a flat index on."""
-    if not _is_plain(array):
-        return None
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        builder.store(args[2], _pointer(context, builder, array, *args[:2]), align=8)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, lanes), code
+    return written(lanes, array)
 
 
 @intrinsic
 def splat(typing_context: Any, value: Any) -> Any:
     """The same double in every lane."""
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return _splat(builder, args[0])
-
-    return lanes(types.float64), code
+    return splatted(lanes)
 
 
 @intrinsic
@@ -93,7 +119,7 @@ def spread(typing_context: Any, array: Any, index: Any) -> Any:
         return None
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return _splat(builder, builder.load(_place(context, builder, array, *args)))
+        return _splat(builder, lanes, builder.load(_place(context, builder, array, *args)))
 
     return lanes(array, types.intp), code
 
@@ -123,59 +149,61 @@ def put(typing_context: Any, array: Any, index: Any, value: Any) -> Any:
     return types.void(array, types.intp, types.float64), code
 
 
+def instruction(name: str, kind: VectorType) -> Any:
+    """What an intrinsic returns that does an instruction of LLVM on two vectors."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return getattr(builder, name)(*args)
+
+    return kind(kind, kind), code
+
+
+def vector_call(name: str, kind: VectorType, arguments: int) -> Any:
+    """The same for an intrinsic of LLVM's own."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        vector = kind.of(DOUBLE)
+        full = f"llvm.{name}.v{kind.width}f64"
+        function = ir.FunctionType(vector, [vector] * arguments)
+        return builder.call(cgutils.get_or_insert_function(builder.module, function, full), args)
+
+    return kind(*[kind] * arguments), code
+
+
 @intrinsic
 def multiply(typing_context: Any, first: Any, second: Any) -> Any:
     """first * second in every lane."""
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fmul(*args)
-
-    return lanes(lanes, lanes), code
+    return instruction("fmul", first)
 
 
 @intrinsic
 def add(typing_context: Any, first: Any, second: Any) -> Any:
     """first + second in every lane."""
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.fadd(*args)
-
-    return lanes(lanes, lanes), code
-
-
-def _vector_call(name: str, arguments: int) -> Any:
-    """An LLVM intrinsic on whole vectors."""
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        kind = ir.FunctionType(_VECTOR, [_VECTOR] * arguments)
-        full = f"llvm.{name}.v{LANES}f64"
-        return builder.call(cgutils.get_or_insert_function(builder.module, kind, full), args)
-
-    return code
+    return instruction("fadd", first)
 
 
 @intrinsic
 def multiply_add(typing_context: Any, first: Any, second: Any, third: Any) -> Any:
     """first * second + third in every lane, fused where the processor can."""
-    return lanes(lanes, lanes, lanes), _vector_call("fmuladd", 3)
+    return vector_call("fmuladd", first, 3)
 
 
 @intrinsic
 def magnitude(typing_context: Any, value: Any) -> Any:
     """Absolute value in every lane."""
-    return lanes(lanes), _vector_call("fabs", 1)
+    return vector_call("fabs", value, 1)
 
 
 @intrinsic
 def smaller(typing_context: Any, first: Any, second: Any) -> Any:
     """The smaller of two in every lane."""
-    return lanes(lanes, lanes), _vector_call("minnum", 2)
+    return vector_call("minnum", first, 2)
 
 
 @intrinsic
 def larger(typing_context: Any, first: Any, second: Any) -> Any:
     """The larger of two in every lane."""
-    return lanes(lanes, lanes), _vector_call("maxnum", 2)
+    return vector_call("maxnum", first, 2)
 
 
 def _shuffled(builder: Any, first: Any, second: Any, *order: int) -> Any:

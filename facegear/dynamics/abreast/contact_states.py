@@ -4,18 +4,9 @@ from facegear.arrays import Array
 from facegear.dynamics.abreast.kernel import inlined
 from facegear.dynamics.abreast.lanes import Lanes
 from facegear.dynamics.abreast.rows import LOWER, MESH_DAMPING, SCALE, UPPER, Structure
-from facegear.dynamics.abreast.wide import (
-    WIDTH,
-    load,
-    magnitude,
-    multiply,
-    multiply_add,
-    splat,
-    store,
-    subtract,
-    where_positive,
-)
+from facegear.dynamics.abreast.wide import WIDTH, load, splat, store, subtract, where_positive
 from facegear.dynamics.integrator.contact_states import BRIEFEST, EDGE, LATEST, SHORTEST, STILL
+from facegear.machine_code.vectors import magnitude, multiply, multiply_add
 
 
 @inlined

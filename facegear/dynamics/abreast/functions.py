@@ -4,12 +4,9 @@ import math
 from typing import Any
 
 from facegear.dynamics.abreast.wide import (
-    add,
     divide,
     exponent,
     mantissa,
-    multiply,
-    multiply_add,
     nearest,
     power_of_two,
     splat,
@@ -17,6 +14,7 @@ from facegear.dynamics.abreast.wide import (
     where_positive,
 )
 from facegear.machine_code.compiler import FAST, for_callers
+from facegear.machine_code.vectors import add, multiply, multiply_add
 
 Wide = Any
 """WIDTH doubles."""

@@ -18,24 +18,12 @@ from facegear.dynamics.abreast.sums import ManySums, add_step, clear, keep_batch
 from facegear.dynamics.abreast.switches import until_switch
 from facegear.dynamics.abreast.tangents import move_tangents, shorten
 from facegear.dynamics.abreast.taylor import deflect, excitation, move, recurrence, values
-from facegear.dynamics.abreast.wide import (
-    WIDTH,
-    divide,
-    larger,
-    load,
-    magnitude,
-    multiply,
-    multiply_add,
-    smaller,
-    splat,
-    store,
-    subtract,
-    where_positive,
-)
+from facegear.dynamics.abreast.wide import WIDTH, divide, load, splat, store, subtract, where_positive
 from facegear.dynamics.integrator.advance import MAX_GUESSES, ROUNDING
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.periods import DONE, MAX_STEPS, NOT_FINITE, TOO_MANY_STEPS
 from facegear.machine_code.records import Record
+from facegear.machine_code.vectors import larger, magnitude, multiply, multiply_add, smaller
 
 
 @Record.register

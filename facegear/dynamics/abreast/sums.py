@@ -12,15 +12,9 @@ from facegear.dynamics.abreast.rows import Structure
 from facegear.dynamics.abreast.switches import put_down
 from facegear.dynamics.abreast.taylor import values
 from facegear.dynamics.abreast.wide import (
-    add,
     divide,
-    larger,
     load,
-    magnitude,
-    multiply,
-    multiply_add,
     positive_lanes,
-    smaller,
     splat,
     store,
     subtract,
@@ -29,6 +23,7 @@ from facegear.dynamics.abreast.wide import (
 from facegear.dynamics.integrator.sums import LOOKS, TURNS
 from facegear.machine_code.lanes import take
 from facegear.machine_code.records import Record
+from facegear.machine_code.vectors import add, larger, magnitude, multiply, multiply_add, smaller
 
 
 @Record.register

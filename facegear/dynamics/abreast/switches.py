@@ -6,14 +6,9 @@ from facegear.dynamics.abreast.lanes import Lanes
 from facegear.dynamics.abreast.rows import LOWER, UPPER, Structure
 from facegear.dynamics.abreast.wide import (
     WIDTH,
-    add,
     divide,
     load,
-    magnitude,
-    multiply,
-    multiply_add,
     positive_lanes,
-    smaller,
     splat,
     store,
     subtract,
@@ -22,6 +17,7 @@ from facegear.dynamics.abreast.wide import (
 from facegear.dynamics.integrator.contact_states import SHORTEST
 from facegear.dynamics.integrator.roots import BESIDE, CLOSE, first_root, root_after
 from facegear.machine_code.lanes import take
+from facegear.machine_code.vectors import add, magnitude, multiply, multiply_add, smaller
 
 NEVER = 2.0
 ITERATIONS = 100

@@ -6,16 +6,9 @@ from facegear.dynamics.abreast.kernel import called, inlined
 from facegear.dynamics.abreast.lanes import Lanes
 from facegear.dynamics.abreast.rows import JACOBIAN, WEIGHTS, Structure
 from facegear.dynamics.abreast.taylor import deflect, move, recurrence
-from facegear.dynamics.abreast.wide import (
-    load,
-    multiply,
-    multiply_add,
-    splat,
-    store,
-    subtract,
-    where_positive,
-)
+from facegear.dynamics.abreast.wide import load, splat, store, subtract, where_positive
 from facegear.machine_code.lanes import take
+from facegear.machine_code.vectors import multiply, multiply_add
 
 
 @called

@@ -13,8 +13,9 @@ from facegear.dynamics.abreast.rows import (
     OMEGA,
     Structure,
 )
-from facegear.dynamics.abreast.wide import add, load, multiply, multiply_add, splat, store, subtract
+from facegear.dynamics.abreast.wide import load, splat, store, subtract
 from facegear.machine_code.lanes import take
+from facegear.machine_code.vectors import add, multiply, multiply_add
 
 
 @inlined

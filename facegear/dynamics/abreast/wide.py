@@ -1,45 +1,30 @@
 """Vectors of eight doubles inside compiled functions, one double for each machine that runs side by side.
 
-LLVM splits them where the processor's own vectors are shorter. Indices count vectors.
+LLVM splits them where the processor's own vectors are shorter. Indices count vectors. Arithmetic that the
+vectors of a single machine need as well, which are shorter, is in `facegear.machine_code.vectors`.
 """
 
 from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic, models, register_model
+from numba.extending import intrinsic
+
+from facegear.machine_code.vectors import (
+    DOUBLE,
+    VectorType,
+    instruction,
+    loaded,
+    splatted,
+    vector_call,
+    written,
+)
 
 WIDTH = 8
 """Machines that run side by side."""
-_VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
-_BITS = ir.VectorType(ir.IntType(64), WIDTH)
+doubles = VectorType(WIDTH)
+_VECTOR, _BITS = doubles.of(DOUBLE), doubles.of(ir.IntType(64))
 _MANTISSA, _ONE, _BIAS = 52, 1023 << 52, 1023
-
-
-class WideType(types.Type):
-    """Compile-time type of WIDTH doubles."""
-
-    def __init__(self) -> None:
-        super().__init__(name=f"wide{WIDTH}")
-
-
-doubles = WideType()
-
-
-@register_model(WideType)
-class _WideModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: WideType) -> None:
-        super().__init__(manager, kind, _VECTOR)
-
-
-def _is_plain(array: Any) -> bool:
-    return isinstance(array, types.Array) and array.layout == "C" and array.dtype == types.float64
-
-
-def _pointer(context: Any, builder: Any, kind: types.Array, array: Any, index: Any) -> Any:
-    data = context.make_array(kind)(context, builder, array).data
-    return builder.gep(builder.bitcast(data, _VECTOR.as_pointer()), [index])
 
 
 def _constant(kind: ir.VectorType, value: Any) -> ir.Constant:
@@ -49,112 +34,37 @@ def _constant(kind: ir.VectorType, value: Any) -> ir.Constant:
 @intrinsic
 def load(typing_context: Any, array: Any, index: Any) -> Any:
     """Vector number `index` of a C-contiguous float64 array."""
-    if not _is_plain(array):
-        return None
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.load(_pointer(context, builder, array, *args), align=8)
-
-    return doubles(array, types.intp), code
+    return loaded(doubles, array, _VECTOR)
 
 
 @intrinsic
 def store(typing_context: Any, array: Any, index: Any, value: Any) -> Any:
     """Write vector number `index` of a C-contiguous float64 array."""
-    if not _is_plain(array):
-        return None
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        builder.store(args[2], _pointer(context, builder, array, *args[:2]), align=8)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, doubles), code
+    return written(doubles, array, _VECTOR)
 
 
 @intrinsic
 def splat(typing_context: Any, value: Any) -> Any:
     """The same double in every lane."""
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        first = builder.insert_element(
-            ir.Constant(_VECTOR, ir.Undefined), args[0], ir.Constant(ir.IntType(32), 0)
-        )
-        order = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
-        return builder.shuffle_vector(first, first, order)
-
-    return doubles(types.float64), code
-
-
-def _arithmetic(operation: str) -> Any:
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return getattr(builder, operation)(*args)
-
-    return doubles(doubles, doubles), code
-
-
-@intrinsic
-def add(typing_context: Any, first: Any, second: Any) -> Any:
-    """first + second."""
-    return _arithmetic("fadd")
+    return splatted(doubles)
 
 
 @intrinsic
 def subtract(typing_context: Any, first: Any, second: Any) -> Any:
     """first - second."""
-    return _arithmetic("fsub")
-
-
-@intrinsic
-def multiply(typing_context: Any, first: Any, second: Any) -> Any:
-    """first * second."""
-    return _arithmetic("fmul")
+    return instruction("fsub", doubles)
 
 
 @intrinsic
 def divide(typing_context: Any, first: Any, second: Any) -> Any:
     """first / second."""
-    return _arithmetic("fdiv")
-
-
-def _vector_call(name: str, arguments: int) -> Any:
-    """An LLVM intrinsic on whole vectors."""
-
-    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        kind = ir.FunctionType(_VECTOR, [_VECTOR] * arguments)
-        full = f"llvm.{name}.v{WIDTH}f64"
-        return builder.call(cgutils.get_or_insert_function(builder.module, kind, full), args)
-
-    return doubles(*[doubles] * arguments), code
-
-
-@intrinsic
-def multiply_add(typing_context: Any, first: Any, second: Any, third: Any) -> Any:
-    """first * second + third, fused where the processor can."""
-    return _vector_call("fmuladd", 3)
-
-
-@intrinsic
-def magnitude(typing_context: Any, value: Any) -> Any:
-    """Absolute value."""
-    return _vector_call("fabs", 1)
-
-
-@intrinsic
-def smaller(typing_context: Any, first: Any, second: Any) -> Any:
-    """The smaller of two."""
-    return _vector_call("minnum", 2)
-
-
-@intrinsic
-def larger(typing_context: Any, first: Any, second: Any) -> Any:
-    """The larger of two."""
-    return _vector_call("maxnum", 2)
+    return instruction("fdiv", doubles)
 
 
 @intrinsic
 def nearest(typing_context: Any, value: Any) -> Any:
     """The nearest whole number."""
-    return _vector_call("rint", 1)
+    return vector_call("rint", doubles, 1)
 
 
 @intrinsic
