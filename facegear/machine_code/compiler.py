@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from numba import njit
 from numba.extending import overload
 
-from facegear.machine_code.kept import NotStored
+from facegear.machine_code.errors import NotStored
 from facegear.machine_code.versions import NUMBA_IS_KNOWN, warn_once
 
 PRIVATE_OPTIONS = ("_nrt",)

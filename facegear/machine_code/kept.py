@@ -18,12 +18,6 @@ LIMIT = 256 * 2**20
 """Bytes. The code of one machine's time integration takes 2 million."""
 VARIABLE = "FACEGEAR_CACHE"
 """Environment variable that names another folder, for instance where the home folder cannot be written."""
-
-
-class NotStored(LookupError):
-    """A function would have to be compiled where nothing may be."""
-
-
 _DIGEST = hashlib.sha256().digest_size
 
 

@@ -26,6 +26,7 @@ from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
 from facegear.machine_code import addresses, kept, shipped
+from facegear.machine_code.errors import NotStored
 from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
@@ -70,7 +71,7 @@ class SourcesCache(_Cache):
         name = self._name(sig, processor)
         content = kept.read(name) or self._shipped(sig, processor)
         if content is None and not self.compiles:
-            raise kept.NotStored(name)
+            raise NotStored(name)
         if content is None and name not in self._locks:
             if (lock := _wait(name)) is not None:
                 self._locks[name] = lock
