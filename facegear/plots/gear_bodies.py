@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from facegear.arrays import AnyArray, Array
-from facegear.plots.gear_waves import COLOURS, MARK_SIZE, MARKERS, PAPER, WORDS
+from facegear.plots.gear_waves import COLOURS, MARKERS, PAPER, WORDS, frame, mark_crossings
 from facegear.plots.style import NARROW, legend_above, styled
 
 SWING = 0.08
@@ -119,16 +119,10 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
             axis.annotate(
                 f"{harmonic} x mesh", (end, height), (4, -7), textcoords="offset points", bbox=PAPER
             )
+        mark_crossings(axis, met)
+        frame(axis, last_rpm, top)
         for wave, colour in COLOURS.items():
-            marks = met[met["wave"] == wave]
-            size = MARK_SIZE * marks["phase_factor"] ** 2
-            look = {"color": colour, "marker": MARKERS[wave], "edgecolor": "white", "linewidths": 0.5}
-            axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, zorder=3, **look)
             axis.add_line(Line2D([], [], color=colour, marker=MARKERS[wave], ms=5, label=WORDS[wave]))
-        axis.set_xlim(0.0, last_rpm)
-        axis.set_ylim(0.0, 1e-3 * top)
-        axis.set_xlabel("Speed of the inputs (rpm)")
-        axis.set_ylabel("Frequency (kHz)")
         figure.suptitle(f"{gear} face gear, hub held", fontsize=9)
         legend_above(axis, 2)
     return figure

@@ -3,6 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -44,15 +45,8 @@ def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: 
                 textcoords="offset points",
                 bbox=PAPER,
             )
-        for wave, colour in COLOURS.items():
-            marks = waves[waves["wave"] == wave]
-            size = MARK_SIZE * marks["phase_factor"] ** 2
-            look = {"color": colour, "marker": MARKERS[wave], "edgecolor": "white", "linewidths": 0.5}
-            axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, zorder=3, **look)
-        axis.set_xlim(0.0, last_rpm)
-        axis.set_ylim(0.0, 1e-3 * top)
-        axis.set_xlabel("Speed of the inputs (rpm)")
-        axis.set_ylabel("Frequency (kHz)")
+        mark_crossings(axis, waves)
+        frame(axis, last_rpm, top)
         figure.suptitle("Modes of the whole machine", fontsize=9)
         shown = {**COLOURS, "other modes": "0.75"}
         for name, colour in shown.items():
@@ -60,6 +54,23 @@ def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: 
             axis.add_line(Line2D([], [], color=colour, marker=marker, ms=5, label=WORDS.get(name, name)))
         legend_above(axis, 2)
     return figure
+
+
+def mark_crossings(axis: Axes, crossings: pd.DataFrame) -> None:
+    """A mark of its wave's colour at every crossing, larger where the phases of the meshes add up."""
+    for wave, colour in COLOURS.items():
+        marks = crossings[crossings["wave"] == wave]
+        size = MARK_SIZE * marks["phase_factor"] ** 2
+        look = {"color": colour, "marker": MARKERS[wave], "edgecolor": "white", "linewidths": 0.5}
+        axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, zorder=3, **look)
+
+
+def frame(axis: Axes, last_rpm: float, top: float) -> None:
+    """Axes of frequencies up to `top` (Hz) over speed."""
+    axis.set_xlim(0.0, last_rpm)
+    axis.set_ylim(0.0, 1e-3 * top)
+    axis.set_xlabel("Speed of the inputs (rpm)")
+    axis.set_ylabel("Frequency (kHz)")
 
 
 def _wave(line: pd.DataFrame) -> str:
