@@ -18,7 +18,7 @@ from facegear.geometry.design import PairDesign
 class Outline:
     """Points of an outline segment by segment, for every plane of the width.
 
-    For each segment: surface parameter of fractions 0..1 (see `parameter`), then angle and height.
+    At fractions 0..1 of each segment: angle and height, of flank and fillet the surface parameters as well.
     """
 
     design: PairDesign

@@ -25,10 +25,10 @@ def rerun(model: Model, piece: Piece, settings: Settings, step: Callable[[], Non
     """Every speed of a sweep again, from the state that the sweep left there, and far finer.
 
     All that is discretised varies: the tolerance of the steps and their order, what counts as closed, and the
-    samples, from which alone the moments of this run are taken (`sampled_piece`). What is not periodic is run
-    again with half the tolerance and a longer watch, to see whether its class holds. A finer sweep carried
-    through would also choose other branches after irregular motion, which says nothing about the accuracy of
-    either.
+    samples, from which alone the moments of this run are taken (`sampled_response`). What is not periodic is
+    run again with half the tolerance and a longer watch, to see whether its class holds. A finer sweep
+    carried through would also choose other branches after irregular motion, which says nothing about the
+    accuracy of either.
     """
     again = []
     for i, period in enumerate(piece.period):

@@ -88,7 +88,7 @@ def settling(
 
 
 class SettlingRun:
-    """A run under way. `found` is the orbit that Newton's method last came to, `found_at` the period of it.
+    """A run under way. `orbit` is the last that Newton's method came to, after `orbit_at` periods.
 
     Newton's method, whose cost is counted in mesh periods, may take as long as the run itself.
     """

@@ -18,7 +18,7 @@ SMALL = 0.1
 class Resonance:
     """The natural mode (order in the frequency table, from 1) that holds most of a response's energy.
 
-    order: multiple of the mesh frequency at which it moves most; share: of the energy of all modes;
+    order: multiple of the mesh frequency at which it moves most; fraction: of the energy of all modes;
     predicted_rpm: where that multiple meets the mode's linear frequency.
     """
 

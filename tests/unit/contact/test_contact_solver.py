@@ -14,7 +14,7 @@ from facegear.errors import NotConverged
 
 
 def random_problem(seed, size):
-    """Compliance like a layer's (decaying influence), wavy gaps, lever_arms near one."""
+    """Compliance like a layer's (decaying influence), wavy gaps, lever arms near one."""
     rng = np.random.default_rng(seed)
     x = np.sort(rng.uniform(0, 1, size))
     compliance = np.exp(-6 * np.abs(x[:, None] - x)) + 0.05 * np.eye(size)
