@@ -18,7 +18,6 @@ LARGEST = 300.0
 """Largest deviation (um) of a gear that could run."""
 SMALLEST = 0.05
 """Largest deviation (um) of a whole file, not all zero, that no measuring machine sees."""
-SAME_MM = 1e-6
 
 
 class _Point(NamedTuple):

@@ -89,11 +89,6 @@ class TableError:
         """The larger of both over what is aimed at."""
         return max(self.rms / RMS, self.largest / LARGEST)
 
-    @property
-    def meets_aim(self) -> bool:
-        """Whether no finer table is needed."""
-        return self.excess <= 1.0
-
 
 def law_torques(largest: float) -> list[float]:
     """Torques (N m) at which contact is solved for a law that reaches the largest at every phase, rising."""

@@ -61,13 +61,8 @@ def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: fl
     return TurningModes(exponents[order], states[:size, order])
 
 
-def machine_at_speed(machine: Machine, speed_rpm: float) -> TurningModes:
-    """Modes of geometric meshes about their static load at a pinion speed. Raises NotConverged."""
-    return machine_at_speeds(machine, [speed_rpm])[0]
-
-
 def machine_at_speeds(machine: Machine, speeds_rpm: Sequence[float]) -> list[TurningModes]:
-    """machine_at_speed() for every speed, with the static load of the machine solved once."""
+    """Modes of geometric meshes about their static load at every pinion speed. Raises NotConverged."""
     linear, springs = pressed_springs(machine)
     dampers = np.where(springs > 0.0, machine.damping.mesh, 0.0)
     return [turning_modes(linear, springs, dampers, speed * np.pi / 30.0) for speed in speeds_rpm]

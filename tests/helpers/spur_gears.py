@@ -1,7 +1,7 @@
 """Published spur gears, and the root stress of a spur tooth in plane strain by finite elements."""
 
-from dataclasses import replace
-from math import radians
+from dataclasses import dataclass, replace
+from math import acos, hypot, pi, radians, sin, sqrt, tan
 
 import numpy as np
 from contact_bodies import STEEL
@@ -14,26 +14,70 @@ from facegear.contact.teeth import elastic_tooth
 from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.mesh.sizes import named_sizes
 from facegear.strength.root_stress import down_the_fillet
-from facegear.strength.spur import SpurGear, SpurMesh
+from facegear.strength.spur import SpurGear
 from validation.contact.twin import slab_tooth
 
 
-def fzg_c() -> SpurMesh:
-    """FZG type C test gears: published with their form factors and stresses by a public tribology code."""
+@dataclass(frozen=True)
+class SpurMesh:
+    """A pinion and a wheel at a centre distance (m)."""
+
+    pinion: SpurGear
+    wheel: SpurGear
+    centre_distance: float
+
+    @property
+    def working_angle(self):
+        """Working pressure angle, rad."""
+        return acos((self.pinion.base_radius + self.wheel.base_radius) / self.centre_distance)
+
+    @property
+    def ratio(self):
+        return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def base_pitch(self):
+        """Distance of neighbouring flanks along the line of action, m."""
+        return 2 * pi * self.pinion.base_radius / self.pinion.teeth
+
+    @property
+    def contact_ratio(self):
+        path = tip_roll(self.pinion) + tip_roll(self.wheel) - self.centre_distance * sin(self.working_angle)
+        return path / self.base_pitch
+
+    def single_contact_radius(self, gear):
+        """Radius (m) of the outer point of single pair tooth contact on one of the gears."""
+        return hypot(gear.base_radius, tip_roll(gear) - (self.contact_ratio - 1.0) * self.base_pitch)
+
+    def pitch_curvature_radius(self):
+        """Relative radius of curvature at the pitch point, m."""
+        radii = [gear.base_radius * tan(self.working_angle) for gear in (self.pinion, self.wheel)]
+        return 1.0 / sum(1.0 / radius for radius in radii)
+
+
+def tip_roll(gear):
+    """Length of the involute's tangent at the tip, m."""
+    return sqrt(gear.tip_radius**2 - gear.base_radius**2)
+
+
+def published(module, width, rack_tip_radius, centre_distance, *sizes):
+    """Gears of 20 degrees; sizes: teeth, profile shift in modules and tip radius of pinion and wheel."""
     pinion, wheel = (
-        SpurGear(
-            teeth=teeth,
-            module=4.5e-3,
-            pressure_angle=radians(20.0),
-            profile_shift=shift,
-            tip_radius=tip,
-            width=14e-3,
-            rack_addendum=1.25,
-            rack_tip_radius=0.38,
-        )
-        for teeth, shift, tip in ((16, 0.1817, 41.318e-3), (24, 0.1715, 59.272e-3))
+        SpurGear(teeth, module, radians(20.0), shift, tip, width, 1.25, rack_tip_radius)
+        for teeth, shift, tip in sizes
     )
-    return SpurMesh(pinion, wheel, 91.5e-3)
+    return SpurMesh(pinion, wheel, centre_distance)
+
+
+def fzg_c():
+    """FZG type C test gears: published with their form factors and stresses by a public tribology code."""
+    return published(4.5e-3, 14e-3, 0.38, 91.5e-3, (16, 0.1817, 41.318e-3), (24, 0.1715, 59.272e-3))
+
+
+def din_3990_11():
+    """Spur gears rated after DIN 3990-11 by a public code that prints every factor (hanslhansl/din3990)."""
+    sizes = (19, 0.5, 44e-3), (104, 0.15, 212.6e-3)
+    return published(4e-3, 48.64e-3, 0.25, 248.506843355171e-3, *sizes)
 
 
 def slab_design(gear: SpurGear, rim: float = 3.0) -> PairDesign:

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from mesh_files import read_msh
 
 from facegear.io import arrays, documents, tables
-from facegear.io.meshes import read_msh
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 

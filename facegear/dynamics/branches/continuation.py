@@ -13,7 +13,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.branches.locate import locate
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import BranchPoint, at_parameter, solve_point
+from facegear.dynamics.branches.points import BranchPoint, solve_point
 from facegear.dynamics.branches.segment import reversal
 from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.branches.stepping import next_length, step_along
@@ -282,8 +282,3 @@ def _cut_at_junction(track: _Track) -> bool:
 def _at(special: Special, point: BranchPoint) -> bool:
     """Whether a fold or branch point is only how a branch that ends at `point` looks there."""
     return special.kind in (Kind.FOLD, Kind.BRANCH) and abs(special.point.u - point.u) < JUNCTION
-
-
-def branch_at(period_map: PeriodMap, z: Array, value: float, run: ContinuationSettings) -> Branch:
-    """The whole branch through the orbit next to the weighted state z at a parameter."""
-    return follow(period_map, at_parameter(period_map, z, float(np.log(value))), run)

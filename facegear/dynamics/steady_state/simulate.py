@@ -1,7 +1,6 @@
 """Steady state of a machine at a speed: the public entry of the dynamics."""
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -134,18 +133,6 @@ def _naming(speed_rpm: float) -> Iterator[None]:
         yield
     except NotConverged as error:
         raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.tried) from None
-
-
-def simulate_many(
-    jobs: Sequence[tuple[Model | Machine, float]], settings: Settings, threads: int = 1
-) -> list[SteadyState]:
-    """simulate() for many (machine, speed), on threads: the compiled part runs without the interpreter's
-    lock.
-    """
-    if threads <= 1:
-        return [simulate(machine, speed, settings) for machine, speed in jobs]
-    with ThreadPoolExecutor(threads) as pool:
-        return list(pool.map(lambda job: simulate(job[0], job[1], settings), jobs))
 
 
 def steady_state(

@@ -1,3 +1,4 @@
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import hypothesis.extra.numpy as hnp
@@ -12,7 +13,7 @@ from scipy.signal import find_peaks
 
 from facegear.dynamics.courses import alone
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate, simulate_many, started
+from facegear.dynamics.steady_state.simulate import build_model, simulate, started
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import maxima, resonance
 from facegear.dynamics.sweeps.jump_margin import jump_margin
@@ -121,9 +122,14 @@ def test_a_stored_chunk_run_again_is_the_same_file(model, tmp_path):
 
 
 def test_two_threads_give_the_same_results_as_one(model):
-    jobs = [(model, speed) for speed in (4500.0, 5000.0, 6000.0, 7500.0)]
-    for one, two in zip(simulate_many(jobs, SETTINGS), simulate_many(jobs, SETTINGS, threads=2), strict=True):
-        np.testing.assert_array_equal(one.deflections, two.deflections)
+    speeds = (4500.0, 5000.0, 6000.0, 7500.0)
+
+    def found(speed):
+        return simulate(model, speed, SETTINGS).deflections
+
+    with ThreadPoolExecutor(2) as pool:
+        for speed, beside in zip(speeds, pool.map(found, speeds), strict=True):
+            np.testing.assert_array_equal(beside, found(speed))
 
 
 def test_rms_of_periodic_motions_does_not_move_when_tolerance_is_halved_and_dwell_doubled(model, whole):

@@ -13,8 +13,9 @@ from law_oscillators import closing_error, law_period_map, orbit, oscillator
 from references import against, agrees
 from scipy.integrate import simpson
 from scipy.interpolate import CubicHermiteSpline
+from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
+from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind

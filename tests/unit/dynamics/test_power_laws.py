@@ -12,8 +12,9 @@ from law_oscillators import closing_error, law_period_map, orbit, oscillator
 from lumped_machines import make_layout, make_machine
 from power_laws import PowerLaw
 from references import against, agrees
+from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
+from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings

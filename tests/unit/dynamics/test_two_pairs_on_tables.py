@@ -18,8 +18,9 @@ from force_tables import linear_table, power_table
 from law_oscillators import orbit
 from oscillators import one_degree
 from scipy.optimize import brentq
+from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
+from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind

@@ -1,16 +1,17 @@
 """A tooth's mesh: on the exact surface, valid everywhere, mirror symmetric, matching across its cuts."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from references import against, agrees
-from skfem import ElementHex2
+from skfem import ElementHex2, FacetBasis
 
 from facegear.errors import InvalidInput
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.fillets import smallest_radius
-from facegear.mesh.hexahedra import facet_basis, hex_mesh
+from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.quality import require_right_side_out, scaled_jacobians, volume
 from facegear.mesh.sizes import RESOLUTIONS, named_sizes, thin_fillet
 from facegear.mesh.tooth import CORNERS, gear_tooth, pinion_tooth
@@ -105,7 +106,10 @@ def test_boundary_groups_close_the_tooth(tooth):
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     outside = mesh.boundary_facets()
     assert set(number[faces[:, 4]]) == set(mesh.dofs.facet_dofs[0, outside])
-    basis = facet_basis(mesh, ElementHex2(), outside, 5)
+    # Small elements far from the origin have coordinates of fewer digits than scikit-fem asks for.
+    mapping = mesh.mapping()
+    mapping.invF = partial(mapping.invF, newton_tol=1e-7)
+    basis = FacetBasis(mesh, ElementHex2(), mapping=mapping, facets=outside, intorder=5)
     flux = (basis.normals * basis.dx).sum(axis=(1, 2))
     agrees("sum of the area vectors, m2", np.linalg.norm(flux), 0.0, absolute=1e-15)
     position = np.asarray(basis.global_coordinates())

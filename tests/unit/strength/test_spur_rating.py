@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from references import against, agrees
-from spur_gears import fzg_c
+from spur_gears import din_3990_11, fzg_c
 
 from facegear.config.material_card import CARDS, material_card
 from facegear.strength.factors import (
@@ -20,7 +20,6 @@ from facegear.strength.factors import (
 from facegear.strength.fatigue import damage
 from facegear.strength.materials import Life
 from facegear.strength.root_form import root_form
-from facegear.strength.spur import SpurGear, SpurMesh
 
 STEEL = (206e9, 0.3)
 BENDING = Life((1e3, 3e6, 1e10), (2.5, 1.0, 0.85))
@@ -72,24 +71,6 @@ def test_stresses_of_fzg_c_gears_match_the_published_ones():
     agrees("normal force, N", normal, 5912.1, relative=1e-4)
     hertz = elasticity_factor(STEEL, STEEL) * sqrt(normal / mesh.pinion.width / mesh.pitch_curvature_radius())
     agrees("pressure at the pitch point, Pa", hertz, 1347.3e6, relative=1e-3)
-
-
-def din_3990_11() -> SpurMesh:
-    """Spur gears rated after DIN 3990-11 by a public code that prints every factor (hanslhansl/din3990)."""
-    pinion, wheel = (
-        SpurGear(
-            teeth=teeth,
-            module=4e-3,
-            pressure_angle=radians(20.0),
-            profile_shift=shift,
-            tip_radius=tip,
-            width=48.64e-3,
-            rack_addendum=1.25,
-            rack_tip_radius=0.25,
-        )
-        for teeth, shift, tip in ((19, 0.5, 44e-3), (104, 0.15, 212.6e-3))
-    )
-    return SpurMesh(pinion, wheel, 248.506843355171e-3)
 
 
 @against(

@@ -12,7 +12,7 @@ from facegear.gear_body.reduced import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.teeth import GEOMETRIC
-from facegear.transmission.turning_modes import machine_at_speed, machine_at_speeds, turning_modes, wave_table
+from facegear.transmission.turning_modes import machine_at_speeds, turning_modes, wave_table
 from facegear.transmission.waves_over_speed import campbell_crossings, campbell_table
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
@@ -156,7 +156,7 @@ def test_modes_over_speed_are_those_of_each_speed_and_meet_harmonics_where_both_
     speeds = [0.0, 1000.0, 2000.0, 4000.0]
     table = campbell_table(layout, machine.linear, speeds, machine_at_speeds(machine, speeds))
     for speed in speeds[:2]:
-        alone = machine_at_speed(machine, speed)
+        (alone,) = machine_at_speeds(machine, [speed])
         own = table[table["speed_rpm"] == speed]
         assert np.array_equal(own["frequency_hz"], alone.frequencies)
         assert np.array_equal(own["damping_ratio"], alone.damping_ratios)

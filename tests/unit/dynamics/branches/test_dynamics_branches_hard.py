@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator, one_degree, square_wave
+from whole_branches import branch_at
 
 from facegear.dynamics.branches.continuation import (
     Branch,
     BranchEnd,
     ContinuationSettings,
-    branch_at,
     follow,
     turned,
 )

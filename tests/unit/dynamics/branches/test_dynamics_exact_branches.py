@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator, meissner, one_degree, two_coordinates
 from references import against, agrees
+from whole_branches import branch_at
 
 from facegear.dynamics.branches.continuation import (
     Branch,
     BranchEnd,
     ContinuationSettings,
-    branch_at,
     follow,
     turned,
 )

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 from references import against, agrees
+from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
+from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.family import Plane
 from facegear.dynamics.branches.loci import Corner, LocusRun, follow_locus
 from facegear.dynamics.branches.period_map import PeriodMap

@@ -8,8 +8,9 @@ import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator
 from references import against, agrees
+from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, branch_at, follow, turned
+from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, follow, turned
 from facegear.dynamics.branches.explore import crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
 from facegear.dynamics.branches.margins import passed_by, several, stability_limits
