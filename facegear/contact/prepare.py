@@ -30,7 +30,7 @@ def prepare() -> None:
     """
     _touch()
     blank = Blank(*[0.0] * len(Blank._fields))
-    cut(blank, RAYS, RAYS, 0.0, RAYS, RAYS, NONE, NONE, MARKS, 0.0)
+    cut(blank, RAYS, RAYS, 0.0, RAYS, RAYS, NONE, NONE, MARKS, 0.0, NONE)
     placed_rays(np.zeros((0, 3, 3)), RAYS, NUMBERS, RAYS, RAYS)
     _gather()
     face_functions(PLACES, (3, 3))

@@ -71,7 +71,8 @@ def blank(design: PairDesign) -> Blank:
 
 class FlankSample(NamedTuple):
     """Points and normals (m, 3) of the flank, roll and psi (m,) rad there, `inner` (m,) those away from its
-    edges, and the largest `spacing` (m) between neighbours.
+    edges, and the largest `spacing` (m) between neighbours. As many points stand at each of the gear `radii`
+    (r,) m, one radius after the other.
     """
 
     points: Array
@@ -80,6 +81,7 @@ class FlankSample(NamedTuple):
     psis: Array
     inner: Mask
     spacing: float
+    radii: Array
 
 
 def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
@@ -94,14 +96,14 @@ def _of_generated(design: PairDesign) -> tuple[Blank, FlankSample]:
 
 def _flank_sample(design: PairDesign) -> FlankSample:
     gear = design.face_gear
-    radius = np.linspace(gear.inner_radius, gear.outer_radius, SAMPLES)[None, :]
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, SAMPLES)[:, None]
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    roll = top + np.linspace(0, 1, SAMPLES)[:, None] * (design.shaper_tip_roll - top)
+    roll = top + np.linspace(0, 1, SAMPLES) * (design.shaper_tip_roll - top)
     psi = face_gear.psi_at(design, radius, roll)
     points = face_gear.flank_point(design, roll, psi)
     inner = np.zeros((SAMPLES, SAMPLES), bool)
     inner[2:-2, 2:-2] = True
-    across, along = (np.linalg.norm(np.diff(points, axis=axis), axis=-1).max() for axis in (0, 1))
+    along, across = (np.linalg.norm(np.diff(points, axis=axis), axis=-1).max() for axis in (0, 1))
     return FlankSample(
         points=points.reshape(-1, 3),
         normals=face_gear.flank_normal(design, roll, psi).reshape(-1, 3),
@@ -109,4 +111,5 @@ def _flank_sample(design: PairDesign) -> FlankSample:
         psis=psi.ravel(),
         inner=inner.ravel(),
         spacing=float(np.hypot(across, along)),
+        radii=radius.ravel(),
     )

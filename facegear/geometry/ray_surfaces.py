@@ -11,7 +11,7 @@ from typing import Any
 from facegear.arrays import Array
 from facegear.geometry import closed_forms
 from facegear.geometry.ray_blank import Blank
-from facegear.machine_code.compiler import for_callers
+from facegear.machine_code.compiler import FAST, for_callers
 
 NEWTON_STEPS = 16
 LARGEST_STEP = 0.2
@@ -22,16 +22,6 @@ NEGLIGIBLE_IN_FILLET = 1e-10
 """The same on the fillet, whose radii are smaller."""
 SEEN = 1e-5
 """Distance (m) of a ray from the point reached from which on the ray's length is known as well as that."""
-LAST, AGE = 16, 6
-"""Numbers kept of the ray before: roll, psi, cosine and sine of the gear's turn and of psi, their age in
-steps (negative: no flank was met), and the flank's frame there."""
-OLDEST = 16
-"""Steps after which cosines and sines are computed anew, so that rounding does not add up."""
-NEAR = 0.05
-"""Distance (rad) between points of neighbouring rays, in roll and psi together, up to which one starts at the
-other."""
-SMALL_TURN = 1e-4
-"""Square of an angle (rad) whose cosine and sine three terms give to rounding."""
 PSI_STEPS = 60
 CLOSE = 1e-8
 """Step (rad) of Newton's method whose square is below rounding, so that it is the last."""
@@ -44,8 +34,8 @@ FlankCut = tuple[float, float, float, float, bool]
 """Distance to the flank, and to the flank continued beyond its edges; roll and psi there; whether Newton's
 method converged."""
 
-FAST_NUMBERS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy"}
-"""Products and sums may be fused, and a division by zero is not an error but infinite."""
+FAST_NUMBERS: dict[str, Any] = {**FAST, "error_model": "numpy"}
+"""As FAST, and a division by zero is not an error but infinite."""
 
 inlined = for_callers(**FAST_NUMBERS)
 
@@ -59,79 +49,20 @@ first_psi = inlined(closed_forms.first_psi)
 
 
 @inlined
-def cut_flank(blank: Blank, p: Ray, n: Ray, inside: float, search_radius: float, last: Array) -> FlankCut:
-    """From where the ray before met the flank, kept in `last` (LAST,); else from the generating section that
-    the point lies in. Hits are written to `last`.
-    """
-    if last[AGE] >= 0.0:
-        cut = _from_last(blank, p, n, search_radius, last)
-        if last[AGE] >= 0.0:
-            return cut
-    cosine = blank.base / (blank.ratio * inside)
-    sine = sqrt(max(1 - cosine * cosine, 1e-12))
-    roll = ((blank.lift - p[2]) / blank.base - cosine) / sine
-    roll = min(max(roll, 0.0), 1.2 * blank.tip_roll)
-    return cut_flank_from(blank, p, n, roll, atan2(sine, cosine), search_radius, last)
-
-
-@inlined
-def cut_flank_from(
-    blank: Blank, p: Ray, n: Ray, roll: float, psi: float, search_radius: float, last: Array
-) -> FlankCut:
-    """From a point of the flank."""
-    turn = blank.ratio * (psi - roll - blank.space)
-    turned = cos(turn), sin(turn), cos(psi), sin(psi)
-    return _flank_newton(blank, p, n, roll, psi, turned, search_radius, 0.0, last)
-
-
-@inlined
-def _from_last(blank: Blank, p: Ray, n: Ray, search_radius: float, last: Array) -> FlankCut:
-    """From the point that Newton's first step reaches at the point that `last` keeps; a miss clears it."""
-    frame = (last[7], last[8], last[9], last[10], last[11], last[12], last[13], last[14], last[15])
-    da, db, _, _, _, _ = _step(p, n, _across(n), frame)
-    age, roll, psi = last[AGE], last[0] - da, last[1] - db
-    if not abs(da) + abs(db) < NEAR:
-        last[AGE] = -1.0
-        return inf, inf, roll, psi, False
-    if age < OLDEST:
-        ct, st = _rotated(last[2], last[3], blank.ratio * (da - db))
-        cp, sp = _rotated(last[4], last[5], -db)
-    else:
-        turn = blank.ratio * (psi - roll - blank.space)
-        ct, st, cp, sp, age = cos(turn), sin(turn), cos(psi), sin(psi), 0.0
-    return _flank_newton(blank, p, n, roll, psi, (ct, st, cp, sp), search_radius, age, last)
-
-
-@inlined
-def _flank_newton(
-    blank: Blank,
-    p: Array,
-    n: Array,
-    roll: float,
-    psi: float,
-    turned: tuple[float, float, float, float],
-    search_radius: float,
-    age: float,
-    last: Array,
-) -> FlankCut:
-    """Newton's method from a point whose cosines and sines of turn and psi are `turned`, `age` steps old."""
-    across = _across(n)
-    ct, st, cp, sp = turned
-    last[AGE] = -1.0
+def cut_flank(blank: Blank, p: Ray, n: Ray, roll: float, psi: float, search_radius: float) -> FlankCut:
+    """By Newton's method from a point of the flank."""
+    beside = across(n)
     for _ in range(NEWTON_STEPS):
+        turn = blank.ratio * (psi - roll - blank.space)
+        ct, st, cp, sp = cos(turn), sin(turn), cos(psi), sin(psi)
         frame = turned_flank_frame(blank.base, blank.ratio, blank.lift, roll, ct, st, cp, sp)
-        da, db, off, x, y, z = _step(p, n, across, frame)
+        da, db, off, x, y, z = step(p, beside, frame)
         if not abs(da) + abs(db) < inf:
             break
         if off < SEEN:
             distance = x * n[0] + y * n[1] + z * n[2]
             if off < NEGLIGIBLE:
                 straight = distance if cp * (n[0] * ct + n[1] * st) + n[2] * sp < 0 else inf
-                if abs(straight) < search_radius:
-                    last[0], last[1], last[2], last[3], last[4], last[5] = roll, psi, ct, st, cp, sp
-                    last[AGE] = age
-                    for i in range(9):
-                        last[AGE + 1 + i] = frame[i]
                 roll, psi, x, y, z = roll - da, psi - db, x + p[0], y + p[1], z + p[2]
                 inside = blank.inner <= sqrt(x * x + y * y) <= blank.outer and roll <= blank.tip_roll
                 distance = straight if inside and z <= blank.tip_plane + 1e-12 else inf
@@ -139,29 +70,12 @@ def _flank_newton(
             if abs(distance) > search_radius + SEEN:
                 return inf, inf, roll, psi, True
         scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))
-        da, db, age = scale * da, scale * db, age + 1.0
-        roll, psi = roll - da, psi - db
-        ct, st = _rotated(ct, st, blank.ratio * (da - db))
-        cp, sp = _rotated(cp, sp, -db)
+        roll, psi = roll - scale * da, psi - scale * db
     return inf, inf, roll, psi, False
 
 
 @inlined
-def _rotated(cosine: float, sine: float, turn: float) -> tuple[float, float]:
-    """Cosine and sine of an angle that a turn (rad) is added to."""
-    square = turn * turn
-    if square < SMALL_TURN:
-        up, back = (
-            turn * (1 - square / 6 * (1 - square / 20)),
-            square / 2 * (1 - square / 12 * (1 - square / 30)),
-        )
-    else:
-        up, back = sin(turn), 1 - cos(turn)
-    return cosine - (cosine * back + sine * up), sine - (sine * back - cosine * up)
-
-
-@inlined
-def _across(n: Array) -> tuple[float, ...]:
+def across(n: Array) -> tuple[float, ...]:
     """Two unit directions across a ray: x and z of the first, x, y and z of the second."""
     length = sqrt(n[0] * n[0] + n[2] * n[2])
     e0, e2 = n[2] / length, -n[0] / length
@@ -169,20 +83,19 @@ def _across(n: Array) -> tuple[float, ...]:
 
 
 @inlined
-def _step(p: Ray, n: Ray, across: tuple[float, ...], frame: tuple[float, ...]) -> tuple[float, ...]:
-    """Newton's step from a frame of a surface towards a ray: what to take off both parameters, the distance
-    (m) of the frame's point from the ray, and where the step leads, x, y and z from p.
+def step(p: Ray, beside: tuple[float, ...], frame: tuple[float, ...]) -> tuple[float, ...]:
+    """Newton's step from a frame of a surface towards a ray that two directions stand `beside`: what to take
+    off both parameters, not finite where there is none, the distance (m) of the frame's point from the ray,
+    and where the step leads, x, y and z from p.
     """
-    e0, e2, f0, f1, f2 = across
+    e0, e2, f0, f1, f2 = beside
     x, y, z, ax, ay, az, bx, by, bz = frame
     x, y, z = x - p[0], y - p[1], z - p[2]
     r1, r2 = x * e0 + z * e2, x * f0 + y * f1 + z * f2
     a1, a2 = ax * e0 + az * e2, ax * f0 + ay * f1 + az * f2
     b1, b2 = bx * e0 + bz * e2, bx * f0 + by * f1 + bz * f2
-    det = a1 * b2 - a2 * b1
-    if det == 0.0:
-        return inf, inf, inf, x, y, z
-    da, db = (r1 * b2 - r2 * b1) / det, (a1 * r2 - a2 * r1) / det
+    inverse = 1.0 / (a1 * b2 - a2 * b1)
+    da, db = (r1 * b2 - r2 * b1) * inverse, (a1 * r2 - a2 * r1) * inverse
     x, y, z = x - da * ax - db * bx, y - da * ay - db * by, z - da * az - db * bz
     return da, db, sqrt(r1 * r1 + r2 * r2), x, y, z
 
@@ -285,9 +198,9 @@ def _fillet_newton(
     """psi, distance along the ray, x and y of the point hit, and whether it converged, no farther than
     `search_radius`.
     """
-    across = _across(n)
+    beside = across(n)
     for _ in range(NEWTON_STEPS):
-        da, db, off, x, y, z = _step(p, n, across, _fillet_frame(blank, psi, q))
+        da, db, off, x, y, z = step(p, beside, _fillet_frame(blank, psi, q))
         if not abs(da) + abs(db) < inf:
             break
         scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))

@@ -158,7 +158,7 @@ class GearSide:
 
         Raises NotConverged where a ray close to the flank cannot be cut with it.
         """
-        *hit, lost = cut(self.blank, starts, ways, search_radius, *self.sample)
+        hit, lost = cut(self.blank, starts, ways, search_radius, *self.sample)
         if lost:
             where = f"{lost} rays at the gear"
             raise NotConverged("separation", where, "Newton from two starts, 16 steps each")

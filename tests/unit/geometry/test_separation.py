@@ -309,6 +309,22 @@ def test_no_gear_beyond_its_ends(pair):
     assert pinion.junction_roll(design) < 0.4
 
 
+def test_a_ray_meets_the_gear_alike_alone_and_beside_others(pair):
+    """Rays are cut side by side, each from where another one has met the flank."""
+    design = pair(26, offset=1e-4, shaft_angle_error=2e-3)
+    rng = np.random.default_rng(5)
+    roll, y = rng.uniform(-0.05, 0.75, 300), rng.uniform(0.248, 0.277, 300)
+    points = flank_points(design, np.r_[roll, np.sort(roll)], np.r_[y, y])
+    together = separation(design, points, 0.1, 0.02, 1)
+    assert set(together.part[0]) >= {0, FLANK, FILLET}
+    for row in range(0, 600, 7):
+        alone = separation(design, points.only(np.array([row])), 0.1, 0.02, 1)
+        assert alone.part[0, 0] == together.part[0, row]
+        for name in ("gap", "u", "v", "continued"):
+            one, among = getattr(alone, name)[0, 0], getattr(together, name)[0, row]
+            assert among == pytest.approx(one, rel=1e-11, abs=1e-15, nan_ok=True)
+
+
 @pytest.mark.parametrize(
     ("rounding", "inner", "outer"), [(0.0, 0.250, 0.275), (0.14, 0.250, 0.275), (0.14, 0.275, 0.297)]
 )
