@@ -6,13 +6,17 @@ import numpy as np
 
 from facegear.arrays import Array, Mask
 from facegear.contact import bonded as bonded_points
-from facegear.contact.bonded import bonded, distances, put, refined
+from facegear.contact.bonded import Bonded, bonded, distances, put, refined
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import numbers
 
 compiled = compiler(Path(bonded_points.__file__), Path(picked.__file__))
 called = for_callers(forceinline=False)
+
+Solution = tuple[int, Array, float, float, float, Array]
+"""Steps, forces (n,) N, rotation, slope and violation, and how the forces change with the torque (n,),
+N/(N m), while the same points touch. Steps are 0 where there is none."""
 
 
 @compiled
@@ -23,11 +27,10 @@ def newton(
     torque: float,
     start: Mask,
     limits: tuple[int, float],
-) -> tuple[int, Array, float, float, float]:
+) -> Solution:
     """Primal-dual active set from the points `start` (n,), in at most `limits` steps to a tolerance.
 
-    Returns steps, forces (n,), rotation, slope and violation. Where the sets repeat themselves, steps are 0
-    and the forces those of the last set, with tension in them.
+    Where the sets repeat themselves, steps are 0 and the forces those of the last set, with tension in them.
     """
     steps, tolerance = limits
     active, count = start.copy(), gap.size
@@ -53,7 +56,7 @@ def newton(
             drives |= following[i] and lever_arm[i] > 0.0
         if same:
             force, rotation, residual = refined(compliance, gap, lever_arm, torque, touching)
-            return step, force, rotation, touching[6], residual
+            return step, force, rotation, touching[6], residual, _change(touching, count)
         repeated = False
         for earlier in range(step - 1):
             repeated |= _alike(seen[earlier], following)
@@ -61,7 +64,17 @@ def newton(
             break
         for i in range(count):
             active[i] = following[i]
-    return 0, force, 0.0, 0.0, 0.0
+    return 0, force, 0.0, 0.0, 0.0, force
+
+
+@called
+def _change(touching: Bonded, count: int) -> Array:
+    """How the forces (n,) of touching points change with the torque, N/(N m)."""
+    change = numbers(count, 0.0)
+    index, turning, slope = touching[0], touching[3], touching[6]
+    for i in range(index.size):
+        change[index[i]] = slope * turning[i]
+    return change
 
 
 @called
@@ -80,7 +93,7 @@ def solved(
     torque: float,
     start: Mask,
     limits: tuple[int, float],
-) -> tuple[int, Array, float, float, float]:
+) -> Solution:
     """`newton` and, where that fails, an exchange of one point at a time; steps are 0 if both fail."""
     begin = start
     if not _drives(start, lever_arm):
@@ -155,7 +168,7 @@ def _exchanged(
     torque: float,
     start: Array,
     limits: tuple[int, float],
-) -> tuple[int, Array, float, float, float]:
+) -> Solution:
     """One point at a time from feasible forces, energy falling at every step, hence finite. As `newton`."""
     force, active = start.copy(), np.zeros(start.size, np.bool_)
     for i in range(start.size):
@@ -190,9 +203,10 @@ def _exchanged(
                 worst = i
         if worst < 0 or distance[worst] >= -limits[1] * (turned + nearest):
             force, rotation, residual = refined(compliance, gap, lever_arm, torque, touching)
-            return limits[0] + step, force, rotation, touching[6], residual
+            change = _change(touching, gap.size)
+            return limits[0] + step, force, rotation, touching[6], residual, change
         active[worst] = True
-    return 0, force, 0.0, 0.0, 0.0
+    return 0, force, 0.0, 0.0, 0.0, force
 
 
 @compiled

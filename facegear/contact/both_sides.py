@@ -7,11 +7,12 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.contact import averages
 from facegear.contact.averages import Rows
-from facegear.machine_code import picked
+from facegear.machine_code import picked, prefetch
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_table, integers, listed, table, taken, unsigned
+from facegear.machine_code.prefetch import LINE, request
 
-SOURCES = Path(averages.__file__), Path(picked.__file__)
+SOURCES = Path(averages.__file__), Path(picked.__file__), Path(prefetch.__file__)
 compiled = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
 inlined, called = for_callers(), for_callers(forceinline=False)
@@ -21,6 +22,9 @@ Ends = tuple[np.uint64, np.uint64]
 
 BLOCK = 128
 """Columns that stay in the processor's cache while they are averaged."""
+AHEAD = 2
+"""Rows of the compliance ahead of use that are requested from memory."""
+HALF_LINE = np.uint64(LINE // 2)
 TOGETHER = 16
 """Rows whose averages are put in columns together: they fill whole lines of the cache."""
 
@@ -52,7 +56,10 @@ def add_averages(
     for start in range(0, wanted.size, BLOCK):
         size = min(BLOCK, wanted.size - start)
         for a in range(used.size):
+            following = np.uint64(used[min(a + AHEAD, used.size - 1)])
             row, ends = used[a], _clipped(low_of[a], high_of[a], start, size)
+            for b in range(ends[0], ends[1], HALF_LINE):
+                request(compliance, following, column[np.uint64(start) + b])
             for b in range(ends[0], ends[1]):
                 part[a, b] = compliance[row, column[np.uint64(start) + b]]
         for group in range(0, count, TOGETHER):

@@ -88,12 +88,12 @@ def part_of(rows: Rows, begin: int, end: int) -> Rows:
 
 
 class Surface(NamedTuple):
-    """Contact surface of a gear: its elements' `faces` on the refined nodes and on the `coarse` ones before
-    refinement, and `own`, `others` and `scale` of its `FlankCompliance`.
+    """Contact surface of a gear: its elements' `faces` on the refined nodes, the `interpolation` to these
+    from the nodes before refinement, and `own`, `others` and `scale` of its `FlankCompliance`.
     """
 
     faces: Faces
-    coarse: Faces
+    interpolation: Rows
     own: Array
     others: Array
     scale: float
@@ -134,7 +134,7 @@ def surface_of(lattice: Lattice, body: FlankCompliance) -> Surface:
     own, others = (
         np.require(array, requirements=["C", "W"]) for array in (_rows_first(body.own), body.others)
     )
-    return Surface(lattice.faces(True), lattice.faces(False), own, others, body.scale)
+    return Surface(lattice.faces(True), lattice.interpolated(), own, others, body.scale)
 
 
 def _rows_first(symmetric: Array) -> Array:

@@ -18,7 +18,6 @@ from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
 from facegear.contact.touching import (
     BAND,
     GAP,
-    GROWTH,
     START_GAP,
     START_WIDTH,
     WIDER,
@@ -145,6 +144,6 @@ class _PairAtPosition:
     def touching(self, torques: Array, limit: float) -> Touching:
         searched = self.searched
         facing, coupled = searched.at(self.row, limit), searched.options.coupled
-        parts = Strip(GAP, BAND, WIDER, START_GAP, START_WIDTH, GROWTH, 1.0 / MARGIN)
+        parts = Strip(GAP, BAND, WIDER, START_GAP / MARGIN, START_WIDTH)
         accuracy = NEWTON_STEPS, TOLERANCE
         return touching(facing, searched.cover, searched.surfaces, torques, limit, parts, coupled, accuracy)

@@ -41,7 +41,7 @@ def prepare() -> None:
 def _touch() -> None:
     """No point of either tooth faces the other."""
     faces = Faces((1, 1), (1, 1), np.zeros((1, 2), np.int64))
-    surface = Surface(faces, faces, np.zeros((1, 1)), np.zeros((1, 1, 1)), 1.0)
+    surface = Surface(faces, (BEGIN, NUMBERS, NONE), np.zeros((1, 1)), np.zeros((1, 1, 1)), 1.0)
     touching(
         Facing(HatPoints(NONE, NONE, PLACES, PLACES, *FOUR, NONE), BEGIN, NUMBERS),
         Cover(NONE, 0, (1, 1), (0.0, 0.0)),

@@ -71,7 +71,7 @@ def solve_contact(
         raise NotConverged("contact", where, "no candidate point can carry the torque")
     problem = (*map(np.ascontiguousarray, (compliance, gap, lever_arm)), float(torque))
     begin = np.zeros(gap.size, bool) if start is None else start
-    steps, force, rotation, slope, residual = solved(*problem, begin, (NEWTON_STEPS, TOLERANCE))
+    steps, force, rotation, slope, residual, _ = solved(*problem, begin, (NEWTON_STEPS, TOLERANCE))
     check_solved(steps, residual, gap.size, where)
     return ContactSolution(
         torque=torque, force=force, rotation=rotation, slope=slope, residual=residual, steps=steps

@@ -1,6 +1,7 @@
 """The nodal loads that unit forces make which averages over points spread on elements' faces; compiled."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.averages import Rows
 from facegear.contact.bodies import surface
-from facegear.contact.bodies.surface import LINEAR_STEPS, QUADRATIC_STEPS, locate
+from facegear.contact.bodies.surface import LINEAR_STEPS, QUADRATIC_STEPS, interpolation, locate
 from facegear.contact.options import Refinement
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
@@ -55,20 +56,18 @@ class Faces(NamedTuple):
 
 
 @compiled
-def spread(rows: Rows, which: Integers, at: Array, faces: Faces) -> Rows:
-    """Rows `which` (r,) over points at lattice coordinates (q, 2) as rows (r,) over the nodes of faces."""
+def spread(rows: Rows, at: Array, faces: Faces) -> Rows:
+    """Rows over points at lattice coordinates (q, 2) as rows over the nodes of faces."""
     shape, steps = faces.shape, faces.steps
     pointer, index, weight = rows
     width, columns = steps.shape[0], shape[1]
-    base, values = functions_at(rows, which, at, faces)
-    offset, room = offsets(faces), 0
-    for row in which:
-        room += width * (pointer[row + 1] - pointer[row])
+    base, values = _functions_at(index, at, faces)
+    offset, room = _offsets(faces), width * index.size
     nodes, load = empty_integers(room), empty_numbers(room)
-    ends, slot = integers(which.size + 1, 0), integers(shape[0] * columns, -1)
+    ends, slot = integers(pointer.size, 0), integers(shape[0] * columns, -1)
     on_face, filled = numbers(width, 0.0), 0
-    for number in range(which.size):
-        row, first = which[number], filled
+    for row in range(pointer.size - 1):
+        first = filled
         for k in range(pointer[row], pointer[row + 1]):
             point, w = index[k], weight[k]
             for a in range(width):
@@ -83,12 +82,12 @@ def spread(rows: Rows, which: Integers, at: Array, faces: Faces) -> Rows:
                         filled += 1
                     load[at_node] += on_face[a]
                     on_face[a] = 0.0
-        ends[number + 1] = filled
+        ends[row + 1] = filled
     return ends, nodes[:filled].copy(), load[:filled].copy()
 
 
 @called
-def offsets(faces: Faces) -> Integers:
+def _offsets(faces: Faces) -> Integers:
     """Numbers (a,) of a face's nodes less that of its first."""
     result = integers(faces.steps.shape[0], 0)
     for a in range(result.size):
@@ -97,27 +96,49 @@ def offsets(faces: Faces) -> Integers:
 
 
 @called
-def functions_at(rows: Rows, which: Integers, at: Array, faces: Faces) -> tuple[Integers, Array]:
-    """First node (q,) of the face that each point of the rows `which` lies on, -1 of other points, and the
-    face's functions (q, a) there.
+def _functions_at(points: Integers, at: Array, faces: Faces) -> tuple[Integers, Array]:
+    """First node (q,) of the face that each of some points lies on, -1 of the others, and the face's
+    functions (q, a) there.
     """
     scale, shape, steps = faces
-    pointer, index, _ = rows
     size, columns = 0, shape[1]
     for a in range(steps.shape[0]):
         size = max(size, steps[a, 0])
     base, values = integers(at.shape[0], -1), empty_table(at.shape[0], steps.shape[0])
     value, slope = empty_table(2, size + 1), empty_table(2, size + 1)
     corner = integers(2, 0)
-    for row in which:
-        for k in range(pointer[row], pointer[row + 1]):
-            point = index[k]
-            if base[point] < 0:
-                locate(at[point, 0] / scale[0], at[point, 1] / scale[1], shape, size, corner, value, slope)
-                base[point] = corner[0] * columns + corner[1]
-                for a in range(steps.shape[0]):
-                    values[point, a] = value[0, steps[a, 0]] * value[1, steps[a, 1]]
+    for point in points:
+        if base[point] < 0:
+            locate(at[point, 0] / scale[0], at[point, 1] / scale[1], shape, size, corner, value, slope)
+            base[point] = corner[0] * columns + corner[1]
+            for a in range(steps.shape[0]):
+                values[point, a] = value[0, steps[a, 0]] * value[1, steps[a, 1]]
     return base, values
+
+
+@compiled
+def composed(rows: Rows, inner: Rows, columns: int) -> Rows:
+    """Rows over what are themselves rows over columns, as rows over the columns."""
+    pointer, index, weight = rows
+    first, column, factor = inner
+    room = 0
+    for i in index:
+        room += first[i + 1] - first[i]
+    nodes, load = empty_integers(room), empty_numbers(room)
+    ends, slot = integers(pointer.size, 0), integers(columns, -1)
+    filled = 0
+    for row in range(pointer.size - 1):
+        begin = filled
+        for k in range(pointer[row], pointer[row + 1]):
+            for m in range(first[index[k]], first[index[k] + 1]):
+                at_column = slot[column[m]]
+                if at_column < begin:
+                    at_column = slot[column[m]] = filled
+                    nodes[filled], load[filled] = column[m], 0.0
+                    filled += 1
+                load[at_column] += weight[k] * factor[m]
+        ends[row + 1] = filled
+    return ends, nodes[:filled].copy(), load[:filled].copy()
 
 
 @dataclass(frozen=True)
@@ -161,9 +182,19 @@ class Lattice:
             return Faces((1, 1), self.shape, steps)
         return Faces((self.refinement.profile, self.refinement.width), self.coarse, steps)
 
+    def interpolated(self) -> Rows:
+        """Displacements of the refined nodes as sums of those of the nodes before refinement: shared."""
+        return _interpolated(self)
+
     def loads(self, rows: Rows, at: Array, refined: bool = True) -> NodalLoads:
         """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2)."""
         faces = self.faces(refined)
-        return NodalLoads(
-            spread(rows, np.arange(rows[0].size - 1), at, faces), faces.shape[0] * faces.shape[1]
-        )
+        return NodalLoads(spread(rows, at, faces), faces.shape[0] * faces.shape[1])
+
+
+@lru_cache(maxsize=8)
+def _interpolated(lattice: Lattice) -> Rows:
+    refined = np.argwhere(np.ones(lattice.shape)) / lattice.factors
+    matrix = interpolation(refined, lattice.coarse, lattice.linear)
+    matrix.eliminate_zeros()
+    return matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data

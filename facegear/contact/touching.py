@@ -14,12 +14,13 @@ import numpy as np
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact import active_set, averages, bonded, both_sides, displacement, influence, spreading
 from facegear.contact.active_set import solved
-from facegear.contact.averages import HatPoints, Hats, Rows, closing
+from facegear.contact.averages import HatPoints, Hats, Rows, closing, rows_of
 from facegear.contact.bodies import surface
+from facegear.contact.displacement import Loads
 from facegear.contact.displacement import displacement as displaced
 from facegear.contact.influence import Surface
 from facegear.contact.influence import influence as influence_of
-from facegear.contact.spreading import spread
+from facegear.contact.spreading import composed, spread
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_numbers, integers, marked, numbers, table, taken
@@ -49,27 +50,17 @@ START_GAP, START_WIDTH = 0.6, 0.14
 the others in it as a part of what the least gap is below that.
 """
 
-GROWTH = 0.75
-"""Exponent of the load by which the approach is taken to another torque for that guess: between those of a
-point (2/3) and of a line (nearly 1).
-"""
-
-Loads = tuple[tuple[Rows, Rows], tuple[Rows, Rows]]
-"""Loads of hats on the nodes of both surfaces, and on those before refinement."""
-
 
 class Strip(NamedTuple):
-    """How wide a strip contact is sought in, GAP, BAND and WIDER; where the search starts, START_GAP,
-    START_WIDTH and GROWTH, from the turn under the first torque that is `expected` as a part of the limit.
+    """How wide a strip contact is sought in, GAP, BAND and WIDER; where the search starts, START_GAP of the
+    turn that is expected under the first torque, as a part of the limit, and START_WIDTH.
     """
 
     gap: float
     band: float
     wider: float
-    start_gap: float
+    begin: float
     start_width: float
-    growth: float
-    expected: float
 
 
 class Cover(NamedTuple):
@@ -156,23 +147,24 @@ def touching(
     steps, tried = integers(count, 0), forward > 0
     which, force = integers(0, 0), table(count, 0)
     ends = integers(facing.teeth.size + 1, 0)
-    loads = _loads(hats.rows, which, at, surfaces)
+    every = spread(hats.rows, at[0], surfaces[0].faces), spread(hats.rows, at[1], surfaces[1].faces)
+    loads = _loads(every, np.zeros(gap.size, np.bool_), surfaces)
     while tried:
         which = marked(keep)
         ends = _ends(taken(hats.pair, which), facing.teeth.size)
-        loads = _loads(hats.rows, which, at, surfaces)
+        loads = _loads(every, keep, surfaces)
         matrix = influence_of(ends, facing.teeth, surfaces, loads[0], loads[1], coupled)
-        force, turn = table(count, which.size), strip.expected * limit
+        force, begin = table(count, which.size), strip.begin * limit
+        start = taken(_expected(own, column_min, begin, strip.start_width), which)
         apart, levers = taken(gap, which), taken(arm, which)
         for t in range(count):
-            if t:
-                turn = rotation[t - 1] * (torques[t] / torques[t - 1]) ** strip.growth
-            start = _expected(own, column_min, strip.start_gap * turn, strip.start_width)
-            steps[t], forces, rotation[t], slope[t], residual[t] = solved(
-                matrix, apart, levers, torques[t], taken(start, which), limits
+            steps[t], forces, rotation[t], slope[t], residual[t], change = solved(
+                matrix, apart, levers, torques[t], start, limits
             )
+            following = torques[min(t + 1, count - 1)] - torques[t]
             for i in range(which.size):
                 force[t, i] = forces[i]
+                start[i] = forces[i] + following * change[i] > 0.0
             tried = steps[t] > 0 and not rotation[0] > limit
             if not tried:
                 break
@@ -186,9 +178,8 @@ def touching(
         others = marked(cases)
         if not others.size:
             break
-        seen = others, _ends(taken(hats.pair, others), facing.teeth.size), taken(cases, others)
-        loaded = ends, loads[0], loads[1]
-        moved = displaced(seen, hats.rows, at, surfaces, facing.teeth, loaded, force, coupled)
+        asked = others, _ends(taken(hats.pair, others), facing.teeth.size), taken(cases, others)
+        moved = displaced(asked, every, surfaces, facing.teeth, (ends, loads), force, coupled)
         tried = False
         for number, hat in enumerate(others):
             inside = 0.0
@@ -295,18 +286,21 @@ def _columns(values: Array, chosen: Integers) -> Array:
 
 
 @called
-def _loads(rows: Rows, which: Integers, at: tuple[Array, Array], surfaces: tuple[Surface, Surface]) -> Loads:
-    fine = spread(rows, which, at[0], surfaces[0].faces), spread(rows, which, at[1], surfaces[1].faces)
-    coarse = spread(rows, which, at[0], surfaces[0].coarse), spread(rows, which, at[1], surfaces[1].coarse)
-    return fine, coarse
+def _loads(every: tuple[Rows, Rows], keep: Mask, surfaces: tuple[Surface, Surface]) -> Loads:
+    """Of the hats that are kept, among the loads of all on the nodes of both surfaces."""
+    pinion, gear = surfaces
+    fine = rows_of(*every[0], keep), rows_of(*every[1], keep)
+    return fine, (
+        composed(fine[0], pinion.interpolation, pinion.others.shape[1]),
+        composed(fine[1], gear.interpolation, gear.others.shape[1]),
+    )
 
 
 @called
 def _on_nodes(loads: Rows, ends: Integers, force: Array, body: Surface) -> Array:
     """Forces (t, p, n) N of pairs on nodes by forces (t, m) on hats."""
     pointer, index, weight = loads
-    nodes = body.coarse.shape[0] * body.coarse.shape[1]
-    total = np.zeros((force.shape[0], ends.size - 1, nodes))
+    total = np.zeros((force.shape[0], ends.size - 1, body.others.shape[1]))
     for pair in range(ends.size - 1):
         for i in range(ends[pair], ends[pair + 1]):
             for t in range(force.shape[0]):

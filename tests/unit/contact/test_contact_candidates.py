@@ -16,7 +16,7 @@ from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.search import cover_of, facing_points, find_candidates
-from facegear.contact.spreading import Lattice, spread
+from facegear.contact.spreading import Lattice, composed
 from facegear.geometry.opposite import located
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
@@ -106,16 +106,18 @@ def test_displacements_without_the_matrix_are_those_with_it(model_of):
     bodies = tuple(map(surface_of, lattices, (model.pinion, model.gear)))
     every, ends = np.arange(hats.gap.size), np.searchsorted(hats.pair, np.arange(PAIRS.size + 1))
     fine, coarse = (
-        tuple(spread(hats.rows, every, place, faces) for place, faces in zip(at, both, strict=True))
-        for both in ([body.faces for body in bodies], [body.coarse for body in bodies])
+        tuple(
+            lattice.loads(hats.rows, place, refined).rows for lattice, place in zip(lattices, at, strict=True)
+        )
+        for refined in (True, False)
     )
     forces = np.random.default_rng(0).uniform(0, 10, (2, every.size))
     with_matrix = forces @ influence(ends, PAIRS, bodies, fine, coarse, True)
     pairs = find_candidates(flanks, angles, PAIRS, limit, options)
     by_pair = influence_matrix(pairs, model.pinion, model.gear)
     np.testing.assert_allclose(with_matrix, forces @ by_pair, rtol=1e-9)
-    loaded, cases = (ends, fine, coarse), np.full(every.size, 2)
-    given = hats.rows, at, bodies, PAIRS, loaded, forces, True
+    loads, cases = (fine, coarse), np.full(every.size, 2)
+    given = fine, bodies, PAIRS, (ends, loads), forces, True
     np.testing.assert_allclose(displacement((every, ends, cases), *given).T, with_matrix, rtol=1e-9)
     some, cases = every[::3], 1 + every[::3] % 2
     of_some = np.searchsorted(hats.pair[some], np.arange(PAIRS.size + 1))
@@ -137,11 +139,22 @@ def test_loads_spread_in_one_pass_are_the_sparse_product(linear):
     np.testing.assert_allclose(made, expected, atol=1e-14)
     forces = rng.uniform(0, 1, 12)
     np.testing.assert_allclose(loads.by(forces), forces @ expected, atol=1e-14)
-    pointer, index, weight = spread(
-        rows, np.array([7, 2]), points, Lattice(shape, Refinement(), linear).faces()
-    )
-    some = sp.csr_matrix((weight, index, pointer), shape=(2, 63)).toarray()
-    np.testing.assert_allclose(some, expected[[7, 2]], atol=1e-14)
+
+
+@pytest.mark.parametrize("linear", [False, True])
+def test_loads_before_refinement_follow_from_the_refined_ones(linear):
+    """Also of points beside the lattice."""
+    rng = np.random.default_rng(2)
+    lattice = Lattice((5, 7), Refinement(3, 2), linear)
+    points = rng.uniform(-0.5, 12.5, (40, 2))
+    matrix = sp.random_array((12, 40), density=0.2, format="csr", rng=rng)
+    rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
+    refined, coarse = (lattice.loads(rows, points, finer).rows for finer in (True, False))
+    pointer, index, weight = composed(refined, lattice.interpolated(), 35)
+    followed = sp.csr_matrix((weight, index, pointer), shape=(12, 35)).toarray()
+    pointer, index, weight = coarse
+    expected = sp.csr_matrix((weight, index, pointer), shape=(12, 35)).toarray()
+    np.testing.assert_allclose(followed, expected, atol=1e-13)
 
 
 @pytest.mark.parametrize(("element", "linear"), [(ElementQuad1(), True), (ElementQuad2(), False)])

@@ -42,6 +42,21 @@ def test_solution_does_not_depend_on_the_start(seed, start):
     assert warm.rotation == pytest.approx(cold.rotation, rel=1e-12)
 
 
+@pytest.mark.parametrize("steps", [40, 1])
+def test_change_of_the_forces_with_the_torque_holds_while_the_same_points_touch(steps):
+    """Whether the set is reached by Newton steps or by exchanges."""
+    problem, kept = random_problem(3, 30), 0
+    for torque in np.linspace(0.1, 3.0, 20).tolist():
+        first, more = (
+            active_set.solved(*problem, load, np.ones(30, bool), (steps, 1e-11))
+            for load in (torque, 1.001 * torque)
+        )
+        if np.array_equal(first[1] > 0, more[1] > 0):
+            kept += 1
+            np.testing.assert_allclose(first[1] + 0.001 * torque * first[5], more[1], rtol=1e-9)
+    assert kept > 10
+
+
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 10**6), size=st.integers(2, 60))
 def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
