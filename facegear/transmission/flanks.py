@@ -39,11 +39,6 @@ def flank_gaps(machine: Machine) -> Array:
     return np.tile(machine.half_backlashes, 2)
 
 
-def stiffness_series(machine: Machine) -> list[Harmonics]:
-    """k of every flank over the reference's mesh cycle, N/m."""
-    return list(_both(machine.mesh_stiffness, machine.phases))
-
-
 @dataclass(frozen=True, eq=False)
 class MeshContacts:
     """The contacts of all meshes, see Layout.contacts.

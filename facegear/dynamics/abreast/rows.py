@@ -20,7 +20,7 @@ class Structure(NamedTuple):
     error_kind (m,): the series of stiffness and of transmission error that a contact has. law_terms,
     error_terms, load_terms: harmonics with the mean; law_kinds, error_kinds: numbers of series.
     damping_when_open: whether dampers act on open contacts. opens: whether a contact may open. offsets: where
-    each of FIELDS begins in a machine's row, and where the last ends.
+    each of OMEGA to TOLERANCE begins in a machine's row, and where the last ends.
     """
 
     n: int
@@ -42,22 +42,8 @@ class Structure(NamedTuple):
     offsets: Integers
 
 
-FIELDS = (
-    "omega_squared",
-    "damping",
-    "weights",
-    "jacobian",
-    "mesh_damping",
-    "lower",
-    "upper",
-    "law",
-    "error",
-    "load",
-    "scale",
-    "tolerance",
-)
-"""Numbers of a machine: `Packed`'s, and the tolerance of its steps."""
 OMEGA, DAMPING, WEIGHTS, JACOBIAN, MESH_DAMPING, LOWER, UPPER, LAW, ERROR, LOAD, SCALE, TOLERANCE = range(12)
+"""Numbers of a machine: `Packed`'s, and the tolerance of its steps."""
 
 
 def may_run_abreast(packed: Packed) -> bool:

@@ -9,7 +9,6 @@ from facegear.errors import ConfigErrors
 from facegear.geometry.deviations import deviation
 from facegear.geometry.nominal import flank_face, nominal_points
 
-KEY = "tooth_pair.face_gear.flanks"
 HEAD = "# pitch and thickness: included\nbody,tooth,flank,face_mm,profile_mm,deviation_um"
 FACES, PROFILES = (251.0, 257.0, 263.0, 269.0, 274.0), (0.2, 2.0, 3.75, 5.0)
 

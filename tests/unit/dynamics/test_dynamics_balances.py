@@ -6,17 +6,17 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import drive_rows, make_layout, make_machine
 from random_machines import FINE, frequency, kicked, machines, speeds
+from recorded_motion import Trajectory, record
 from references import against, agrees
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.trajectory import Trajectory, record
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import error_series, stiffness_series
+from facegear.transmission.flanks import error_series, mirrored
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role
 from facegear.transmission.machine import OpenFlanks
@@ -27,7 +27,9 @@ from facegear.transmission.printed import PRINTED
 def contacts(machine):
     """k and e of each contact of the system: meshes as printed, flanks where meshes are geometric."""
     if machine.layout.kinematics.flanks_apart:
-        return stiffness_series(machine), error_series(machine)
+        both = *machine.mesh_stiffness, *map(mirrored, machine.mesh_stiffness)
+        phases = np.tile(machine.phases, 2)
+        return [own.shifted(lag) for own, lag in zip(both, phases, strict=True)], error_series(machine)
     stiffness = [machine.stiffness.shifted(float(phase)) for phase in machine.phases]
     return stiffness, [machine.error.shifted(float(phase)) for phase in machine.error_phases]
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from lumped_machines import drive_rows, make_layout, make_machine
 from oscillators import one_degree
+from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
 from facegear.dynamics.integrator.compiled import TAU
-from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start, steady_state
 from facegear.dynamics.steady_state.statistics import moments

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from recorded_motion import record
 from references import against, agrees
 
 from facegear.config.dynamics import SECOND_LOOKS
@@ -13,7 +14,6 @@ from facegear.config.load import load_config
 from facegear.config.machines import case_machine
 from facegear.config.model import resolved
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.orbits import change

@@ -3,13 +3,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from oscillators import backlash_oscillator, mathieu, meissner
+from recorded_motion import record
 from references import against, agrees
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from facegear.dynamics.courses import alone
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import steady_state

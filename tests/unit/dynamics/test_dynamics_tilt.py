@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from recorded_motion import record
 from references import against, agrees
 
 from facegear.dynamics.integrator.compiled import TAU
-from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import error_series, stiffness_series
+from facegear.transmission.flanks import error_series, flank_law
 from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.teeth import GEOMETRIC
@@ -95,7 +95,7 @@ def test_moments_about_both_diameters_are_balanced_in_motion():
     ahead = (phases - run.starts[step])[:, None]
     rates = order * ahead ** (order - 1)
     rate = omega * np.einsum("kp,kpm->km", rates, run.deflections[step][:, 1:])
-    k = np.stack([series(phases / TAU) for series in stiffness_series(machine)], axis=1)
+    k = flank_law(machine).stiffness(phases / TAU)
     # Damping across open flanks is shared by the two; the error's rate is in the deflection's already.
     force = k * np.maximum(deflections - system.upper, 0.0) + 0.5 * machine.damping.mesh * rate
     assert error_series(machine)[0].order == 1

@@ -11,9 +11,9 @@ import pytest
 from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
 from lumped_machines import make_layout, make_machine
+from recorded_motion import record
 
 import facegear
-from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.errors import FacegearError

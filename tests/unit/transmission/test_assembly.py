@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
 
-from facegear.harmonics.series import Harmonics, stacked, stacked_values
+from facegear.harmonics.series import Harmonics
 from facegear.transmission.assembly import assembly
-from facegear.transmission.flanks import constant_errors, stiffness_series
+from facegear.transmission.flanks import constant_errors, flank_law
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.phases import PhaseConvention, mesh_phases
@@ -115,7 +115,7 @@ def test_the_back_flank_is_the_drive_flank_run_backwards():
     stiffness = Harmonics(np.array([0.0, 3e7, -1e7]), np.array([4e8, 2e7, 5e6]))
     machine = make_machine(make_layout(kinematics=GEOMETRIC), stiffness=stiffness)
     cycles = np.linspace(0.0, 1.0, 33)
-    drive, back = np.split(stacked_values(stacked(stiffness_series(machine)), cycles), 2, axis=1)
+    drive, back = np.split(flank_law(machine).stiffness(cycles), 2, axis=1)
     for mesh, lag in enumerate(machine.phases):
         np.testing.assert_allclose(drive[:, mesh], stiffness(cycles - lag), rtol=1e-12)
         np.testing.assert_allclose(back[:, mesh], stiffness(lag - cycles), rtol=1e-12)
