@@ -162,7 +162,7 @@ def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
     cycles = np.linspace(0.0, 2.0, 23)
     places = flank_places(machine.phases, cycles)
     found = flank_law(machine).stiffness(cycles)
-    agrees("stiffness of the flanks, N/m", found, machine.stiffness(places), relative=1e-9)
+    agrees("stiffness of a flank, N/m", found, machine.stiffness(places), relative=1e-9)
 
 
 SWEPT = pd.DataFrame(
