@@ -13,13 +13,14 @@ from facegear.contact.loads import EdgePoints, gathered
 from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
 from facegear.contact.spreading import Faces
 from facegear.contact.touching import Cover, Facing, Strip, touching
-from facegear.geometry.opposite import nearest_of
+from facegear.geometry.opposite import by_tip_edge, nearest_of
 from facegear.geometry.ray_blank import Blank
 from facegear.geometry.rays import cut
 from facegear.geometry.separation import placed_rays
 
 NONE, NUMBERS, MARKS, BEGIN = np.zeros(0), np.zeros(0, np.int64), np.zeros(0, bool), np.zeros(1, np.int64)
-PLACES, RAYS, FOUR = np.zeros((0, 2)), np.zeros((0, 3)), (np.zeros((0, 4), np.int64), np.zeros((0, 4)))
+PLACES, RAYS, CUBICS = np.zeros((0, 2)), np.zeros((0, 3)), np.zeros((4, 0))
+FOUR = np.zeros((0, 4), np.int64), np.zeros((0, 4))
 
 
 @cache
@@ -31,7 +32,8 @@ def prepare() -> None:
     _touch()
     blank = Blank(*[0.0] * len(Blank._fields))
     cut(blank, RAYS, RAYS, 0.0, RAYS, RAYS, NONE, NONE, MARKS, 0.0, NONE)
-    placed_rays(np.zeros((0, 3, 3)), RAYS, NUMBERS, RAYS, RAYS)
+    placed_rays(np.zeros((0, 3, 3)), RAYS, NUMBERS, NUMBERS, RAYS, RAYS)
+    by_tip_edge(np.zeros(0, np.int8), NONE, NONE, 1.0, 1.0, 1.0, NONE, CUBICS, CUBICS)
     _gather()
     face_functions(PLACES, (3, 3))
     nearest_of(RAYS, np.asfortranarray(np.zeros((2, 2))))

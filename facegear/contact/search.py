@@ -110,9 +110,9 @@ def _facing(
     tip = np.arange(flank_count, points.area.size if options.edges else flank_count)
     numbers = [np.concatenate([part, tip]) if part.size else part for part in near]
     counts, number = np.array([part.size for part in numbers]), np.concatenate(numbers)
-    seen = SurfacePoints(points.position[number], points.normal[number])
+    surface = SurfacePoints(points.position, points.normal)
     each = np.repeat(np.arange(len(near)), counts)
-    hits = located(design, separation_each(design, seen, placements.all, each, FARTHEST))
+    hits = located(design, separation_each(design, surface, placements.all, each, FARTHEST, number))
     beside = np.where(number < flank_count, BESIDE * design.module, 0.0)
     on_gear, gap = gear.coordinates(hits, options.fillet, beside), hits.gap
     if not options.fillet:

@@ -23,8 +23,8 @@ class SurfacePoints:
         """The same points as (n, 3) arrays."""
         return SurfacePoints(self.position.reshape(-1, 3), self.normal.reshape(-1, 3))
 
-    def only(self, index: Integers) -> "SurfacePoints":
-        """Those of n points at `index`."""
+    def only(self, index: Integers | slice) -> "SurfacePoints":
+        """Those of n points, or of n times many, at `index`."""
         return SurfacePoints(self.position[index], self.normal[index])
 
     @property

@@ -36,7 +36,6 @@ __all__ = [
     "Separation",
     "separation",
     "separation_each",
-    "separation_in",
 ]
 
 RAYS_AT_ONCE = 60_000
@@ -79,30 +78,17 @@ def separation(
     phi1, phi2, tooth = (
         np.atleast_1d(part).ravel() for part in np.broadcast_arrays(phi1, phi2, np.asarray(tooth, float))
     )
-    return separation_in(design, points, to_left_flank(design, phi1, phi2, tooth), search_radius)
-
-
-def separation_in(
-    design: PairDesign, points: SurfacePoints, motion: RigidMotion, search_radius: float | None = None
-) -> Separation:
-    """The same in p placements given as `placement.to_left_flank` of the design: motions (p,)."""
     search_radius = float(design.module if search_radius is None else search_radius)
-    placements, count = len(motion.shift), points.position.shape[-2]
-    gap = np.full((placements, count), np.inf)
-    part = np.zeros(gap.shape, np.int8)
-    u, v, continued = (np.full(gap.shape, value) for value in (np.nan, np.nan, np.inf))
-    block, gear = max(1, RAYS_AT_ONCE // max(count, 1)), GearSide.of_design(design)
-    for first in range(0, placements, block):
+    motion, gear = to_left_flank(design, phi1, phi2, tooth), GearSide.of_design(design)
+    count = points.position.shape[-2]
+    block = max(1, RAYS_AT_ONCE // max(count, 1))
+    cuts = []
+    for first in range(0, max(1, phi1.size), block):
         rows = slice(first, first + block)
-        here = motion.only(rows)
-        position, normal = (
-            vectors[rows] if vectors.ndim == 3 else vectors for vectors in (points.position, points.normal)
-        )
-        starts, ways = here.points(position).reshape(-1, 3), here.directions(normal).reshape(-1, 3)
-        hit = gear.cut(starts, ways, search_radius)
-        for target, values in zip((gap, part, u, v, continued), hit, strict=True):
-            target[rows] = values.reshape(-1, count)
-    return Separation(gap=gap, part=part, u=u, v=v, continued=continued)
+        here = points if points.position.ndim == 2 else points.only(rows)
+        cuts.append(gear.cut(*rays_of_all(motion.only(rows), here), search_radius))
+    hit = cuts[0] if len(cuts) == 1 else [np.concatenate(parts) for parts in zip(*cuts, strict=True)]
+    return Separation(*(values.reshape(phi1.size, count) for values in hit))
 
 
 def separation_each(
@@ -111,30 +97,47 @@ def separation_each(
     placement: tuple[Array, Array, Array],
     at: Integers,
     search_radius: float,
+    number: Integers | None = None,
 ) -> Separation:
-    """The same of n points (n, 3) that each stand in one of p placements only, `at` (n,): all (n,).
+    """The same of points that each stand in one of p placements only, `at` (n,): all (n,).
 
-    placement: phi1, phi2 (rad) and tooth, (p,) each. Raises NotConverged as `separation` does.
+    placement: phi1, phi2 (rad) and tooth, (p,) each; number (n,): which of the points (m, 3), without it all.
+    Raises NotConverged as `separation` does.
     """
     motion = to_left_flank(design, *placement)
+    if number is None:
+        number = np.arange(at.size)
+    return Separation(*GearSide.of_design(design).cut(*_rays(motion, points, at, number), search_radius))
+
+
+def rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Array]:
+    """Points (n, 3) in each of p motions, or (p, n, 3) each in its own: points and directions (p n, 3)."""
+    placements, (*each, count, _) = len(motion.shift), points.position.shape
+    at, number = np.repeat(np.arange(placements), count), np.arange(placements * count)
+    number = number if each else number - count * at
+    return _rays(motion, points.flat(), at, number)
+
+
+def _rays(motion: RigidMotion, points: SurfacePoints, at: Integers, number: Integers) -> tuple[Array, Array]:
     shift = np.ascontiguousarray(motion.shift)
-    starts, ways = placed_rays(motion.matrix, shift, at, points.position, points.normal)
-    return Separation(*GearSide.of_design(design).cut(starts, ways, search_radius))
+    return placed_rays(motion.matrix, shift, at, number, points.position, points.normal)
 
 
 @compiler()
 def placed_rays(
-    matrix: Array, shift: Array, at: Integers, position: Array, normal: Array
+    matrix: Array, shift: Array, at: Integers, number: Integers, position: Array, normal: Array
 ) -> tuple[Array, Array]:
-    """Points and directions (n, 3), each by its own of motions: matrices (p, 3, 3) and shifts (p, 3)."""
-    starts, ways = np.empty(position.shape), np.empty(position.shape)
+    """Those of points and directions (m, 3) that `number` (n,) says, (n, 3), each by the motion `at` (n,): of
+    matrices (p, 3, 3) and shifts (p, 3).
+    """
+    starts, ways = np.empty((at.size, 3)), np.empty((at.size, 3))
     for row in range(at.size):
-        number = at[row]
+        placed, point = at[row], number[row]
         for i in range(3):
-            start, way = shift[number, i], 0.0
+            start, way = shift[placed, i], 0.0
             for j in range(3):
-                start += matrix[number, i, j] * position[row, j]
-                way += matrix[number, i, j] * normal[row, j]
+                start += matrix[placed, i, j] * position[point, j]
+                way += matrix[placed, i, j] * normal[point, j]
             starts[row, i], ways[row, i] = start, way
     return starts, ways
 
