@@ -95,8 +95,8 @@ def _solved(section: Section, max_frequency: float, last_order: int, last_static
             expected = modes[-1].frequencies.size if modes else FIRST_TRY
             modes.append(order_modes(body, order, max_frequency, solve, expected))
         if order <= last_static:
-            compliances[order] = mean_compliance(body, order, solve)
-            slopes[order] = slope_compliance(body, order, solve)
+            compliances[order] = mean_compliance(body, solve)
+            slopes[order] = slope_compliance(body, solve)
     return SolvedBody(
         section=section,
         mesh=mesh,

@@ -11,13 +11,15 @@ from facegear.gear_body.matrices import BodyMatrices
 from facegear.gear_body.modes import OrderModes
 
 
-def mean_compliance(body: BodyMatrices, order: int, solve: Solve) -> Array:
-    """Means <W>, <V>, <W / r> by unit loads on them, (3, 3), hub held; `solve` is that of `held_solver`."""
+def mean_compliance(body: BodyMatrices, solve: Solve) -> Array:
+    """Means <W>, <V>, <W / r> by unit loads on them, (3, 3), hub held; `solve` is that of `held_solver`
+    for an order.
+    """
     means = np.stack(body.on_teeth)
     return np.asarray(means @ solve(means.T))
 
 
-def slope_compliance(body: BodyMatrices, order: int, solve: Solve) -> Array:
+def slope_compliance(body: BodyMatrices, solve: Solve) -> Array:
     """<W>, <V>, <W / r> and the slope dW/dr by a unit moment on that slope, (1, 4), hub held."""
     slope = body.slope_on_teeth
     moved = solve(slope)

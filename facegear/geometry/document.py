@@ -40,7 +40,7 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
         },
         "contact_ratio": analysis.contact_ratio,
         "backlash_um": {"smallest": 1e6 * analysis.backlash.min(), "largest": 1e6 * analysis.backlash.max()},
-        "unloaded": {"drive": _contact(design, analysis.drive), "back": _contact(design, analysis.back)},
+        "unloaded": {"drive": _contact(analysis.drive), "back": _contact(analysis.back)},
         "path_curvature": {
             "pinion_roll_rad": roll,
             "larger_per_m": large,
@@ -53,7 +53,7 @@ def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
     }
 
 
-def _contact(design: PairDesign, contact: UnloadedContact) -> dict[str, Any]:
+def _contact(contact: UnloadedContact) -> dict[str, Any]:
     roll, y = contact.path
     error = 1e6 * contact.transmission_error
     return {

@@ -32,7 +32,7 @@ def root_tables(roots: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
             for side, fillet in enumerate(FILLETS):
                 fine = down_the_fillet(root.stress[row, :, side])
                 key = (torque, body, fillet)
-                summary.append((*key, *_peak(root, row, side, fine)))
+                summary.append((*key, *_peak(root, side, fine)))
                 history = zip(root.passage, fine.max(axis=(1, 2)), fine.min(axis=(1, 2)), strict=True)
                 passage += [(*key, at, 1e-6 * high, 1e-6 * low) for at, high, low in history]
                 ends = zip(root.along, fine.max(axis=(0, 1)), fine.min(axis=(0, 1)), strict=True)
@@ -44,7 +44,7 @@ def root_tables(roots: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
     }
 
 
-def _peak(root: RootStress, row: int, side: int, fine: Array) -> tuple[float, ...]:
+def _peak(root: RootStress, side: int, fine: Array) -> tuple[float, ...]:
     """Columns from `largest_mpa` on."""
     when, down, column = np.unravel_index(np.argmax(fine), fine.shape)
     angle = down_the_fillet(root.angle[side])

@@ -91,10 +91,10 @@ def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lamb
     rows = []
     for case in (oscillator_case(), machine_case(machine, speed_rpm)):
         exact = None if case.name == "machine" else _exact()
-        expected = exact or _found(case, *_followed(case, REFERENCE)[:2])
+        expected = exact or _found(case, _followed(case, REFERENCE)[0])
         for tolerance in TOLERANCES:
-            period_map, branch, seconds = _followed(case, tolerance)
-            answers = _found(case, period_map, branch)
+            branch, seconds = _followed(case, tolerance)
+            answers = _found(case, branch)
             rows.append(
                 {
                     "case": case.name,
@@ -123,15 +123,15 @@ def _exact() -> _Answers:
     return _Answers(which, np.array(values), np.array([state, velocity / 0.75]), np.array(EXACT_MULTIPLIERS))
 
 
-def _followed(case: Case, tolerance: float) -> tuple[PeriodMap, Branch, float]:
+def _followed(case: Case, tolerance: float) -> tuple[Branch, float]:
     period_map = PeriodMap(case.family, 1, tolerance)
     start = case.begin(period_map)
     begin = time.process_time()
     branch = follow(period_map, start, case.run)
-    return period_map, branch, time.process_time() - begin
+    return branch, time.process_time() - begin
 
 
-def _found(case: Case, period_map: PeriodMap, branch: Branch) -> _Answers:
+def _found(case: Case, branch: Branch) -> _Answers:
     orbits = crossings(branch, case.value)
     chosen = next((orbit for orbit in orbits if not orbit.stable), orbits[0])
     return _Answers(

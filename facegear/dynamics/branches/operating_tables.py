@@ -31,7 +31,7 @@ def coexistence_table(
                 {
                     "speed_rpm": speed,
                     "motion": motion.label,
-                    "branch": _branch_of(motion, speed, branches),
+                    "branch": _branch_of(motion, branches),
                     "fraction": motion.fraction,
                     "error": motion.error,
                     "starts": starts,
@@ -40,7 +40,7 @@ def coexistence_table(
     return pd.DataFrame(rows, columns=["speed_rpm", "motion", "branch", "fraction", "error", "starts"])
 
 
-def _branch_of(motion: SettledMotion, speed: float, branches: Sequence[Branch]) -> str:
+def _branch_of(motion: SettledMotion, branches: Sequence[Branch]) -> str:
     if motion.point is None:
         return IRREGULAR
     for number, branch in enumerate(branches):

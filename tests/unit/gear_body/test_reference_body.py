@@ -177,6 +177,6 @@ def test_compliance_between_the_orders_computed_is_smooth_enough_to_be_read_off(
     body = gear_bodies.reference_matrices()
     for order in (11, 26, 47):
         assert order > SMOOTH and order not in sampled_orders(60)
-        computed = mean_compliance(body, order, held_solver(body, order))
+        computed = mean_compliance(body, held_solver(body, order))
         read = gear_bodies.reference_body().compliances[order]
         assert read == pytest.approx(computed, rel=2e-4)

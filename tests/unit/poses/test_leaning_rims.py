@@ -49,8 +49,8 @@ def body() -> ReducedBody:
     """Its compliance of a few orders, and the modes of one nodal diameter."""
     solvers = [held_solver(matrices(), order) for order in range(ORDERS)]
     parts = list(enumerate(solvers))
-    static = np.stack([PATCH.compliance(n, mean_compliance(matrices(), n, solve)) for n, solve in parts])
-    leaning = np.stack([PATCH.leaning(n, slope_compliance(matrices(), n, solve)[0]) for n, solve in parts])
+    static = np.stack([PATCH.compliance(n, mean_compliance(matrices(), solve)) for n, solve in parts])
+    leaning = np.stack([PATCH.leaning(n, slope_compliance(matrices(), solve)[0]) for n, solve in parts])
     solved = SimpleNamespace(
         orders=tuple(order_modes(matrices(), n, np.inf, solvers[n], 1) for n in (0, 1)),
         section=gear_bodies.section(),
