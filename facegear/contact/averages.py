@@ -16,6 +16,7 @@ from facegear.machine_code.picked import (
     numbers,
     taken,
 )
+from facegear.machine_code.records import Record
 
 compiled = compiler(Path(picked.__file__))
 inlined, called = for_callers(), for_callers(forceinline=False)
@@ -27,6 +28,7 @@ Rows = tuple[Integers, Integers, Array]
 """Row i takes `index` by `weight` from pointer[i] to pointer[i + 1]: pointer, index and weight."""
 
 
+@Record.register
 class HatPoints(NamedTuple):
     """Points (q,) of one tooth that may face a tooth of the other gear, and the hats that they lie under.
 

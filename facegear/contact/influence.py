@@ -16,6 +16,7 @@ from facegear.contact.spreading import Faces, Lattice, NodalLoads
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_integers, table
+from facegear.machine_code.records import Record
 
 SOURCES = (
     Path(spreading.__file__),
@@ -87,6 +88,7 @@ def part_of(rows: Rows, begin: int, end: int) -> Rows:
     return here, index[first:last], weight[first:last]
 
 
+@Record.register
 class Surface(NamedTuple):
     """Contact surface of a gear: its elements' `faces` on the refined nodes, the `interpolation` to these
     from the nodes before refinement, and `own`, `others` and `scale` of its `FlankCompliance`.
@@ -115,16 +117,15 @@ def influence(
     matrix = table(ends[-1], ends[-1])
     for i in range(teeth.size):
         for side in range(2):
-            body, corner = surfaces[side], (ends[i], ends[i])
-            own = part_of(loads[side], ends[i], ends[i + 1])
-            add_averages(matrix, corner, body.scale, own, body.own, own, True)
+            body = surfaces[side]
             reach = len(body.others) // 2
-            for j in range(i if coupled else 0):
-                if abs(teeth[i] - teeth[j]) <= reach:
-                    seen = part_of(coarse[side], ends[i], ends[i + 1])
-                    other = part_of(coarse[side], ends[j], ends[j + 1])
-                    block = body.others[teeth[i] - teeth[j] + reach]
-                    add_averages(matrix, (ends[j], ends[i]), body.scale, seen, block, other, False)
+            for j in range(0 if coupled else i, i + 1):
+                own, places = i == j, teeth[i] - teeth[j]
+                if abs(places) <= reach:
+                    rows = loads[side] if own else coarse[side]
+                    seen, other = part_of(rows, ends[i], ends[i + 1]), part_of(rows, ends[j], ends[j + 1])
+                    block = body.own if own else body.others[places + reach]
+                    add_averages(matrix, (ends[j], ends[i]), body.scale, seen, block, other, own)
     mirror(matrix)
     return matrix
 

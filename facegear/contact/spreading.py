@@ -15,6 +15,7 @@ from facegear.contact.options import Refinement
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_integers, empty_numbers, empty_table, integers, numbers
+from facegear.machine_code.records import Record
 
 compiled = compiler(Path(surface.__file__), Path(picked.__file__))
 called = for_callers(forceinline=False)
@@ -45,6 +46,7 @@ def _by(pointer: Integers, index: Integers, weight: Array, forces: Array, nodes:
     return total
 
 
+@Record.register
 class Faces(NamedTuple):
     """Elements' faces on a lattice of a `shape`, whose nodes stand `steps` (a, 2) from their corner; lattice
     coordinates are `scale` times finer.
@@ -100,8 +102,8 @@ def _functions_at(points: Integers, at: Array, faces: Faces) -> tuple[Integers, 
     """First node (q,) of the face that each of some points lies on, -1 of the others, and the face's
     functions (q, a) there.
     """
-    scale, shape, steps = faces
-    size, columns = 0, shape[1]
+    scale, shape, steps = faces.scale, faces.shape, faces.steps
+    size, columns = steps[0, 0], shape[1]
     for a in range(steps.shape[0]):
         size = max(size, steps[a, 0])
     base, values = integers(at.shape[0], -1), empty_table(at.shape[0], steps.shape[0])

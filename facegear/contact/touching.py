@@ -24,6 +24,7 @@ from facegear.contact.spreading import composed, spread
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_numbers, integers, marked, numbers, table, taken
+from facegear.machine_code.records import Record
 
 SOURCES = (
     Path(active_set.__file__),
@@ -51,6 +52,7 @@ the others in it as a part of what the least gap is below that.
 """
 
 
+@Record.register
 class Strip(NamedTuple):
     """How wide a strip contact is sought in, GAP, BAND and WIDER; where the search starts, START_GAP of the
     turn that is expected under the first torque, as a part of the limit, and START_WIDTH.
@@ -63,6 +65,7 @@ class Strip(NamedTuple):
     start_width: float
 
 
+@Record.register
 class Cover(NamedTuple):
     """Which hats there are, as `closing` takes them: the area (n,) m2 to be covered of each, the number of
     the `first` of the pinion's nodes, the `shape` of their lattice, and where the flanks of both gears end.
@@ -74,6 +77,7 @@ class Cover(NamedTuple):
     flank_ends: tuple[float, float]
 
 
+@Record.register
 class Facing(NamedTuple):
     """Points of the pairs `teeth` (p,) of a position that face each other; each pair's begin at `starts`
     (p + 1,).
@@ -205,7 +209,7 @@ def touching(
         hats.rows,
     )
     return Touching(
-        facing.teeth,
+        facing.teeth.copy(),
         rotation,
         slope,
         residual,

@@ -5,6 +5,7 @@ of them are marked as invariant, so that LLVM keeps what it has read whatever is
 """
 
 import hashlib
+from collections.abc import Iterator
 from itertools import accumulate
 from typing import Any
 
@@ -20,9 +21,10 @@ _BYTES = 8
 
 
 class Address(types.NamedTuple):
-    """Compile-time type of a record: fields that are C-contiguous arrays, numbers, records or None.
+    """Compile-time type of a record: fields that are C-contiguous arrays, numbers, records, tuples of them
+    or None.
 
-    Of an array stand there the address of its data and its shape.
+    Of an array stand there the address of its data and its shape, and nothing that counts who keeps it.
     """
 
     def __init__(self, fields: tuple[types.Type, ...], kind: type) -> None:
@@ -45,13 +47,22 @@ def _words(field: types.Type) -> int:
     """Words of a field."""
     if isinstance(field, Address):
         return field.begins[-1]
+    if isinstance(field, types.BaseTuple):
+        return sum(_words(item) for item in field)
     if isinstance(field, types.Array):
         return 1 + field.ndim
     return 0 if field == types.none else 1
 
 
+def _placed(items: types.BaseTuple, at: int) -> Iterator[tuple[types.Type, int]]:
+    """Types of a tuple's items, and where each begins in a record if the tuple does `at` a word."""
+    return zip(items, accumulate((_words(item) for item in items), initial=at), strict=False)
+
+
 def _is_held(field: types.Type | None) -> bool:
     """Whether a record may have a field of a type."""
+    if isinstance(field, types.BaseTuple) and not isinstance(field, Address):
+        return all(_is_held(item) for item in field)
     if isinstance(field, types.Array):
         return field.layout == "C"
     return field == types.none or isinstance(field, Address | types.Integer | types.Float | types.Boolean)
@@ -104,11 +115,17 @@ def _array(context: Any, builder: Any, field: types.Array, record: Any, at: int)
 @lower_getattr_generic(Address)
 def _field(context: Any, builder: Any, kind: Address, record: Any, name: str) -> Any:
     index = kind.fields.index(name)
-    field, at = kind.types[index], kind.begins[index]
+    return _value(context, builder, kind.types[index], record, kind.begins[index])
+
+
+def _value(context: Any, builder: Any, field: types.Type, record: Any, at: int) -> Any:
     if isinstance(field, types.Array):
         return _array(context, builder, field, record, at)
     if isinstance(field, Address):
         return builder.gep(record, [ir.Constant(_WORD, _BYTES * at)])
+    if isinstance(field, types.BaseTuple):
+        items = [_value(context, builder, item, record, begin) for item, begin in _placed(field, at)]
+        return context.make_tuple(builder, field, items)
     if field == types.none:
         return context.get_dummy_value()
     return _read(builder, record, at, context.get_value_type(field))
@@ -117,8 +134,6 @@ def _field(context: Any, builder: Any, kind: Address, record: Any, name: str) ->
 @unbox(Address)
 def _unbox(kind: Address, value: Any, c: Any) -> NativeValue:
     """Write a record to the stack of the function that Python calls."""
-    if c.context.enable_nrt:
-        raise TypeError(f"{kind.instance_class.__qualname__} is for functions compiled with FAST")
     builder = c.builder
     with builder.goto_entry_block():
         room = builder.alloca(_WORD, size=max(kind.begins[-1], 1))
@@ -131,22 +146,30 @@ def _unbox(kind: Address, value: Any, c: Any) -> NativeValue:
     return NativeValue(record, is_error=builder.load(failed))
 
 
-def _write(kind: Address, value: Any, c: Any, record: Any, failed: Any) -> None:
+def _write(kind: types.BaseTuple, value: Any, c: Any, record: Any, failed: Any) -> None:
+    """Write the items of a tuple, from the beginning of a record on."""
     builder = c.builder
-    for index, (field, at) in enumerate(zip(kind.types, kind.begins[:-1], strict=True)):
+    for index, (field, at) in enumerate(_placed(kind, 0)):
         item = c.pyapi.tuple_getitem(value, index)
-        if isinstance(field, Address):
+        if isinstance(field, types.BaseTuple):
             _write(field, item, c, builder.gep(record, [ir.Constant(_WORD, _BYTES * at)]), failed)
-            continue
-        if field == types.none:
-            continue
-        native = c.unbox(field, item)
-        with builder.if_then(native.is_error, likely=False):
-            builder.store(cgutils.true_bit, failed)
-        if not isinstance(field, types.Array):
+        elif isinstance(field, types.Array):
+            _write_array(field, item, c, record, at, failed)
+        elif field != types.none:
+            native = c.unbox(field, item)
+            with builder.if_then(native.is_error, likely=False):
+                builder.store(cgutils.true_bit, failed)
             builder.store(native.value, _word(builder, record, at, native.value.type))
-            continue
-        array = c.context.make_array(field)(c.context, builder, native.value)
-        builder.store(array.data, _word(builder, record, at, array.data.type))
-        for axis, length in enumerate(cgutils.unpack_tuple(builder, array.shape)):
-            builder.store(length, _word(builder, record, at + 1 + axis, _WORD))
+
+
+def _write_array(field: types.Array, item: Any, c: Any, record: Any, at: int, failed: Any) -> None:
+    """Write what numba reads of an array where nothing counts who keeps it: its other way would count."""
+    builder, array = c.builder, c.context.make_array(field)(c.context, c.builder)
+    adapts = ir.FunctionType(ir.IntType(32), [c.pyapi.pyobj, c.pyapi.voidptr])
+    adapt = cgutils.get_or_insert_function(builder.module, adapts, "numba_adapt_ndarray")
+    unknown = builder.call(adapt, (item, builder.bitcast(array._getpointer(), c.pyapi.voidptr)))
+    with builder.if_then(cgutils.is_not_null(builder, unknown), likely=False):
+        builder.store(cgutils.true_bit, failed)
+    builder.store(array.data, _word(builder, record, at, array.data.type))
+    for axis, length in enumerate(cgutils.unpack_tuple(builder, array.shape)):
+        builder.store(length, _word(builder, record, at + 1 + axis, _WORD))

@@ -3,7 +3,6 @@
 Made of numba's private parts: `compiler.py` lets only known versions of numba come here.
 """
 
-import gc
 import hashlib
 import pickle
 import sys
@@ -15,18 +14,15 @@ from typing import Any, TextIO
 
 import llvmlite
 import numba
-from llvmlite import binding
-from numba import config, njit, types
+from numba import njit, types
 from numba.core.caching import _Cache
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler, CompileResult
-from numba.core.compiler_machinery import register_pass
+from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
-from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
 from facegear.machine_code import addresses, kept, shipped
 from facegear.machine_code.errors import NotStored
+from facegear.machine_code.pipelines import AsWritten, ForCallers, Whole
 from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
@@ -144,110 +140,6 @@ def _wait(name: str) -> TextIO | None:
     return None
 
 
-class _CodeAsWritten(JITCodeLibrary):
-    """LLVM code whose loops are neither unrolled nor made vectors.
-
-    Those of the time integration are short, or vectors already: LLVM would make twice the code of them, which
-    takes three times as long to compile and runs no faster.
-    """
-
-    def _optimize_final_module(self) -> None:
-        module, codegen = self._final_module, self._codegen
-        passes, builder = codegen._module_pass_manager(
-            loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
-        )
-        passes.run(module, builder)
-        options = binding.create_pipeline_tuning_options(speed_level=config.OPT)
-        options.loop_unrolling = options.loop_vectorization = False
-        options.slp_vectorization = config.SLP_VECTORIZE
-        builder = binding.create_pass_builder(codegen._tm, options)
-        passes = builder.getModulePassManager()
-        passes.run(module, builder)
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _LowerAsWritten(NativeLowering):
-    _name = "lower_as_written"
-
-    def run_pass(self, state: Any) -> bool:
-        state.flags.no_cfunc_wrapper = True
-        state.library = _CodeAsWritten(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.enable_object_caching()
-        return bool(super().run_pass(state))
-
-
-class _CodeForCallers(JITCodeLibrary):
-    """LLVM code that waits, as it was written, to be linked into what calls it.
-
-    Where sums may be added in any `order`, which one it is follows from the passes over each function.
-    """
-
-    order = False
-
-    def _optimize_functions(self, module: Any) -> None:
-        if self.order:
-            super()._optimize_functions(module)
-
-    def _optimize_final_module(self) -> None:
-        pass
-
-    def _finalize_final_module(self) -> None:
-        self._finalized = True
-
-
-@register_pass(mutates_CFG=True, analysis_only=False)
-class _LowerForCallers(NativeLowering):
-    _name = "lower_for_callers"
-
-    def run_pass(self, state: Any) -> bool:
-        flags = state.flags
-        flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
-        state.library = _CodeForCallers(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.order = bool(flags.fastmath)
-        super().run_pass(state)
-        lowered = state["cr"]
-
-        def entry(*arguments: Any) -> None:
-            raise TypeError(f"{lowered.fndesc.qualname} is only for compiled callers")
-
-        state.targetctx.insert_user_function(entry, lowered.fndesc, [state.library])
-        state["cr"] = lowered._replace(cfunc=entry)
-        return True
-
-
-class _Compiler(Compiler):
-    """Numba's compiler without the collection of garbage: nearly all that it makes is used to the end."""
-
-    def _compile_core(self) -> Any:
-        collects = gc.isenabled()
-        gc.disable()
-        try:
-            return super()._compile_core()
-        finally:
-            if collects:
-                gc.enable()
-
-
-def _with(lowering: type[NativeLowering]) -> type[Compiler]:
-    """Numba's compiler with another way to make LLVM code."""
-
-    class Lowering(_Compiler):
-        def define_pipelines(self) -> list[Any]:
-            pipelines = super().define_pipelines()
-            for pipeline in pipelines:
-                pipeline.passes = [
-                    (lowering, name) if step is NativeLowering else (step, name)
-                    for step, name in pipeline.passes
-                ]
-                pipeline.finalize()
-            return pipelines
-
-    return Lowering
-
-
-_AsWritten, _ForCallers = _with(_LowerAsWritten), _with(_LowerForCallers)
-
-
 def stored(
     *sources: Path, announced: str = "", as_written: bool = False, **options: Any
 ) -> Callable[[Callable[..., Any]], Any]:
@@ -259,7 +151,7 @@ def stored(
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
-        pipeline = _AsWritten if as_written else _Compiler
+        pipeline = AsWritten if as_written else Whole
         dispatcher = njit(pipeline_class=pipeline, **options)(function)
         part = inlined(**{"forceinline": False, **options})(function)
         own = Path(function.__code__.co_filename)
@@ -280,12 +172,17 @@ def inlined(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     def typed(function: Callable[..., Any]) -> Any:
         options.setdefault("forceinline", True)
-        dispatcher = njit(pipeline_class=_ForCallers, **options)(function)
+        dispatcher = njit(pipeline_class=ForCallers, **options)(function)
 
         def add_overload(overload: Any) -> None:
             dispatcher.overloads[tuple(overload.signature.args)] = overload
 
-        dispatcher.add_overload = add_overload
+        def get_call_template(arguments: Any, names: Any) -> Any:
+            alike = tuple(types.unliteral(argument) for argument in arguments)
+            return template(alike, {name: types.unliteral(kind) for name, kind in names.items()})
+
+        template = dispatcher.get_call_template
+        dispatcher.add_overload, dispatcher.get_call_template = add_overload, get_call_template
         return dispatcher
 
     return typed

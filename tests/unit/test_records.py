@@ -1,6 +1,7 @@
 """Records: what compiled functions read of them, and that their calls and loops stay as small as written."""
 
 import re
+import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +33,8 @@ class Outer(NamedTuple):
     adds: bool
     cube: np.ndarray
     kinds: np.ndarray
+    ends: tuple[float, float]
+    rows: tuple[int, tuple[np.ndarray, float]]
     out: np.ndarray
 
 
@@ -44,7 +47,17 @@ def record(size, adds):
     """A record whose arrays depend on a size."""
     cube = np.arange(6.0 * size).reshape(size, 2, 3)
     inner = Inner(0.5 + size, np.arange(2.0 * size).reshape(2, size) ** 2)
-    return Outer(size, inner, None, adds, cube, np.arange(size)[::-1].copy(), np.zeros(size))
+    return Outer(
+        size,
+        inner,
+        None,
+        adds,
+        cube,
+        np.arange(size)[::-1].copy(),
+        (0.25, size + 0.5),
+        (size, (np.arange(2.0 * size), 0.75)),
+        np.zeros(size),
+    )
 
 
 def fill(outer, inner):
@@ -55,7 +68,9 @@ def fill(outer, inner):
         column = outer.cube[outer.kinds[i]]
         outer.out[i] = inner.factor * inner.table[1, i] + sign * column[1, 2] * column.shape[1]
         if outer.absent is None:
-            total += outer.out[i] + outer.out.size
+            total += outer.out[i] + outer.out.size - outer.ends[1] * outer.ends[0]
+        count, (values, factor) = outer.rows
+        total += factor * values[count + i]
     return total
 
 
@@ -67,6 +82,24 @@ def test_compiled_functions_read_of_a_record_and_write_to_its_arrays_what_python
         assert call(mine) == fill(python, python.inner)
         np.testing.assert_array_equal(mine.out, python.out)
     assert len(call.signatures) == 1
+
+
+def test_functions_that_make_arrays_read_a_record_and_keep_none_of_its_arrays():
+    mine = record(3, True)
+    owners = [sys.getrefcount(mine.out)]
+
+    @compiler()
+    def doubled(outer):
+        made = np.empty(outer.count)
+        for i in range(outer.count):
+            made[i] = 2.0 * outer.inner.table[1, i]
+        return made, outer.kinds.copy()
+
+    made, kinds = doubled(mine)
+    np.testing.assert_array_equal(made, 2.0 * mine.inner.table[1])
+    np.testing.assert_array_equal(kinds, mine.kinds)
+    owners.append(sys.getrefcount(mine.out))
+    assert owners[0] == owners[1]
 
 
 def test_a_field_that_compiled_functions_cannot_read_is_named():

@@ -43,7 +43,9 @@ def face_functions(
 @compiled
 def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tuple[Integers, Array, Array]:
     """`face_functions` of elements whose nodes stand `steps` (a, 2) from their corner."""
-    count, width, size = coordinates.shape[0], steps.shape[0], steps.max()
+    count, width, size = coordinates.shape[0], steps.shape[0], steps[0, 0]
+    for a in range(width):
+        size = max(size, steps[a, 0])
     nodes = np.empty((count, width), np.int64)
     values, gradients = np.empty((count, width)), np.empty((count, width, 2))
     value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
@@ -51,7 +53,7 @@ def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tupl
     for point in range(count):
         locate(coordinates[point, 0], coordinates[point, 1], (rows, columns), size, corner, value, slope)
         for a in range(width):
-            i, j = steps[a]
+            i, j = steps[a, 0], steps[a, 1]
             nodes[point, a] = (corner[0] + i) * columns + corner[1] + j
             values[point, a] = value[0, i] * value[1, j]
             gradients[point, a, 0] = slope[0, i] * value[1, j] / size

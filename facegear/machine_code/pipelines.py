@@ -1,0 +1,170 @@
+"""How functions are compiled: which are made machine code, and what is linked into what.
+
+Made of numba's private parts, as `stored.py` is.
+"""
+
+import gc
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from llvmlite import binding
+from numba import config
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.compiler_machinery import register_pass
+from numba.core.typed_passes import NativeLowering
+
+
+class _CodeForCallers(JITCodeLibrary):
+    """LLVM code that waits, as it was written, to be linked into what calls it.
+
+    Where sums may be added in any `order`, which one it is follows from the passes over each function.
+    """
+
+    order = False
+    _shared_module: Any
+    _linking_libraries: list[JITCodeLibrary]
+
+    def finalize(self) -> None:
+        """Let it be linked into several others; what it calls itself is linked into these, too."""
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == binding.Linkage.external:
+                function.linkage = "linkonce_odr"
+        self._finalized = True
+
+    def alone(self) -> Any:
+        """Its functions without those that they call."""
+        self._ensure_finalized()
+        return self._final_module
+
+    def called(self) -> Iterator[JITCodeLibrary]:
+        """All libraries that it needs, some more than once."""
+        for library in self._linking_libraries:
+            yield library
+            if isinstance(library, _CodeForCallers):
+                yield from library.called()
+
+    def _get_module_for_linking(self) -> Any:
+        """Its functions with those that they call, for a library of numba's own."""
+        if self._shared_module is None:
+            self._shared_module = self.alone().clone()
+            _link(self._shared_module, dict.fromkeys(self.called()))
+        return self._shared_module
+
+    def _optimize_functions(self, module: Any) -> None:
+        if self.order:
+            super()._optimize_functions(module)
+
+
+def _link(module: Any, libraries: Iterable[JITCodeLibrary]) -> None:
+    """Link libraries into a module, each alone: numba would link what they call with each of them again."""
+    for library in libraries:
+        own = library.alone() if isinstance(library, _CodeForCallers) else library._get_module_for_linking()
+        module.link_in(own, preserve=True)
+
+
+class _CodeOfAll(_CodeForCallers):
+    """LLVM code of a function that Python calls, with all that it calls, made machine code."""
+
+    def finalize(self) -> None:
+        """Link it together, optimise it and compile it."""
+        libraries = dict.fromkeys(self.called())
+        for library in libraries:
+            self._reload_init.update(library._reload_init)
+        _link(self._final_module, libraries)
+        self._linking_libraries = []
+        JITCodeLibrary.finalize(self)
+
+    def _get_module_for_linking(self) -> Any:
+        return JITCodeLibrary._get_module_for_linking(self)
+
+
+class _CodeAsWritten(_CodeOfAll):
+    """LLVM code whose loops are neither unrolled nor made vectors.
+
+    Those of the time integration are short, or vectors already: LLVM would make twice the code of them, which
+    takes three times as long to compile and runs no faster.
+    """
+
+    def _optimize_final_module(self) -> None:
+        module, codegen = self._final_module, self._codegen
+        passes, builder = codegen._module_pass_manager(
+            loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
+        )
+        passes.run(module, builder)
+        options = binding.create_pipeline_tuning_options(speed_level=config.OPT)
+        options.loop_unrolling = options.loop_vectorization = False
+        options.slp_vectorization = config.SLP_VECTORIZE
+        builder = binding.create_pass_builder(codegen._tm, options)
+        passes = builder.getModulePassManager()
+        passes.run(module, builder)
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _Lower(NativeLowering):
+    """Numba's lowering, to LLVM code of a `kind`."""
+
+    _name = "lower_whole"
+    kind: type[_CodeForCallers] = _CodeOfAll
+
+    def run_pass(self, state: Any) -> bool:
+        """Make the code of a function, which only Python and compiled callers call."""
+        state.flags.no_cfunc_wrapper = True
+        state.library = self.kind(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.order = bool(state.flags.fastmath)
+        state.library.enable_object_caching()
+        return bool(super().run_pass(state))
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LowerAsWritten(_Lower):
+    _name, kind = "lower_as_written", _CodeAsWritten
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LowerForCallers(_Lower):
+    _name, kind = "lower_for_callers", _CodeForCallers
+
+    def run_pass(self, state: Any) -> bool:
+        state.flags.no_compile = state.flags.no_cpython_wrapper = True
+        super().run_pass(state)
+        lowered = state["cr"]
+
+        def entry(*arguments: Any) -> None:
+            raise TypeError(f"{lowered.fndesc.qualname} is only for compiled callers")
+
+        state.targetctx.insert_user_function(entry, lowered.fndesc, [state.library])
+        state["cr"] = lowered._replace(cfunc=entry)
+        return True
+
+
+def _with(lowering: type[NativeLowering]) -> type[Compiler]:
+    """Numba's compiler with another way to make LLVM code, and without the collection of garbage: nearly all
+    that it makes is used to the end.
+    """
+
+    class Lowering(Compiler):
+        def define_pipelines(self) -> list[Any]:
+            pipelines = super().define_pipelines()
+            for pipeline in pipelines:
+                pipeline.passes = [
+                    (lowering, name) if step is NativeLowering else (step, name)
+                    for step, name in pipeline.passes
+                ]
+                pipeline.finalize()
+            return pipelines
+
+        def _compile_core(self) -> Any:
+            collects = gc.isenabled()
+            gc.disable()
+            try:
+                return super()._compile_core()
+            finally:
+                if collects:
+                    gc.enable()
+
+    return Lowering
+
+
+Whole, AsWritten, ForCallers = _with(_Lower), _with(_LowerAsWritten), _with(_LowerForCallers)
+"""For functions that Python calls, for those whose loops stay as they are, and for parts of others."""
