@@ -7,12 +7,13 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.contact import averages
 from facegear.contact.averages import Rows
-from facegear.machine_code import picked, prefetch
+from facegear.machine_code import picked, vectors
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import empty_table, integers, listed, table, taken, unsigned
-from facegear.machine_code.prefetch import LINE, request
+from facegear.machine_code.memory import LANES
+from facegear.machine_code.picked import empty_integers, empty_table, integers, table, taken
+from facegear.machine_code.vectors import load, multiply_add, splat, store, take
 
-SOURCES = Path(averages.__file__), Path(picked.__file__), Path(prefetch.__file__)
+SOURCES = Path(averages.__file__), Path(picked.__file__), Path(vectors.__file__)
 compiled = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
 inlined, called = for_callers(), for_callers(forceinline=False)
@@ -22,9 +23,6 @@ Ends = tuple[np.uint64, np.uint64]
 
 BLOCK = 128
 """Columns that stay in the processor's cache while they are averaged."""
-AHEAD = 2
-"""Rows of the compliance ahead of use that are requested from memory."""
-HALF_LINE = np.uint64(LINE // 2)
 TOGETHER = 16
 """Rows whose averages are put in columns together: they fill whole lines of the cache."""
 
@@ -43,33 +41,21 @@ def add_averages(
     `loads` (n,) times a scale.
 
     own: both are the same rows and the compliance is symmetric; only j <= i are added. Row i then needs the
-    columns of those up to itself alone.
+    columns of those up to itself alone. A compliance has LANES columns or more.
     """
-    used, slot = used_of(seen[1], compliance.shape[0])
-    wanted, number = used_of(loads[1], compliance.shape[1])
-    at, to, column = taken(slot, seen[1]), taken(number, loads[1]), unsigned(wanted)
-    first, count, last = seen[0], seen[0].size - 1, loads[0].size - 1
-    low, high = _reached(loads[0], to, wanted.size, own)
-    low_of, high_of = _needed(first, at, used.size, (low, high), own)
-    half, part = empty_table(wanted.size, count + TOGETHER), empty_table(used.size, BLOCK)
-    lines = table(TOGETHER, BLOCK)
-    for start in range(0, wanted.size, BLOCK):
-        size = min(BLOCK, wanted.size - start)
-        for a in range(used.size):
-            following = np.uint64(used[min(a + AHEAD, used.size - 1)])
-            row, ends = used[a], _clipped(low_of[a], high_of[a], start, size)
-            for b in range(ends[0], ends[1], HALF_LINE):
-                request(compliance, following, column[np.uint64(start) + b])
-            for b in range(ends[0], ends[1]):
-                part[a, b] = compliance[row, column[np.uint64(start) + b]]
+    begin, slot = fours(loads[1], compliance.shape[1])
+    to, first, count = taken(slot, loads[1]), seen[0], seen[0].size - 1
+    width, last = LANES * begin.size, loads[0].size - 1
+    low, high = _reached(loads[0], to, width, own)
+    half, lines = empty_table(width, count + TOGETHER), table(TOGETHER, BLOCK)
+    for start in range(0, width, BLOCK):
+        size = min(BLOCK, width - start)
         for group in range(0, count, TOGETHER):
             met = min(group + TOGETHER, last) if own else last
             ends = _clipped(low[met], high[met], start, size)
             for i in range(min(TOGETHER, count - group)):
-                for b in range(ends[0], ends[1]):
-                    lines[i, b] = 0.0
                 span = first[group + i], first[group + i + 1]
-                _add_rows(lines, (i, 0), 1.0, span, at, seen[2], part, ends)
+                _sum_rows(lines, i, span, seen, compliance, begin[start // LANES :], ends)
             for b in range(ends[0], ends[1]):
                 for i in range(TOGETHER):
                     half[np.uint64(start) + b, group + i] = lines[i, b]
@@ -77,8 +63,55 @@ def add_averages(
         end = min(start + BLOCK, count)
         for j in range(min(end, last) if own else last):
             ends = _clipped(max(j, start) if own else start, end, 0, end)
-            span, begin = (loads[0][j], loads[0][j + 1]), (corner[0] + j, corner[1])
-            _add_rows(matrix, begin, scale, span, to, loads[2], half, ends)
+            span, begun = (loads[0][j], loads[0][j + 1]), (corner[0] + j, corner[1])
+            _add_rows(matrix, begun, scale, span, to, loads[2], half, ends)
+
+
+@called
+def fours(indices: Integers, count: int) -> tuple[Integers, Integers]:
+    """The first (f,) of every LANES neighbours among `count` columns, rising, that hold the given ones, and
+    at which of their LANES f columns each stands (n,).
+    """
+    mark, begin, slot = integers(count, 0), empty_integers(indices.size), integers(count, -1)
+    for index in indices:
+        mark[index] = 1
+    filled, end = 0, 0
+    for index in range(count):
+        if mark[index]:
+            if index >= end:
+                begin[filled] = min(index, count - LANES)
+                end = begin[filled] + LANES
+                filled += 1
+            slot[index] = LANES * filled - (end - index)
+    return begin[:filled], slot
+
+
+@inlined
+def _sum_rows(
+    lines: Array, i: int, span: tuple[int, int], rows: Rows, compliance: Array, begin: Integers, ends: Ends
+) -> None:
+    """Set line i to the sum of a compliance's rows over a span, between two of the columns of `fours`."""
+    _, index, weight = rows
+    line, width, k = i * BLOCK, compliance.shape[1], span[0]
+    some = range(np.int64(ends[0]) // LANES, -(-np.int64(ends[1]) // LANES))
+    for q in some:
+        store(lines, line + LANES * q, splat(0.0))
+    while k + 3 < span[1]:
+        a, b, c, d = index[k] * width, index[k + 1] * width, index[k + 2] * width, index[k + 3] * width
+        u, v, w, x = splat(weight[k]), splat(weight[k + 1]), splat(weight[k + 2]), splat(weight[k + 3])
+        for q in some:
+            at, to = take(begin, q), line + LANES * q
+            total = multiply_add(u, load(compliance, a + at), load(lines, to))
+            total = multiply_add(v, load(compliance, b + at), total)
+            total = multiply_add(w, load(compliance, c + at), total)
+            store(lines, to, multiply_add(x, load(compliance, d + at), total))
+        k += 4
+    while k < span[1]:
+        a, u = index[k] * width, splat(weight[k])
+        for q in some:
+            to = line + LANES * q
+            store(lines, to, multiply_add(u, load(compliance, a + take(begin, q)), load(lines, to)))
+        k += 1
 
 
 @inlined
@@ -128,29 +161,3 @@ def _reached(pointer: Integers, column: Integers, columns: int, own: bool) -> tu
     for j in range(0 if own else pointer.size):
         low[j], high[j] = 0, columns
     return low, high
-
-
-@called
-def _needed(
-    pointer: Integers, node: Integers, nodes: int, reached: tuple[Integers, Integers], own: bool
-) -> tuple[Integers, Integers]:
-    """Between which columns each node (u,) is asked for by rows, TOGETHER of which take what is `_reached` by
-    the last of them.
-    """
-    low, high = integers(nodes, reached[1][-1]), integers(nodes, 0)
-    last = reached[0].size - 1
-    for i in range(pointer.size - 1):
-        met = min(i - i % TOGETHER + TOGETHER, last) if own else last
-        for k in range(pointer[i], pointer[i + 1]):
-            low[node[k]] = min(low[node[k]], reached[0][met])
-            high[node[k]] = max(high[node[k]], reached[1][met])
-    return low, high
-
-
-@called
-def used_of(indices: Integers, count: int) -> tuple[Integers, Integers]:
-    """The distinct indices, rising, and the index of each among them."""
-    mark = integers(count, 0)
-    for index in indices:
-        mark[index] = 1
-    return listed(mark)

@@ -2,25 +2,21 @@
 
 from pathlib import Path
 
-from facegear.arrays import AnyArray, Array, Integers
+import numpy as np
+
+from facegear.arrays import Array, Integers
 from facegear.contact import influence
 from facegear.contact.averages import Rows
+from facegear.contact.both_sides import fours
 from facegear.contact.influence import Surface, part_of
-from facegear.machine_code import picked, prefetch
+from facegear.machine_code import picked, prefetch, vectors
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import (
-    empty_numbers,
-    empty_table,
-    integers,
-    listed,
-    marked,
-    table,
-    taken,
-    unsigned,
-)
-from facegear.machine_code.prefetch import LINE, request
+from facegear.machine_code.memory import LANES
+from facegear.machine_code.picked import empty_integers, integers, listed, table, taken
+from facegear.machine_code.prefetch import request
+from facegear.machine_code.vectors import add, load, multiply_add, splat, store, sums, take
 
-SOURCES = Path(influence.__file__), Path(picked.__file__), Path(prefetch.__file__)
+SOURCES = Path(influence.__file__), Path(picked.__file__), Path(prefetch.__file__), Path(vectors.__file__)
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
@@ -54,19 +50,19 @@ def displacement(
     """
     which, asked_ends, cases = asked
     ends, loads = loaded
-    total = table(which.size, forces.shape[0])
+    total, whole = table(which.size, forces.shape[0]), LANES * (-(-forces.shape[0] // LANES))
     for i in range(teeth.size):
         here = slice(asked_ends[i], asked_ends[i + 1])
         for side in range(2 if which[here].size else 0):
             body, rows = surfaces[side], every[side]
             nodes = _nodes_of(rows, which[here], cases[here], body.own.shape[0])
-            moved = table(nodes[0].size, forces.shape[0])
+            moved = table(nodes[0].size, whole)
             if ends[i + 1] > ends[i]:
                 pushing = part_of(loads[0][side], ends[i], ends[i + 1])
                 _move(moved, nodes, body.own, pushing, forces[:, ends[i] : ends[i + 1]])
             reach = len(body.others) // 2
             before = _nodes_of(body.interpolation, nodes[0], nodes[2], body.others.shape[1])
-            beside = table(before[0].size, forces.shape[0])
+            beside = table(before[0].size, whole)
             for j in range(teeth.size if coupled else 0):
                 if i != j and ends[j + 1] > ends[j] and abs(teeth[i] - teeth[j]) <= reach:
                     pushing = part_of(loads[1][side], ends[j], ends[j + 1])
@@ -91,25 +87,28 @@ def _nodes_of(rows: Rows, which: Integers, cases: Integers, count: int) -> Asked
     return used, slot, taken(asked, used)
 
 
-@compiled_sums
+@compiled
 def _move(moved: Array, nodes: Asked, compliance: Array, loads: Rows, forces: Array) -> None:
-    """Add to displacements (u, t) of nodes, as `_nodes_of` has them, those by load cases (t, m) of rows of
-    nodal loads, in as many cases as are asked for.
+    """Add to displacements (u, c) of nodes, as `_nodes_of` has them, those by load cases (t, m) of rows of
+    nodal loads, in whole LANES c >= t of cases, at least those that are asked for.
     """
-    used, cases = unsigned(nodes[0]), nodes[2]
-    loaded, nodal = _nodal(loads, forces, compliance.shape[1])
-    line = empty_numbers(loaded.size)
+    used, _, asked = nodes
+    begin, pushed = _nodal(loads, forces, moved.shape[1], compliance.shape[1])
+    width, cases = compliance.shape[1], moved.shape[1]
     for a in range(used.size):
-        row, following = used[a], used[min(a + AHEAD, used.size - 1)]
-        for b in range(0, loaded.size, LINE // 2):
-            request(compliance, following, loaded[b])
-        for b in range(loaded.size):
-            line[b] = compliance[row, loaded[b]]
-        for t in range(cases[a]):
-            total = 0.0
-            for b in range(loaded.size):
-                total += line[b] * nodal[t, b]
-            moved[a, t] += total
+        row, following = used[a] * width, used[min(a + AHEAD, used.size - 1)] * width
+        for q in range(begin.size):
+            request(compliance, following + take(begin, q))
+        for t in range(0, asked[a], LANES):
+            first = second = third = fourth = splat(0.0)
+            for q in range(begin.size):
+                values, at = load(compliance, row + take(begin, q)), LANES * (q * cases + t)
+                first = multiply_add(values, load(pushed, at), first)
+                second = multiply_add(values, load(pushed, at + LANES), second)
+                third = multiply_add(values, load(pushed, at + 2 * LANES), third)
+                fourth = multiply_add(values, load(pushed, at + 3 * LANES), fourth)
+            to = a * cases + t
+            store(moved, to, add(load(moved, to), sums(first, second, third, fourth)))
 
 
 @compiled_sums
@@ -133,21 +132,24 @@ def _add_averages(
 
 
 @called
-def _nodal(loads: Rows, forces: Array, nodes: int) -> tuple[AnyArray, Array]:
-    """The nodes (l,) that load cases (t, m) of rows load, and the loads (t, l) on them."""
+def _nodal(loads: Rows, forces: Array, cases: int, nodes: int) -> tuple[Integers, Array]:
+    """The first (f,) of every LANES neighbouring nodes, as `fours` has them, that load cases (t, m) of rows
+    load, and the loads (f, c, LANES) on them in `cases` c >= t.
+    """
     pointer, index, weight = loads
-    every, mark = table(nodes, forces.shape[0]), integers(nodes, 0)
+    pushing, filled = empty_integers(index.size), 0
     for i in range(forces.shape[1]):
         pushes = False
         for t in range(forces.shape[0]):
             pushes |= forces[t, i] != 0.0
         for k in range(pointer[i], pointer[i + 1] if pushes else pointer[i]):
-            mark[index[k]] = 1
-            for t in range(forces.shape[0]):
-                every[index[k], t] += weight[k] * forces[t, i]
-    loaded = marked(mark)
-    result = empty_table(forces.shape[0], loaded.size)
-    for t in range(forces.shape[0]):
-        for i in range(loaded.size):
-            result[t, i] = every[loaded[i], t]
-    return unsigned(loaded), result
+            pushing[filled] = index[k]
+            filled += 1
+    begin, slot = fours(pushing[:filled], nodes)
+    pushed = np.zeros((begin.size, cases, LANES))
+    for i in range(forces.shape[1]):
+        for t in range(forces.shape[0]):
+            for k in range(pointer[i], pointer[i + 1] if forces[t, i] != 0.0 else pointer[i]):
+                at = slot[index[k]]
+                pushed[at // LANES, t, at % LANES] += weight[k] * forces[t, i]
+    return begin, pushed
