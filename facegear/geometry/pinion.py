@@ -7,6 +7,7 @@ envelope of the rack's tip circle, whose normals pass through the pitch point.
 """
 
 from math import cos, pi, sin, tan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array
 from facegear.geometry.design import PairDesign
 from facegear.geometry.deviations import deviation
-from facegear.geometry.reliefs import linear, parabola
+from facegear.geometry.reliefs import Numbers, ReliefNumbers, linear, parabola
 
 
 def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
@@ -93,22 +94,56 @@ def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
     Beyond the ends of the involute (in the fillet) the root relief keeps its full amount, and the deviation
     at the end stands. Negative where the right flank deviates towards more material.
     """
-    part, base = design.pinion, design.pinion_base_radius
-    roll = np.asarray(roll, float)
-    from_tip = base * (design.pinion_tip_roll - roll)
-    from_root = base * (roll - junction_roll(design))
-    from_middle = np.abs(np.asarray(y, float) - design.mean_radius)
-    taken = np.zeros(np.broadcast_shapes(roll.shape, from_middle.shape))
-    for relief, shape, distance in (
-        (part.tip_relief, linear, from_tip),
-        (part.root_relief, linear, from_root),
-        (part.lead_crowning, parabola, from_middle),
-    ):
+    part = design.pinion
+    reliefs = (part.tip_relief, linear), (part.root_relief, linear), (part.lead_crowning, parabola)
+    roll, y = np.asarray(roll, float), np.asarray(y, float)
+    taken = np.zeros(np.broadcast_shapes(roll.shape, y.shape))
+    for (relief, shape), distance in zip(reliefs, distances(flank_numbers(design), roll, y), strict=True):
         if relief.amount != 0.0:
             taken += shape(relief, distance)
     if part.flanks.right is None:
         return taken
     return taken - deviation(part.flanks.right, *deviation_place(design, roll, y))
+
+
+class FlankNumbers(NamedTuple):
+    """The right flank as kernels take it: base radius (m), half the angle (rad) of the tooth there, roll
+    (rad) where the involute ends at the tip and at the fillet, `middle` (m) of the face, and modifications.
+    """
+
+    base: float
+    angle: float
+    tip_roll: float
+    fillet_roll: float
+    middle: float
+    tip_relief: ReliefNumbers
+    root_relief: ReliefNumbers
+    lead_crowning: ReliefNumbers
+
+
+def flank_numbers(design: PairDesign) -> FlankNumbers:
+    """Those of a design."""
+    part = design.pinion
+    reliefs = (part.tip_relief, part.root_relief, part.lead_crowning)
+    return FlankNumbers(
+        design.pinion_base_radius,
+        design.pinion_half_base_angle,
+        design.pinion_tip_roll,
+        junction_roll(design),
+        design.mean_radius,
+        *map(ReliefNumbers.of_relief, reliefs),
+    )
+
+
+def distances(flank: FlankNumbers, roll: Numbers, y: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """How far (m) roll angles (rad) and axial positions y (m) are from where tip relief, root relief and lead
+    crowning are measured; for arrays, and compiled for single numbers.
+    """
+    return (
+        flank.base * (flank.tip_roll - roll),
+        flank.base * (roll - flank.fillet_roll),
+        abs(y - flank.middle),
+    )
 
 
 def deviation_place(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:

@@ -2,14 +2,24 @@
 
 from dataclasses import dataclass
 from math import cos, sin
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array, Integers
-from facegear.geometry import pinion
+from facegear.geometry import pinion, reliefs
 from facegear.geometry.design import PairDesign
-from facegear.machine_code.compiler import compiler
+from facegear.geometry.deviations import deviation
+from facegear.machine_code.compiler import compiler, for_callers
+
+SOURCES = Path(pinion.__file__), Path(reliefs.__file__)
+"""Files of what `involute_point` compiles, beside this one."""
+NOTHING = np.zeros(0)
+
+inlined = for_callers()
+distances, linear = inlined(pinion.distances), inlined(reliefs.linear)
+parabola = inlined(reliefs.parabola)
 
 
 @dataclass(frozen=True)
@@ -46,11 +56,17 @@ def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePo
 
     Modifications move points along the unmodified normal; the normal's own change (1e-3 rad) is left out.
     """
-    taken = pinion.removed(design, roll, y)
-    roll, y = (_filled(np.asarray(part, float), taken.shape) for part in (roll, y))
-    base, angle = design.pinion_base_radius, design.pinion_half_base_angle
-    position, normal = _involute(base, angle, roll, y, taken.ravel())
-    return SurfacePoints(position.reshape(*taken.shape, 3), normal.reshape(*taken.shape, 3))
+    roll, y = np.asarray(roll, float), np.asarray(y, float)
+    shape = np.broadcast_shapes(roll.shape, y.shape)
+    roll, y = _filled(roll, shape), _filled(y, shape)
+    position, normal = _involute(pinion.flank_numbers(design), roll, y, added(design, roll, y))
+    return SurfacePoints(position.reshape(*shape, 3), normal.reshape(*shape, 3))
+
+
+def added(design: PairDesign, roll: Array, y: Array) -> Array:
+    """How much (m) the flank deviates at roll (rad) and y (m), (n,) each; (0,) where it does not."""
+    grid = design.pinion.flanks.right
+    return NOTHING if grid is None else deviation(grid, *pinion.deviation_place(design, roll, y))
 
 
 def _filled(values: Array, shape: tuple[int, ...]) -> Array:
@@ -58,20 +74,24 @@ def _filled(values: Array, shape: tuple[int, ...]) -> Array:
     return np.ravel(values if values.shape == shape else np.broadcast_to(values, shape))
 
 
-@compiler()
-def _involute(base: float, angle: float, roll: Array, y: Array, taken: Array) -> tuple[Array, Array]:
-    """Positions and normals (n, 3) at roll and y (n,), so much `taken` (n,) m off along the normal.
+@inlined
+def involute_point(flank: pinion.FlankNumbers, roll: float, y: float, extra: float) -> tuple[float, ...]:
+    """x and z of a point of the flank that deviates by `extra` (m), and of its normal."""
+    from_tip, from_root, from_middle = distances(flank, roll, y)
+    relieved = linear(flank.tip_relief, from_tip) + linear(flank.root_relief, from_root)
+    along = flank.base * roll - (relieved + parabola(flank.lead_crowning, from_middle) - extra)
+    cosine, sine = cos(flank.angle - roll), sin(flank.angle - roll)
+    return flank.base * sine + along * cosine, along * sine - flank.base * cosine, cosine, sine
 
-    `base` radius (m) and half `angle` (rad) of the tooth there.
-    """
-    position, normal = np.empty((roll.size, 3)), np.empty((roll.size, 3))
-    for row in range(roll.size):
-        cosine, sine = cos(angle - roll[row]), sin(angle - roll[row])
-        along = base * roll[row] - taken[row]
-        position[row, 0] = base * sine + along * cosine
-        position[row, 1] = y[row]
-        position[row, 2] = along * sine - base * cosine
-        normal[row, 0], normal[row, 1], normal[row, 2] = cosine, 0.0, sine
+
+@compiler(*SOURCES)
+def _involute(flank: pinion.FlankNumbers, roll: Array, y: Array, extra: Array) -> tuple[Array, Array]:
+    """Positions and normals (n, 3) at roll and y (n,), with what is `added` there (n,), (0,) for nothing."""
+    position, normal = np.empty((roll.size, 3)), np.zeros((roll.size, 3))
+    for i in range(roll.size):
+        x, z, nx, nz = involute_point(flank, roll[i], y[i], extra[i] if extra.size else 0.0)
+        position[i, 0], position[i, 1], position[i, 2] = x, y[i], z
+        normal[i, 0], normal[i, 2] = nx, nz
     return position, normal
 
 

@@ -47,9 +47,8 @@ def cut(
     close to a surface could not be cut with it.
     """
     count = position.shape[0]
-    gap, part = np.full(count, inf), np.zeros(count, np.int8)
-    u, v, continued = np.full(count, nan), np.full(count, nan), np.full(count, inf)
-    live, known = np.empty(count, np.int64), np.zeros(count, np.bool_)
+    gap, u, v, continued = np.empty((4, count))
+    part, live, known = np.empty(count, np.int8), np.empty(count, np.int64), np.empty(count, np.bool_)
     sample = points, normals, rolls, psis, inner, spacing, radii
     rays, hits = (position, normal, live, known), (gap, part, u, v, continued)
     lost = cut_rays(blank, *rays, search_radius, *sample, *lanes(), *hits)
@@ -82,6 +81,9 @@ def cut_rays(
     """What `cut` returns, written into arrays (n,), the lanes' own and room for numbers of rays beside them;
     how many could not be cut.
     """
+    for ray in range(gap.size):
+        gap[ray], part[ray], u[ray], v[ray], continued[ray] = inf, NONE, nan, nan, inf
+        known[ray] = False
     near, lost = _near_the_tooth(blank, position, normal, search_radius, live), 0
     cut_flanks(
         blank, position, normal, live[:near], search_radius, of_lanes, counts, gap, u, v, continued, known

@@ -86,7 +86,7 @@ def separation(
     for first in range(0, max(1, phi1.size), block):
         rows = slice(first, first + block)
         here = points if points.position.ndim == 2 else points.only(rows)
-        cuts.append(gear.cut(*rays_of_all(motion.only(rows), here), search_radius))
+        cuts.append(gear.cut(*_rays_of_all(motion.only(rows), here), search_radius))
     hit = cuts[0] if len(cuts) == 1 else [np.concatenate(parts) for parts in zip(*cuts, strict=True)]
     return Separation(*(values.reshape(phi1.size, count) for values in hit))
 
@@ -110,7 +110,7 @@ def separation_each(
     return Separation(*GearSide.of_design(design).cut(*_rays(motion, points, at, number), search_radius))
 
 
-def rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Array]:
+def _rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Array]:
     """Points (n, 3) in each of p motions, or (p, n, 3) each in its own: points and directions (p n, 3)."""
     placements, (*each, count, _) = len(motion.shift), points.position.shape
     at, number = np.repeat(np.arange(placements), count), np.arange(placements * count)
