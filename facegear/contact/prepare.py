@@ -33,7 +33,7 @@ def prepare() -> None:
     blank = Blank(*[0.0] * len(Blank._fields))
     cut(blank, RAYS, RAYS, 0.0, RAYS, RAYS, NONE, NONE, MARKS, 0.0, NONE)
     placed_rays(np.zeros((0, 3, 3)), RAYS, NUMBERS, NUMBERS, RAYS, RAYS)
-    by_tip_edge(np.zeros(0, np.int8), NONE, NONE, 1.0, 1.0, 1.0, NONE, CUBICS, CUBICS)
+    by_tip_edge(np.zeros(0, np.int8), NONE, NONE, 1.0, NONE, CUBICS, CUBICS)
     _gather()
     face_functions(PLACES, (3, 3))
     nearest_of(RAYS, np.asfortranarray(np.zeros((2, 2))))

@@ -8,7 +8,7 @@ is left out.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -69,7 +69,16 @@ class LineLoads:
 
     def part(self, rows: slice) -> "LineLoads":
         """Those of some rows."""
-        return LineLoads(*(getattr(self, field.name)[rows] for field in fields(self)))
+        return LineLoads(
+            self.line[rows],
+            self.plane[rows],
+            self.length[rows],
+            self.line_load[rows],
+            self.where[rows],
+            self.pressure[rows],
+            self.error[rows],
+            self.half_width[rows],
+        )
 
     def at_tips(self) -> tuple[float, float]:
         """Largest line load (N/m) at tip edges and the length (m) that carries any; zero without."""

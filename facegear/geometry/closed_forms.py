@@ -83,12 +83,6 @@ def radius_at_roll(
     return p * p + q * q - radius * radius, slope
 
 
-def flank_radius(base: float, ratio: float, roll: Numbers, psi: Numbers) -> Numbers:
-    """Radius of the flank (m) at roll and psi."""
-    cosine = np.cos(psi)
-    return np.hypot(base * (np.sin(psi) - roll * cosine), base / (ratio * cosine))
-
-
 def radius_at_height(
     base: float, ratio: float, radius: Numbers, height: Numbers, psi: Numbers
 ) -> tuple[Numbers, Numbers]:

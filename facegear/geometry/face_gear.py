@@ -85,12 +85,6 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
     return _newton(residual, local_pressure_angle(design, radius), radius**2, "psi at a gear radius")
 
 
-def flank_radius(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
-    """Gear radius (m) of `flank_point`."""
-    base, ratio, _, _ = shaper_numbers(design)
-    return np.asarray(closed_forms.flank_radius(base, ratio, *_together(roll, psi)))
-
-
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
     """th and psi (rad) of the flank at gear radius `radius` and height `z` (m).
 

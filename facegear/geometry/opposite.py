@@ -1,21 +1,19 @@
 """What of the gear's tooth stands opposite points of the pinion, and the reverse for the gear's tip edge."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.arrays import Array, Integers
-from facegear.geometry import closed_forms, face_gear, pinion
+from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import fillet_points
 from facegear.geometry.placement import to_pinion_section
 from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
 from facegear.machine_code.compiler import compiler, for_callers
 
-compiled, inlined = compiler(Path(closed_forms.__file__)), for_callers()
-flank_radius = inlined(closed_forms.flank_radius)
+compiled, inlined = compiler(), for_callers()
 
 FILLET_SAMPLES = 2000
 
@@ -74,45 +72,36 @@ def located(design: PairDesign, seen: Separation) -> GearHits:
     """Where on the gear's tooth a separation ends."""
     edge, shape = face_gear.tip_edge_by_radius(design), seen.gap.shape
     cubics = edge.roll.x, np.ascontiguousarray(edge.roll.c), np.ascontiguousarray(edge.angle.c)
-    base, ratio, _, _ = face_gear.shaper_numbers(design)
-    hit = seen.part.ravel(), seen.u.ravel(), seen.v.ravel()
-    radius, flank, beyond = (
-        part.reshape(shape) for part in by_tip_edge(*hit, base, ratio, design.shaper_tip_roll, *cubics)
-    )
+    hit = seen.part.ravel(), seen.u.ravel(), seen.radius.ravel()
+    flank, beyond = (part.reshape(shape) for part in by_tip_edge(*hit, design.shaper_tip_roll, *cubics))
     fillet, on = np.full(shape, np.nan), np.nonzero(seen.part == FILLET)
     fillet[on] = face_gear.fillet_fraction(design, seen.v[on], seen.u[on])
-    return GearHits(gap=seen.gap, radius=radius, flank=flank, fillet=fillet, beyond=beyond)
+    return GearHits(gap=seen.gap, radius=seen.radius, flank=flank, fillet=fillet, beyond=beyond)
 
 
 @compiled
 def by_tip_edge(
     part: NDArray[np.int8],
     u: Array,
-    v: Array,
-    base: float,
-    ratio: float,
+    radius: Array,
     last_roll: float,
     radii: Array,
     rolls: Array,
     angles: Array,
-) -> tuple[Array, Array, Array]:
-    """`radius`, `flank` and `beyond` (n,) of `GearHits` by what is hit and where on it, (n,) of `Separation`.
+) -> tuple[Array, Array]:
+    """`flank` and `beyond` (n,) of `GearHits` by what is hit and where on it, (n,) of `Separation`.
 
-    base, ratio: of the shaper; last_roll (rad): where the flank ends at the fillet. Cubics (4, r) of the tip
-    edge's roll and gear angle (rad) begin at gear radii (r + 1,) m, evenly spaced.
+    last_roll (rad): where the flank ends at the fillet. Cubics (4, r) of the tip edge's roll and gear angle
+    (rad) begin at gear radii (r + 1,) m, evenly spaced.
     """
-    radius, flank, beyond = np.full(part.size, np.nan), np.full(part.size, np.nan), np.full(part.size, np.nan)
+    flank, beyond = np.full(part.size, np.nan), np.full(part.size, np.nan)
     for i in range(part.size):
         if part[i] == FLANK:
-            radius[i] = flank_radius(base, ratio, u[i], v[i])
             tip = _cubic(radii, rolls, radius[i])
             flank[i] = (u[i] - tip) / (last_roll - tip)
-        elif part[i] == FILLET:
-            radius[i] = v[i]
         elif part[i] == TIP_LAND:
-            radius[i] = v[i]
-            beyond[i] = v[i] * (_cubic(radii, angles, v[i]) - u[i])
-    return radius, flank, beyond
+            beyond[i] = radius[i] * (_cubic(radii, angles, radius[i]) - u[i])
+    return flank, beyond
 
 
 @inlined

@@ -68,10 +68,11 @@ def cut_flanks(
     u: Array,
     v: Array,
     continued: Array,
+    radius: Array,
     known: Mask,
 ) -> None:
-    """Cut those of rays (n, 3), points and unit directions, that `live` numbers; write gap, roll, psi and the
-    distance to the flank continued beyond its edges, (n,) each, where there are any.
+    """Cut those of rays (n, 3), points and unit directions, that `live` numbers; write gap, roll, psi, the
+    distance to the flank continued beyond its edges, and the gear radius, (n,) each, where there are any.
 
     known: marked for those rays (n,) that Newton's method found to hit or to miss.
     """
@@ -128,9 +129,10 @@ def cut_flanks(
                     continued[ray] = length
                     x, y = of_lanes[TX + k] + of_lanes[PX + k], of_lanes[TY + k] + of_lanes[PY + k]
                     z = of_lanes[TZ + k] + of_lanes[PZ + k]
-                    inside = blank.inner <= sqrt(x * x + y * y) <= blank.outer and roll <= blank.tip_roll
+                    out = sqrt(x * x + y * y)
+                    inside = blank.inner <= out <= blank.outer and roll <= blank.tip_roll
                     if inside and z <= blank.tip_plane + 1e-12:
-                        gap[ray], u[ray], v[ray] = length, roll, psi
+                        gap[ray], u[ray], v[ray], radius[ray] = length, roll, psi, out
                 else:
                     of_lanes[ROLL + k], of_lanes[PSI + k] = ANYWHERE, ANYWHERE
                 if hit or not counts[WARM + k]:

@@ -30,9 +30,9 @@ BISECTIONS = 6
 Ray = tuple[float, float, float]
 """A point, or a unit direction, as plain numbers."""
 
-FlankCut = tuple[float, float, float, float, bool]
-"""Distance to the flank, and to the flank continued beyond its edges; roll and psi there; whether Newton's
-method converged."""
+FlankCut = tuple[float, float, float, float, float, bool]
+"""Distance to the flank, and to the flank continued beyond its edges; roll, psi and gear radius there;
+whether Newton's method converged."""
 
 FAST_NUMBERS: dict[str, Any] = {**FAST, "error_model": "numpy"}
 """As FAST, and a division by zero is not an error but infinite."""
@@ -64,14 +64,15 @@ def cut_flank(blank: Blank, p: Ray, n: Ray, roll: float, psi: float, search_radi
             if off < NEGLIGIBLE:
                 straight = distance if cp * (n[0] * ct + n[1] * st) + n[2] * sp < 0 else inf
                 roll, psi, x, y, z = roll - da, psi - db, x + p[0], y + p[1], z + p[2]
-                inside = blank.inner <= sqrt(x * x + y * y) <= blank.outer and roll <= blank.tip_roll
+                radius = sqrt(x * x + y * y)
+                inside = blank.inner <= radius <= blank.outer and roll <= blank.tip_roll
                 distance = straight if inside and z <= blank.tip_plane + 1e-12 else inf
-                return distance, straight, roll, psi, True
+                return distance, straight, roll, psi, radius, True
             if abs(distance) > search_radius + SEEN:
-                return inf, inf, roll, psi, True
+                return inf, inf, roll, psi, nan, True
         scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))
         roll, psi = roll - scale * da, psi - scale * db
-    return inf, inf, roll, psi, False
+    return inf, inf, roll, psi, nan, False
 
 
 @inlined

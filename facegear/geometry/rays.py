@@ -43,16 +43,16 @@ def cut(
 
     `points`, `normals` (m, 3), `rolls`, `psis`, `inner` (m,), `spacing` and `radii` are a `FlankSample`: a
     second start where Newton's first fails, and proof that a ray misses. Returns gap (n,), the part hit (n,),
-    where on it (n,) twice and the distance (n,) to the flank continued beyond its edges; and how many rays
-    close to a surface could not be cut with it.
+    where on it (n,) twice, the distance (n,) to the flank continued beyond its edges and the gear radius (n,)
+    that is hit; and how many rays close to a surface could not be cut with it.
     """
     count = position.shape[0]
-    gap, u, v, continued = np.empty((4, count))
+    gap, u, v, continued, radius = np.empty((5, count))
     part, live, known = np.empty(count, np.int8), np.empty(count, np.int64), np.empty(count, np.bool_)
     sample = points, normals, rolls, psis, inner, spacing, radii
-    rays, hits = (position, normal, live, known), (gap, part, u, v, continued)
+    rays, hits = (position, normal, live, known), (gap, part, u, v, continued, radius)
     lost = cut_rays(blank, *rays, search_radius, *sample, *lanes(), *hits)
-    return [gap, part, u, v, continued], lost
+    return [gap, part, u, v, continued, radius], lost
 
 
 @compiler(Path(__file__).parent, **FAST_NUMBERS)
@@ -77,41 +77,41 @@ def cut_rays(
     u: Array,
     v: Array,
     continued: Array,
+    radius: Array,
 ) -> int:
     """What `cut` returns, written into arrays (n,), the lanes' own and room for numbers of rays beside them;
     how many could not be cut.
     """
     for ray in range(gap.size):
-        gap[ray], part[ray], u[ray], v[ray], continued[ray] = inf, NONE, nan, nan, inf
-        known[ray] = False
+        gap[ray], part[ray], continued[ray], known[ray] = inf, NONE, inf, False
+        u[ray], v[ray], radius[ray] = nan, nan, nan
     near, lost = _near_the_tooth(blank, position, normal, search_radius, live), 0
-    cut_flanks(
-        blank, position, normal, live[:near], search_radius, of_lanes, counts, gap, u, v, continued, known
-    )
+    rays, hits = (position, normal, live[:near]), (gap, u, v, continued, radius, known)
+    cut_flanks(blank, *rays, search_radius, of_lanes, counts, *hits)
     for ray in live[:near]:
         if abs(gap[ray]) < search_radius:
             part[ray] = FLANK
             continue
         p = position[ray, 0], position[ray, 1], position[ray, 2]
         n = normal[ray, 0], normal[ray, 1], normal[ray, 2]
-        distance, surface, a, b = inf, FLANK, nan, nan
+        distance, surface, a, b, at = inf, FLANK, nan, nan, nan
         if not known[ray]:
             best = _nearest(p, n, search_radius, points, normals, spacing, radii)
             if best >= 0:
-                distance, straight, a, b, done = cut_flank(
+                distance, straight, a, b, at, done = cut_flank(
                     blank, p, n, rolls[best], psis[best], search_radius
                 )
                 if abs(straight) < search_radius:
                     continued[ray] = straight
                 lost += not done and inner[best]
         # no point of the ray is farther in or out than by this, in squares of the radius
-        radius = sqrt(p[0] * p[0] + p[1] * p[1])
+        begin = sqrt(p[0] * p[0] + p[1] * p[1])
         aside = 2 * search_radius * abs(p[0] * n[0] + p[1] * n[1]) + search_radius * search_radius
-        if not (blank.inner**2 - aside < radius * radius < blank.outer**2 + aside):
+        if not (blank.inner**2 - aside < begin * begin < blank.outer**2 + aside):
             continue
         low = p[2] - search_radius * abs(n[2])
         if not abs(distance) < search_radius and low < blank.fillet_top:
-            distance, a, b = cut_fillet(blank, p, n, radius, search_radius)
+            distance, a, b = cut_fillet(blank, p, n, begin, search_radius)
             lost += isnan(distance)
             surface = FILLET
         if not abs(distance) < search_radius:
@@ -128,6 +128,7 @@ def cut_rays(
                 distance = inf
         if abs(distance) < search_radius:
             gap[ray], part[ray], u[ray], v[ray] = distance, surface, a, b
+            radius[ray] = at if surface == FLANK else b
     return lost
 
 

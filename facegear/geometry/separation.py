@@ -50,7 +50,8 @@ class Separation:
     continued: distance (m) to the flank continued beyond its edges, inf if that is missed as well.
 
     u, v: th and psi (rad) on the flank, psi (rad) and gear radius (m) on the fillet, gear angle from the
-    tooth's centre (rad) and gear radius (m) on the lands; nan where there is no gear opposite.
+    tooth's centre (rad) and gear radius (m) on the lands; radius: the gear radius (m) of all. nan where there
+    is no gear opposite.
     """
 
     gap: Array
@@ -58,6 +59,7 @@ class Separation:
     u: Array
     v: Array
     continued: Array
+    radius: Array
 
 
 def separation(

@@ -68,14 +68,6 @@ def test_normal_is_orthogonal_to_exact_tangents_and_tangents_to_differences(pair
     np.testing.assert_allclose(np.linalg.norm(normal, axis=-1), 1, atol=1e-15)
 
 
-def test_the_radius_of_a_place_on_the_flank_is_that_of_its_point(pair):
-    design, draw = pair(26), np.random.default_rng(4)
-    roll, psi = draw.uniform(0.1, 0.6, 50), draw.uniform(0.2, 0.6, 50)
-    points = face_gear.flank_point(design, roll, psi)
-    expected = np.hypot(points[:, 0], points[:, 1])
-    np.testing.assert_allclose(face_gear.flank_radius(design, roll, psi), expected, rtol=1e-14)
-
-
 @pytest.mark.parametrize("teeth", [23, 26])
 def test_tip_edge_by_radius_is_that_of_the_surface(pair, teeth):
     design = pair(teeth)

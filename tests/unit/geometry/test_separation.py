@@ -361,6 +361,7 @@ def test_every_ray_ends_on_the_part_it_names(pair, rounding, inner, outer):
         hit = found.part == part
         assert hit.sum() > 3
         assert np.abs(surface(found.u[hit], found.v[hit]) - end[hit]).max() < 1e-14
+        assert np.abs(np.hypot(*end[hit, :2].T) - found.radius[hit]).max() < 1e-14
     for row, column in np.argwhere(found.part == FLANK)[::25]:
         p, n = start[row, column], along[row, column]
         solved = root(
