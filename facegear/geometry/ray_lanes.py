@@ -42,9 +42,9 @@ PX, PY, PZ, NX, NY, NZ, EX, EZ, FX, FY, FZ, ROLL, PSI, X, Y, Z, XR, YR, ZR, XP, 
 )
 """Where the numbers of all lanes begin: point and direction of the ray, two directions across it, roll and
 psi of a point of the flank, and its frame there: that point and its derivatives with respect to both."""
-DA, DB, OFF, TX, TY, TZ, LENGTH, FACING, NUMBERS = range(22 * LANES, 31 * LANES, LANES)
+DA, DB, OFF, TX, TY, TZ, LENGTH, FACING, TO_ROLL, TO_PSI, NUMBERS = range(22 * LANES, 33 * LANES, LANES)
 """Newton's step from there, the distance from the ray, where the step leads from the ray's point, how far
-that is along the ray, and the cosine of the ray with the flank's normal."""
+that is along the ray, and the cosine of the ray with the flank's normal; roll and psi to go on from."""
 RAY, NEXT, LAST, STEPS, WARM, COUNTS = range(0, 6 * LANES, LANES)
 """The same of whole numbers: the ray, -1 for none, the range of those to come, steps taken, and whether the
 ray before met the flank."""
@@ -78,7 +78,7 @@ def cut_flanks(
     """
     for k in range(LANES):
         counts[RAY + k], of_lanes[NX + k], of_lanes[NZ + k] = -1, 1.0, 0.0
-        of_lanes[ROLL + k], of_lanes[PSI + k] = ANYWHERE, ANYWHERE
+        of_lanes[TO_ROLL + k], of_lanes[TO_PSI + k] = ANYWHERE, ANYWHERE
     together, begun, left = min(NEIGHBOURS, -(-live.size // LANES)), 0, live.size
     while left > 0:
         for k in range(LANES):
@@ -95,31 +95,24 @@ def cut_flanks(
         for k in range(LANES):
             if counts[RAY + k] >= 0 and counts[STEPS + k] == 0:
                 if counts[WARM + k] and abs(of_lanes[DA + k]) + abs(of_lanes[DB + k]) < NEAR:
-                    of_lanes[ROLL + k] -= of_lanes[DA + k]
-                    of_lanes[PSI + k] -= of_lanes[DB + k]
+                    of_lanes[TO_ROLL + k] = of_lanes[ROLL + k] - of_lanes[DA + k]
+                    of_lanes[TO_PSI + k] = of_lanes[PSI + k] - of_lanes[DB + k]
                 else:
                     counts[WARM + k] = 0
                     _start(blank, of_lanes, k)
-        going = LANES
-        while going > LATE:
+        going, longest = LANES, 0
+        while going > LATE and longest < NEWTON_STEPS:
             _newton_steps(blank, of_lanes)
-            going, longest = 0, 0
+            going = 0
             for k in range(LANES):
                 counts[STEPS + k] += 1
                 longest = max(longest, counts[STEPS + k])
                 going += counts[RAY + k] >= 0 and _on_the_way(of_lanes, k, search_radius)
-            if longest >= NEWTON_STEPS:
-                break
-            if going > LATE:
-                for k in range(LANES):
-                    _move(of_lanes, k)
         for k in range(LANES):
             ray = counts[RAY + k]
             if ray < 0:
                 counts[STEPS + k] = 0
-            elif counts[STEPS + k] < NEWTON_STEPS and _on_the_way(of_lanes, k, search_radius):
-                _move(of_lanes, k)
-            else:
+            elif counts[STEPS + k] >= NEWTON_STEPS or not _on_the_way(of_lanes, k, search_radius):
                 length = of_lanes[LENGTH + k]
                 roll, psi = of_lanes[ROLL + k] - of_lanes[DA + k], of_lanes[PSI + k] - of_lanes[DB + k]
                 turn = blank.ratio * (psi - roll - blank.space)
@@ -134,7 +127,7 @@ def cut_flanks(
                     if inside and z <= blank.tip_plane + 1e-12:
                         gap[ray], u[ray], v[ray], radius[ray] = length, roll, psi, out
                 else:
-                    of_lanes[ROLL + k], of_lanes[PSI + k] = ANYWHERE, ANYWHERE
+                    of_lanes[TO_ROLL + k], of_lanes[TO_PSI + k] = ANYWHERE, ANYWHERE
                 if hit or not counts[WARM + k]:
                     far = of_lanes[OFF + k] < SEEN and abs(length) > search_radius + SEEN
                     known[ray] = met or far
@@ -165,15 +158,15 @@ def _start(blank: Blank, of_lanes: Array, k: int) -> None:
     cosine = blank.base / (blank.ratio * min(max(sqrt(x * x + y * y), blank.inner), blank.outer))
     sine = sqrt(max(1 - cosine * cosine, 1e-12))
     roll = ((blank.lift - z) / blank.base - cosine) / sine
-    of_lanes[ROLL + k] = min(max(roll, 0.0), 1.2 * blank.tip_roll)
-    of_lanes[PSI + k] = atan2(sine, cosine)
+    of_lanes[TO_ROLL + k] = min(max(roll, 0.0), 1.2 * blank.tip_roll)
+    of_lanes[TO_PSI + k] = atan2(sine, cosine)
 
 
 @inlined
 def _newton_steps(blank: Blank, of_lanes: Array) -> None:
-    """Frames of the flank where all lanes stand, and Newton's steps from there."""
+    """Frames of the flank where all lanes go on, and Newton's steps from there, no longer than allowed."""
     for k in range(LANES):
-        roll, psi = of_lanes[ROLL + k], of_lanes[PSI + k]
+        roll, psi = of_lanes[TO_ROLL + k], of_lanes[TO_PSI + k]
         turn = blank.ratio * (psi - roll - blank.space)
         ct, st, cp, sp = _cosine(turn), _sine(turn), _cosine(psi), _sine(psi)
         frame = turned_flank_frame(blank.base, blank.ratio, blank.lift, roll, ct, st, cp, sp)
@@ -186,7 +179,11 @@ def _newton_steps(blank: Blank, of_lanes: Array) -> None:
             *(of_lanes[EX + k], of_lanes[EZ + k]),
             *(of_lanes[FX + k], of_lanes[FY + k], of_lanes[FZ + k]),
         )
-        of_lanes[DA + k], of_lanes[DB + k], of_lanes[OFF + k], x, y, z = step(p, beside, frame)
+        da, db, off, x, y, z = step(p, beside, frame)
+        scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))
+        of_lanes[ROLL + k], of_lanes[TO_ROLL + k] = roll, roll - scale * da
+        of_lanes[PSI + k], of_lanes[TO_PSI + k] = psi, psi - scale * db
+        of_lanes[DA + k], of_lanes[DB + k], of_lanes[OFF + k] = da, db, off
         of_lanes[TX + k], of_lanes[TY + k], of_lanes[TZ + k] = x, y, z
         of_lanes[LENGTH + k] = x * n[0] + y * n[1] + z * n[2]
         of_lanes[FACING + k] = cp * (n[0] * ct + n[1] * st) + n[2] * sp
@@ -198,15 +195,6 @@ def _on_the_way(of_lanes: Array, k: int, search_radius: float) -> bool:
     off, far = of_lanes[OFF + k], abs(of_lanes[LENGTH + k]) > search_radius + SEEN
     met = off < NEGLIGIBLE or (off < SEEN and far)
     return not met and abs(of_lanes[DA + k]) + abs(of_lanes[DB + k]) < inf
-
-
-@inlined
-def _move(of_lanes: Array, k: int) -> None:
-    """Take Newton's step, or as much of it as is allowed."""
-    da, db = of_lanes[DA + k], of_lanes[DB + k]
-    scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))
-    of_lanes[ROLL + k] -= scale * da
-    of_lanes[PSI + k] -= scale * db
 
 
 @inlined
