@@ -16,11 +16,11 @@ from facegear.contact.position import MARGIN, LoadedPosition, first_turn, solve_
 from facegear.contact.search import cover_of, facing_points
 from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
 from facegear.contact.touching import (
-    BAND,
     GAP,
     START_GAP,
     START_WIDTH,
     WIDER,
+    WIDTH,
     Cover,
     Facing,
     Strip,
@@ -144,6 +144,6 @@ class _PairAtPosition:
     def touching(self, torques: Array, limit: float) -> Touching:
         searched = self.searched
         facing, coupled = searched.at(self.row, limit), searched.options.coupled
-        parts = Strip(GAP, BAND, WIDER, START_GAP / MARGIN, START_WIDTH)
+        parts = Strip(GAP, WIDTH, WIDER, START_GAP / MARGIN, START_WIDTH)
         accuracy = NEWTON_STEPS, TOLERANCE
         return touching(facing, searched.cover, searched.surfaces, torques, limit, parts, coupled, accuracy)

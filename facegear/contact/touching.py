@@ -39,27 +39,25 @@ SOURCES = (
 )
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 
-GAP, BAND = 0.8, 0.15
-"""Parts of the rigid approach within which contact is sought: the least gap of a column of hats (the bodies
-give way by the rest) and, above that, the gap of the others in it (the strip's half-width)."""
+GAP, WIDTH = 0.8, 0.23
+"""Where contact is sought: the least gap of a column of hats as a part of the rigid approach (the bodies give
+way by the rest), and by how much the gap of the others in it exceeds that, as a part of what it is below."""
 
 WIDER = 1.6
 """Factor on the second part where contact is missed beside the strip."""
 
 START_GAP, START_WIDTH = 0.6, 0.14
-"""First guess of what touches: the least gap of a column of hats as a part of the approach, and the gap of
-the others in it as a part of what the least gap is below that.
-"""
+"""The same for the first guess of what touches."""
 
 
 @Record.register
 class Strip(NamedTuple):
-    """How wide a strip contact is sought in, GAP, BAND and WIDER; where the search starts, START_GAP of the
+    """How wide a strip contact is sought in, GAP, WIDTH and WIDER; where the search starts, START_GAP of the
     turn that is expected under the first torque, as a part of the limit, and START_WIDTH.
     """
 
     gap: float
-    band: float
+    width: float
     wider: float
     begin: float
     start_width: float
@@ -134,8 +132,8 @@ def touching(
     )
     at = facing.points.pinion, facing.points.gear
     own, column_min = _turns(hats, cover.shape[1], facing.teeth.size)
-    gap, arm, band = hats.gap, hats.lever_arm, strip.band * limit
-    keep = _in_strip(own, column_min, strip.gap * limit, band)
+    gap, arm, width = hats.gap, hats.lever_arm, strip.width
+    keep = _expected(own, column_min, strip.gap * limit, width)
     forward, overlap, longest = 0, 0.0, 0.0
     drives = False
     for i in range(gap.size):
@@ -194,8 +192,8 @@ def touching(
             keep[hat] = inside > limits[1]
             tried |= keep[hat]
         if tried:
-            band *= strip.wider
-            wider = _in_strip(own, column_min, strip.gap * limit, band)
+            width *= strip.wider
+            wider = _expected(own, column_min, strip.gap * limit, width)
             for hat in others:
                 keep[hat] |= wider[hat]
     carriers = _loaded(force)
@@ -242,17 +240,8 @@ def _turns(hats: Hats, columns: int, pairs: int) -> tuple[Array, Array]:
 
 
 @called
-def _in_strip(own: Array, column_min: Array, min_turn: float, band: float) -> Mask:
-    """Hats that close within a band above the least turn of their column, where that is below min_turn."""
-    inside = np.empty(own.size, np.bool_)
-    for i in range(own.size):
-        inside[i] = own[i] < column_min[i] + band and column_min[i] < min_turn
-    return inside
-
-
-@called
 def _expected(own: Array, column_min: Array, min_turn: float, width: float) -> Mask:
-    """Hats that a first guess takes to touch: the lesser a column's least gap, the wider."""
+    """Hats that are expected to touch: the lesser a column's least gap, the wider."""
     expected = np.empty(own.size, np.bool_)
     for i in range(own.size):
         expected[i] = own[i] - column_min[i] < width * (min_turn - column_min[i])

@@ -77,7 +77,7 @@ def test_contact_sought_in_a_strip_is_that_among_all_candidates(model_of, errors
     positions, torques = [0.05, 0.4, 0.7], [50.0, 300.0, 1000.0]
     narrow = loaded_contact(model, positions, torques)
     monkeypatch.setattr(ltca, "GAP", np.inf)
-    monkeypatch.setattr(ltca, "BAND", np.inf)
+    monkeypatch.setattr(ltca, "WIDTH", np.inf)
     for one, other in zip(narrow, loaded_contact(model, positions, torques), strict=True):
         assert one.candidates == other.candidates
         assert one.ste == pytest.approx(other.ste, rel=1e-9)
@@ -88,7 +88,7 @@ def test_contact_sought_in_a_strip_is_that_among_all_candidates(model_of, errors
 def test_strip_that_is_too_narrow_is_found_out_and_widened(model_of, monkeypatch):
     model = model_of()
     expected = loaded_contact(model, [0.3], [600.0])[0]
-    monkeypatch.setattr(ltca, "BAND", 0.02)
+    monkeypatch.setattr(ltca, "WIDTH", 0.02)
     widened = loaded_contact(model, [0.3], [600.0])[0]
     assert widened.ste == pytest.approx(expected.ste, rel=1e-9)
     assert widened.residual < 1e-10
