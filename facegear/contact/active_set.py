@@ -9,9 +9,9 @@ from facegear.contact import bonded as bonded_points
 from facegear.contact.bonded import Bonded, bonded, distances, put, refined
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import numbers
+from facegear.machine_code.picked import mark_table, marks, numbers
 
-compiled = compiler(Path(bonded_points.__file__), Path(picked.__file__))
+compiled = compiler(Path(bonded_points.__file__), *picked.SOURCES)
 called = for_callers(forceinline=False)
 
 Solution = tuple[int, Array, float, float, float, Array]
@@ -34,7 +34,7 @@ def newton(
     """
     steps, tolerance = limits
     active, count = start.copy(), gap.size
-    seen = np.zeros((steps, count), np.bool_)
+    seen = mark_table(steps, count)
     force = numbers(count, 0.0)
     for step in range(1, steps + 1):
         touching = bonded(compliance, gap, lever_arm, torque, active)
@@ -127,7 +127,7 @@ def _turns(gap: Array, lever_arm: Array) -> Array:
 def _first_guess(gap: Array, lever_arm: Array) -> Mask:
     """The quarter of the points whose gaps close first."""
     turns = _turns(gap, lever_arm)
-    guess = np.zeros(turns.size, np.bool_)
+    guess = marks(turns.size, False)
     closed, some = 0, 0
     for i in range(turns.size):
         some += turns[i] < np.inf
@@ -170,7 +170,7 @@ def _exchanged(
     limits: tuple[int, float],
 ) -> Solution:
     """One point at a time from feasible forces, energy falling at every step, hence finite. As `newton`."""
-    force, active = start.copy(), np.zeros(start.size, np.bool_)
+    force, active = start.copy(), marks(start.size, False)
     for i in range(start.size):
         active[i] = start[i] > 0.0
     for step in range(exchanges(gap.size)):

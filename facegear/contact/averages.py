@@ -1,6 +1,5 @@
 """Averages over points under hats, and the hats that a turn closes; compiled."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -13,12 +12,13 @@ from facegear.machine_code.picked import (
     empty_numbers,
     integers,
     marked,
+    marks,
     numbers,
     taken,
 )
 from facegear.machine_code.records import Record
 
-compiled = compiler(Path(picked.__file__))
+compiled = compiler(*picked.SOURCES)
 inlined, called = for_callers(), for_callers(forceinline=False)
 
 ALIKE = 1e-12
@@ -102,7 +102,7 @@ def _hat_averages(points: HatPoints, starts: Integers, min_area: Array) -> tuple
     hats, values, area = points.hats, points.values, points.area
     size, pairs = min_area.size, starts.size - 1
     covered, count = numbers(pairs * size, 0.0), integers(pairs * size, 0)
-    on = np.empty(area.size, np.bool_)
+    on = marks(area.size, False)
     for pair in range(pairs):
         for q in range(starts[pair], starts[pair + 1]):
             on[q] = _facing(points, q)
@@ -160,7 +160,7 @@ def closing(
     pointer, index, weight = rows
     pair, node = empty_integers(chosen.size), empty_integers(chosen.size)
     gap, lever_arm = numbers(chosen.size, 0.0), numbers(chosen.size, 0.0)
-    fillet, near = np.zeros(chosen.size, np.bool_), np.zeros(chosen.size, np.bool_)
+    fillet, near = marks(chosen.size, False), marks(chosen.size, False)
     for i in range(chosen.size):
         beyond, pair[i], node[i] = 0.0, chosen[i] // min_area.size, chosen[i] % min_area.size - first
         for k in range(pointer[i], pointer[i + 1]):

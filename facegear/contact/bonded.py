@@ -1,15 +1,13 @@
 """What happens if given points of a contact touch, compiled, and how far that is from a solution."""
 
-from pathlib import Path
-
 import numpy as np
 
 from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import marked, numbers, taken
+from facegear.machine_code.picked import empty_numbers, empty_table, marked, numbers, taken
 
-compiled = compiler(Path(picked.__file__))
+compiled = compiler(*picked.SOURCES)
 inlined_sums = for_callers(fastmath={"contract", "reassoc"})
 """For sums of products, whose terms may be added in any order."""
 
@@ -42,7 +40,7 @@ def _substituted(lower: Array, first: Array, second: Array) -> None:
 @inlined_sums
 def _times(matrix: Array, vector: Array) -> Array:
     """A matrix times a vector."""
-    result = np.empty(matrix.shape[0])
+    result = empty_numbers(matrix.shape[0])
     for i in range(matrix.shape[0]):
         total = 0.0
         for j in range(matrix.shape[1]):
@@ -61,7 +59,7 @@ def put(values: Array, index: Integers, out: Array) -> None:
 @compiled
 def distances(compliance: Array, gap: Array, lever_arm: Array, force: Array, rotation: float) -> Array:
     """Distance (n,) m of all points by forces (n,) N, of which most are zero, and a rotation (rad)."""
-    result = np.empty(gap.size)
+    result = empty_numbers(gap.size)
     for i in range(gap.size):
         result[i] = gap[i] - rotation * lever_arm[i]
     for j in range(force.size):
@@ -77,8 +75,8 @@ def bonded(compliance: Array, gap: Array, lever_arm: Array, torque: float, activ
     """What happens if exactly the points `active` (n,) touch."""
     index = marked(active)
     size = index.size
-    block = np.empty((size, size))
-    turning, closing = np.empty(size), np.empty(size)
+    block = empty_table(size, size)
+    turning, closing = empty_numbers(size), empty_numbers(size)
     for i in range(size):
         turning[i], closing[i] = lever_arm[index[i]], gap[index[i]]
         for j in range(size):

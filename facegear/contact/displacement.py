@@ -12,11 +12,11 @@ from facegear.contact.influence import Surface, part_of
 from facegear.machine_code import picked, prefetch, vectors
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.memory import LANES
-from facegear.machine_code.picked import empty_integers, integers, listed, table, taken
+from facegear.machine_code.picked import cube, empty_integers, integers, listed, table, taken
 from facegear.machine_code.prefetch import request
 from facegear.machine_code.vectors import add, load, multiply_add, splat, store, sums, take
 
-SOURCES = Path(influence.__file__), Path(picked.__file__), Path(prefetch.__file__), Path(vectors.__file__)
+SOURCES = Path(influence.__file__), *picked.SOURCES, Path(prefetch.__file__), Path(vectors.__file__)
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
@@ -146,7 +146,7 @@ def _nodal(loads: Rows, forces: Array, cases: int, nodes: int) -> tuple[Integers
             pushing[filled] = index[k]
             filled += 1
     begin, slot = fours(pushing[:filled], nodes)
-    pushed = np.zeros((begin.size, cases, LANES))
+    pushed = cube(begin.size, cases, LANES)
     for i in range(forces.shape[1]):
         for t in range(forces.shape[0]):
             for k in range(pointer[i], pointer[i + 1] if forces[t, i] != 0.0 else pointer[i]):

@@ -23,7 +23,7 @@ SOURCES = (
     Path(surface.__file__),
     Path(both_sides.__file__),
     Path(averages.__file__),
-    Path(picked.__file__),
+    *picked.SOURCES,
 )
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 

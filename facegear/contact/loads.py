@@ -12,9 +12,11 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.contact.averages import HatPoints
 from facegear.contact.flanks import OF_AN_EDGE, PinionPoints, PinionSurface
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler
+from facegear.machine_code.picked import empty_numbers, empty_table, integer_table, integers, table
 
-compiled = compiler()
+compiled = compiler(*picked.SOURCES)
 
 SMALLEST_COVER = 0.02
 """Part of a hat's area below which it is left out: the tooth opposite ends there."""
@@ -61,10 +63,10 @@ def gathered(
     number, ends, gap, gear = hits
     pairs, beside = edge.gap.shape
     size = number.size + pairs * beside
-    lever_arm, area = np.empty(size), np.empty(size)
-    gaps, at_pinion, at_gear = np.empty(size), np.empty((size, 2)), np.empty((size, 2))
-    hats, values = np.zeros((size, 4), np.int64), np.zeros((size, 4))
-    starts, row = np.zeros(pairs + 1, np.int64), 0
+    lever_arm, area = empty_numbers(size), empty_numbers(size)
+    gaps, at_pinion, at_gear = empty_numbers(size), empty_table(size, 2), empty_table(size, 2)
+    hats, values = integer_table(size, 4), table(size, 4)
+    starts, row = integers(pairs + 1, 0), 0
     for pair in range(pairs):
         for e in range(beside):
             gaps[row], lever_arm[row], area[row] = edge.gap[pair, e], edge.lever_arm[pair, e], OF_AN_EDGE

@@ -17,7 +17,7 @@ from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.picked import empty_integers, empty_numbers, empty_table, integers, numbers
 from facegear.machine_code.records import Record
 
-compiled = compiler(Path(surface.__file__), Path(picked.__file__))
+compiled = compiler(Path(surface.__file__), *picked.SOURCES)
 called = for_callers(forceinline=False)
 
 ROUNDING = 1e-6

@@ -23,7 +23,7 @@ from facegear.contact.influence import influence as influence_of
 from facegear.contact.spreading import composed, spread
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import empty_numbers, integers, marked, numbers, table, taken
+from facegear.machine_code.picked import cube, empty_numbers, integers, marked, marks, numbers, table, taken
 from facegear.machine_code.records import Record
 
 SOURCES = (
@@ -35,7 +35,7 @@ SOURCES = (
     Path(influence.__file__),
     Path(spreading.__file__),
     Path(surface.__file__),
-    Path(picked.__file__),
+    *picked.SOURCES,
 )
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 
@@ -150,7 +150,7 @@ def touching(
     which, force = integers(0, 0), table(count, 0)
     ends = integers(facing.teeth.size + 1, 0)
     every = spread(hats.rows, at[0], surfaces[0].faces), spread(hats.rows, at[1], surfaces[1].faces)
-    loads = _loads(every, np.zeros(gap.size, np.bool_), surfaces)
+    loads = _loads(every, marks(gap.size, False), surfaces)
     while tried:
         which = marked(keep)
         ends = _ends(taken(hats.pair, which), facing.teeth.size)
@@ -242,7 +242,7 @@ def _turns(hats: Hats, columns: int, pairs: int) -> tuple[Array, Array]:
 @called
 def _expected(own: Array, column_min: Array, min_turn: float, width: float) -> Mask:
     """Hats that are expected to touch: the lesser a column's least gap, the wider."""
-    expected = np.empty(own.size, np.bool_)
+    expected = marks(own.size, False)
     for i in range(own.size):
         expected[i] = own[i] - column_min[i] < width * (min_turn - column_min[i])
     return expected
@@ -262,7 +262,7 @@ def _ends(pair: Integers, pairs: int) -> Integers:
 @called
 def _loaded(force: Array) -> Integers:
     """The hats that carry any of the forces (t, n) N."""
-    on_any = np.zeros(force.shape[1], np.bool_)
+    on_any = marks(force.shape[1], False)
     for t in range(force.shape[0]):
         for i in range(on_any.size):
             on_any[i] |= force[t, i] > 0.0
@@ -293,7 +293,7 @@ def _loads(every: tuple[Rows, Rows], keep: Mask, surfaces: tuple[Surface, Surfac
 def _on_nodes(loads: Rows, ends: Integers, force: Array, body: Surface) -> Array:
     """Forces (t, p, n) N of pairs on nodes by forces (t, m) on hats."""
     pointer, index, weight = loads
-    total = np.zeros((force.shape[0], ends.size - 1, body.others.shape[1]))
+    total = cube(force.shape[0], ends.size - 1, body.others.shape[1])
     for pair in range(ends.size - 1):
         for i in range(ends[pair], ends[pair + 1]):
             for t in range(force.shape[0]):

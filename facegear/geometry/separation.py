@@ -21,7 +21,9 @@ from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import RigidMotion, to_left_flank
 from facegear.geometry.ray_blank import Blank, FlankSample, gear_rays
 from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler
+from facegear.machine_code.picked import empty_table
 
 PARTS = ("none", "flank", "fillet", "tip land", "root land")
 """Names of the parts NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND."""
@@ -125,14 +127,14 @@ def _rays(motion: RigidMotion, points: SurfacePoints, at: Integers, number: Inte
     return placed_rays(motion.matrix, shift, at, number, points.position, points.normal)
 
 
-@compiler()
+@compiler(*picked.SOURCES)
 def placed_rays(
     matrix: Array, shift: Array, at: Integers, number: Integers, position: Array, normal: Array
 ) -> tuple[Array, Array]:
     """Those of points and directions (m, 3) that `number` (n,) says, (n, 3), each by the motion `at` (n,): of
     matrices (p, 3, 3) and shifts (p, 3).
     """
-    starts, ways = np.empty((at.size, 3)), np.empty((at.size, 3))
+    starts, ways = empty_table(at.size, 3), empty_table(at.size, 3)
     for row in range(at.size):
         placed, point = at[row], number[row]
         for i in range(3):

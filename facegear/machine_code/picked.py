@@ -1,19 +1,21 @@
-"""Parts of arrays as compiled callers take them: numba compiles each use of NumPy's own indexing anew, with
-all that can be indexed, for a second; these once for a type.
+"""Parts of arrays, and new ones, as compiled callers take them: numba compiles each use of NumPy's own
+indexing anew, with all that can be indexed, for a second; these once for a type.
 """
 
-import numpy as np
+from pathlib import Path
 
 from facegear.arrays import AnyArray, Array, Integers, Mask
+from facegear.machine_code import rooms
 from facegear.machine_code.compiler import for_callers
 
+SOURCES = Path(__file__), Path(rooms.__file__)
 called = for_callers(forceinline=False, fastmath=False, error_model="python")
 
 
 @called
 def taken(values: AnyArray, index: Integers) -> AnyArray:
     """values[index] of one dimension."""
-    result = np.empty(index.size, values.dtype)
+    result = rooms.alike(values, index.size)
     for i in range(index.size):
         result[i] = values[index[i]]
     return result
@@ -25,7 +27,7 @@ def marked(mask: Mask) -> Integers:
     count = 0
     for i in range(mask.size):
         count += 1 if mask[i] else 0
-    index, row = np.empty(count, np.int64), 0
+    index, row = rooms.integers(count), 0
     for i in range(mask.size):
         if mask[i]:
             index[row] = i
@@ -36,7 +38,7 @@ def marked(mask: Mask) -> Integers:
 @called
 def integers(count: int, value: int) -> Integers:
     """As many integers (n,) of one value."""
-    result = np.empty(count, np.int64)
+    result = rooms.integers(count)
     for i in range(count):
         result[i] = value
     return result
@@ -45,40 +47,67 @@ def integers(count: int, value: int) -> Integers:
 @called
 def numbers(count: int, value: float) -> Array:
     """As many numbers (n,) of one value."""
-    result = np.empty(count)
+    result = rooms.numbers(count)
     for i in range(count):
         result[i] = value
     return result
 
 
 @called
+def marks(count: int, value: bool) -> Mask:
+    """As many marks (n,) of one value."""
+    result = rooms.marks(count)
+    for i in range(count):
+        result[i] = value
+    return result
+
+
+@called
+def mark_table(rows: int, columns: int) -> Mask:
+    """Marks (n, m), none of them set."""
+    return rooms.no_marks(rows, columns)
+
+
+@called
+def cube(blocks: int, rows: int, columns: int) -> Array:
+    """Zeros (k, n, m)."""
+    return rooms.cube(blocks, rows, columns)
+
+
+@called
+def integer_table(rows: int, columns: int) -> Integers:
+    """Integers 0 (n, m)."""
+    return rooms.integer_table(rows, columns)
+
+
+@called
 def table(rows: int, columns: int) -> Array:
     """Zeros (n, m)."""
-    return np.zeros((rows, columns))
+    return rooms.zeros(rows, columns)
 
 
 @called
 def empty_table(rows: int, columns: int) -> Array:
     """Room for numbers (n, m)."""
-    return np.empty((rows, columns))
+    return rooms.table(rows, columns)
 
 
 @called
 def empty_numbers(count: int) -> Array:
     """Room for numbers (n,)."""
-    return np.empty(count)
+    return rooms.numbers(count)
 
 
 @called
 def empty_integers(count: int) -> Integers:
     """Room for integers (n,)."""
-    return np.empty(count, np.int64)
+    return rooms.integers(count)
 
 
 @called
 def unsigned(index: Integers) -> AnyArray:
     """The same indices as numbers without a sign: compiled loops look for one at every use of others."""
-    result = np.empty(index.size, np.uint64)
+    result = rooms.unsigned(index.size)
     for i in range(index.size):
         result[i] = index[i]
     return result

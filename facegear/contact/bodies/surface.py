@@ -15,9 +15,11 @@ import scipy.sparse as sp
 from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, MeshQuad
 
 from facegear.arrays import Array, Integers
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.picked import cube, empty_table, integer_table, integers
 
-compiled, inlined = compiler(), for_callers(error_model="numpy")
+compiled, inlined = compiler(*picked.SOURCES), for_callers(error_model="numpy")
 
 TWO_POINTS = 3
 """Degree that two Gauss points integrate exactly."""
@@ -46,10 +48,9 @@ def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tupl
     count, width, size = coordinates.shape[0], steps.shape[0], steps[0, 0]
     for a in range(width):
         size = max(size, steps[a, 0])
-    nodes = np.empty((count, width), np.int64)
-    values, gradients = np.empty((count, width)), np.empty((count, width, 2))
-    value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
-    corner = np.empty(2, np.int64)
+    nodes, corner = integer_table(count, width), integers(2, 0)
+    values, gradients = empty_table(count, width), cube(count, width, 2)
+    value, slope = empty_table(2, size + 1), empty_table(2, size + 1)
     for point in range(count):
         locate(coordinates[point, 0], coordinates[point, 1], (rows, columns), size, corner, value, slope)
         for a in range(width):

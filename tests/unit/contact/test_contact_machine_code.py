@@ -1,9 +1,13 @@
 """Machine code of a contact, compiled before there is one."""
 
 import os
+import subprocess
 import sys
 
+import numpy as np
 from forked_python import run_together
+
+from facegear.contact.bodies.surface import face_functions
 
 PROGRAM = """
 from contact_bodies import COARSE, STEEL, pair_design
@@ -43,3 +47,23 @@ def test_a_contact_of_bodies_that_are_known_compiles_nothing_once_its_machine_co
     prepared, compiled = done.stdout.splitlines()
     assert {"touching", "cut_rays"} <= set(prepared.split())
     assert compiled.split() == []
+
+
+def test_without_numbas_private_parts_the_same_functions_run_with_the_same_answers():
+    """By Python itself here: compiling them takes minutes."""
+    at = [[0.25, 1.75], [3.0, 2.5]]
+    program = (
+        "import numpy as np\nfrom facegear.contact.bodies.surface import face_functions\n"
+        "from facegear.contact.prepare import prepare\nfrom facegear.machine_code import versions\n"
+        f"prepare()\nfound = face_functions(np.array({at}), (5, 5))\n"
+        "print(versions.NUMBA_IS_KNOWN, *np.concatenate([part.ravel() for part in found]).tolist())"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    known, *numbers = done.stdout.split()
+    expected = np.concatenate([part.ravel() for part in face_functions(np.array(at), (5, 5))])
+    assert known == "False"
+    np.testing.assert_allclose(np.array(numbers, float), expected, rtol=1e-14, atol=1e-15)
