@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from facegear.arrays import Array, Integers
 from facegear.contact import influence
 from facegear.contact.averages import Rows

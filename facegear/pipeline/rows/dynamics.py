@@ -30,7 +30,7 @@ ROWS = (
         runs=("machine_code_abreast",),
         folder="dynamics",
         asked=asked.side_by_side,
-        priority=70,
+        priority=82,
     ),
     Stage(
         name="dynamics_response",

@@ -34,6 +34,7 @@ ROWS = (
             upstream=from_stage("geometry", "pair", "flanks", "contact"),
         ),
         asked=asked.contact,
+        priority=65,
     ),
     Stage(
         name="mesh",
