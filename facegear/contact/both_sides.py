@@ -7,13 +7,13 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.contact import averages
 from facegear.contact.averages import Rows
-from facegear.machine_code import picked, vectors
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.memory import LANES
 from facegear.machine_code.picked import empty_integers, empty_table, integers, table, taken
 from facegear.machine_code.vectors import load, multiply_add, splat, store, take
 
-SOURCES = Path(averages.__file__), *picked.SOURCES, Path(vectors.__file__)
+SOURCES = Path(averages.__file__), *picked.SOURCES
 compiled = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
 inlined, called = for_callers(), for_callers(forceinline=False)

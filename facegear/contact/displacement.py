@@ -7,14 +7,14 @@ from facegear.contact import influence
 from facegear.contact.averages import Rows
 from facegear.contact.both_sides import fours
 from facegear.contact.influence import Surface, part_of
-from facegear.machine_code import picked, prefetch, vectors
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
 from facegear.machine_code.memory import LANES
 from facegear.machine_code.picked import cube, empty_integers, integers, listed, table, taken
 from facegear.machine_code.prefetch import request
 from facegear.machine_code.vectors import add, load, multiply_add, splat, store, sums, take
 
-SOURCES = Path(influence.__file__), *picked.SOURCES, Path(prefetch.__file__), Path(vectors.__file__)
+SOURCES = Path(influence.__file__), *picked.SOURCES
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""

@@ -8,7 +8,8 @@ from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.machine_code import rooms
 from facegear.machine_code.compiler import for_callers
 
-SOURCES = Path(__file__), Path(rooms.__file__)
+SOURCES = (Path(__file__).parent,)
+"""Files that machine code of such callers follows from, beside their own."""
 called = for_callers(forceinline=False, fastmath=False, error_model="python")
 
 
