@@ -4,7 +4,7 @@ Made of numba's private parts, as `stored.py` is.
 """
 
 import gc
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 from llvmlite import binding
@@ -37,18 +37,28 @@ class _CodeForCallers(JITCodeLibrary):
         self._ensure_finalized()
         return self._final_module
 
-    def called(self) -> Iterator[JITCodeLibrary]:
-        """All libraries that it needs, some more than once."""
+    def called(self) -> list[JITCodeLibrary]:
+        """All libraries that it needs, each behind all that call it: the linker leaves out what nothing that
+        is linked already asks for.
+        """
+        callees_first: dict[JITCodeLibrary, None] = {}
+
+        def visit(library: JITCodeLibrary) -> None:
+            if library in callees_first:
+                return
+            for own in library._linking_libraries if isinstance(library, _CodeForCallers) else ():
+                visit(own)
+            callees_first[library] = None
+
         for library in self._linking_libraries:
-            yield library
-            if isinstance(library, _CodeForCallers):
-                yield from library.called()
+            visit(library)
+        return list(reversed(callees_first))
 
     def _get_module_for_linking(self) -> Any:
         """Its functions with those that they call, for a library of numba's own."""
         if self._shared_module is None:
             self._shared_module = self.alone().clone()
-            _link(self._shared_module, dict.fromkeys(self.called()))
+            _link(self._shared_module, self.called())
         return self._shared_module
 
     def _optimize_functions(self, module: Any) -> None:
@@ -68,7 +78,7 @@ class _CodeOfAll(_CodeForCallers):
 
     def finalize(self) -> None:
         """Link it together, optimise it and compile it."""
-        libraries = dict.fromkeys(self.called())
+        libraries = self.called()
         for library in libraries:
             self._reload_init.update(library._reload_init)
         _link(self._final_module, libraries)

@@ -55,3 +55,14 @@ def test_a_function_of_numbas_own_finds_what_the_parts_that_it_calls_call_themse
     overload(given, strict=False)(lambda value: lambda value: outer(value))
     function = compiler()(lambda value: given(value) + inner(value))
     assert function(3.0) == 12.0
+
+
+def test_a_part_is_there_though_the_first_that_might_call_it_never_does(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    inner = for_callers(forceinline=False)(lambda value: value + 1.0)
+    never = for_callers(forceinline=False, fastmath={"contract"})(
+        lambda value: inner(value) if len((value,)) > 1 else value
+    )
+    outer = for_callers(forceinline=False)(lambda value: 2.0 * inner(value))
+    function = compiler()(lambda value: never(value) + outer(value))
+    assert function(3.0) == 11.0
