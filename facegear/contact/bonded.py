@@ -5,47 +5,51 @@ import numpy as np
 from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import empty_numbers, empty_table, marked, numbers, taken
+from facegear.machine_code.picked import empty_numbers, marked, numbers, table, taken, unsigned
 
 compiled = compiler(*picked.SOURCES)
 inlined_sums = for_callers(fastmath={"contract", "reassoc"})
 """For sums of products, whose terms may be added in any order."""
 
 Bonded = tuple[Integers, Array, AnyArray, Array, Array, float, float]
-"""What happens if exactly some points touch: their indices (k,), their compliance (k, k) and its Cholesky
-factor, their forces by a unit turn (k,), N/rad, their forces (k,), N, the rotation (rad) and its slope over
-the torque."""
+"""What happens if exactly some points touch: their indices (k,), their compliance (k, k) up to its diagonal,
+the columns of its Cholesky factor as rows (k, k), their forces by a unit turn (k,), N/rad, their forces (k,),
+N, the rotation (rad) and its slope over the torque."""
 
 
 @inlined_sums
-def _substituted(lower: Array, first: Array, second: Array) -> None:
-    """Solve for two right-hand sides in place by a lower Cholesky factor in columns."""
+def _substituted(columns: Array, first: Array, second: Array) -> None:
+    """Solve for two right-hand sides in place by a lower Cholesky factor, whose columns are rows here."""
     size = first.size
+    end = np.uint64(size)
     for j in range(size):
-        first[j] /= lower[j, j]
-        second[j] /= lower[j, j]
+        column = columns[j]
+        first[j] /= column[j]
+        second[j] /= column[j]
         a, b = first[j], second[j]
-        for i in range(j + 1, size):
-            first[i] -= lower[i, j] * a
-            second[i] -= lower[i, j] * b
+        for i in range(np.uint64(j + 1), end):
+            first[i] -= column[i] * a
+            second[i] -= column[i] * b
     for j in range(size - 1, -1, -1):
+        column = columns[j]
         a = b = 0.0
-        for i in range(j + 1, size):
-            a += lower[i, j] * first[i]
-            b += lower[i, j] * second[i]
-        first[j] = (first[j] - a) / lower[j, j]
-        second[j] = (second[j] - b) / lower[j, j]
+        for i in range(np.uint64(j + 1), end):
+            a += column[i] * first[i]
+            b += column[i] * second[i]
+        first[j] = (first[j] - a) / column[j]
+        second[j] = (second[j] - b) / column[j]
 
 
 @inlined_sums
-def _times(matrix: Array, vector: Array) -> Array:
-    """A matrix times a vector."""
-    result = empty_numbers(matrix.shape[0])
-    for i in range(matrix.shape[0]):
-        total = 0.0
-        for j in range(matrix.shape[1]):
-            total += matrix[i, j] * vector[j]
-        result[i] = total
+def _times(lower: Array, vector: Array) -> Array:
+    """A symmetric matrix, of which what is above the diagonal is not looked at, times a vector."""
+    result = numbers(vector.size, 0.0)
+    for i in range(vector.size):
+        row, factor, total = lower[i], vector[i], 0.0
+        for j in range(np.uint64(i)):
+            total += row[j] * vector[j]
+            result[j] += row[j] * factor
+        result[i] += total + row[i] * factor
     return result
 
 
@@ -74,15 +78,16 @@ def distances(compliance: Array, gap: Array, lever_arm: Array, force: Array, rot
 def bonded(compliance: Array, gap: Array, lever_arm: Array, torque: float, active: Mask) -> Bonded:
     """What happens if exactly the points `active` (n,) touch."""
     index = marked(active)
-    size = index.size
-    block = empty_table(size, size)
+    size, column = index.size, unsigned(index)
+    block = table(size, size)
     turning, closing = empty_numbers(size), empty_numbers(size)
     for i in range(size):
         turning[i], closing[i] = lever_arm[index[i]], gap[index[i]]
-        for j in range(size):
-            block[i, j] = compliance[index[i], index[j]]
-    factor = np.linalg.cholesky(block)
-    _substituted(factor, turning, closing)
+        row = compliance[index[i]]
+        for j in range(i + 1):
+            block[i, j] = row[column[j]]
+    columns = np.linalg.cholesky(block).T
+    _substituted(columns, turning, closing)
     stiffness = carried = 0.0
     for i in range(size):
         stiffness += lever_arm[index[i]] * turning[i]
@@ -91,7 +96,7 @@ def bonded(compliance: Array, gap: Array, lever_arm: Array, torque: float, activ
     force = closing
     for i in range(size):
         force[i] = rotation * turning[i] - closing[i]
-    return index, block, factor, turning, force, rotation, 1.0 / stiffness
+    return index, block, columns, turning, force, rotation, 1.0 / stiffness
 
 
 @compiled
@@ -120,7 +125,7 @@ def refined(
     compliance: Array, gap: Array, lever_arm: Array, torque: float, touching: Bonded
 ) -> tuple[Array, float, float]:
     """Forces (n,), rotation and violation after two steps of iterative refinement."""
-    index, block, factor, turning, force, rotation, _ = touching
+    index, block, columns, turning, force, rotation, _ = touching
     arm, apart = taken(lever_arm, index), taken(gap, index)
     force, unused = force.copy(), numbers(index.size, 0.0)
     for _ in range(2):
@@ -128,7 +133,7 @@ def refined(
         for i in range(index.size):
             change[i] = change[i] + apart[i] - rotation * arm[i]
             missing -= arm[i] * force[i]
-        _substituted(factor, change, unused)
+        _substituted(columns, change, unused)
         carried = stiffness = 0.0
         for i in range(index.size):
             carried += arm[i] * change[i]
