@@ -15,18 +15,8 @@ from facegear.contact.path import pairs_to_try
 from facegear.contact.position import MARGIN, LoadedPosition, first_turn, solve_position
 from facegear.contact.search import cover_of, facing_points
 from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
-from facegear.contact.touching import (
-    GAP,
-    START_GAP,
-    START_WIDTH,
-    WIDER,
-    WIDTH,
-    Cover,
-    Facing,
-    Strip,
-    Touching,
-    touching,
-)
+from facegear.contact.strip_of_hats import GAP, START_GAP, START_WIDTH, WIDER, WIDTH, Strip
+from facegear.contact.touching import Cover, Facing, Touching, touching
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import pinion_angle
 from facegear.geometry.unloaded import unloaded_motion

@@ -12,7 +12,8 @@ from facegear.contact.influence import Surface
 from facegear.contact.loads import EdgePoints, gathered
 from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
 from facegear.contact.spreading import Faces
-from facegear.contact.touching import Cover, Facing, Strip, touching
+from facegear.contact.strip_of_hats import Strip
+from facegear.contact.touching import Cover, Facing, touching
 from facegear.geometry.opposite import by_tip_edge, nearest_of
 from facegear.geometry.ray_blank import Blank
 from facegear.geometry.rays import cut

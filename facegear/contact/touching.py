@@ -9,10 +9,17 @@ strip alone is many times cheaper, and one product shows whether the rest stays 
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact import active_set, averages, bonded, both_sides, displacement, influence, spreading
+from facegear.contact import (
+    active_set,
+    averages,
+    bonded,
+    both_sides,
+    displacement,
+    influence,
+    spreading,
+    strip_of_hats,
+)
 from facegear.contact.active_set import solved
 from facegear.contact.averages import HatPoints, Hats, Rows, closing, rows_of
 from facegear.contact.bodies import surface
@@ -21,9 +28,10 @@ from facegear.contact.displacement import displacement as displaced
 from facegear.contact.influence import Surface
 from facegear.contact.influence import influence as influence_of
 from facegear.contact.spreading import composed, spread
+from facegear.contact.strip_of_hats import Strip, expected, turns_of
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import cube, empty_numbers, integers, marked, marks, numbers, table, taken
+from facegear.machine_code.picked import cube, integers, marked, marks, numbers, table, taken
 from facegear.machine_code.records import Record
 
 SOURCES = (
@@ -34,33 +42,11 @@ SOURCES = (
     Path(displacement.__file__),
     Path(influence.__file__),
     Path(spreading.__file__),
+    Path(strip_of_hats.__file__),
     Path(surface.__file__),
     *picked.SOURCES,
 )
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
-
-GAP, WIDTH = 0.8, 0.23
-"""Where contact is sought: the least gap of a column of hats as a part of the rigid approach (the bodies give
-way by the rest), and by how much the gap of the others in it exceeds that, as a part of what it is below."""
-
-WIDER = 1.6
-"""Factor on the second part where contact is missed beside the strip."""
-
-START_GAP, START_WIDTH = 0.6, 0.14
-"""The same for the first guess of what touches."""
-
-
-@Record.register
-class Strip(NamedTuple):
-    """How wide a strip contact is sought in, GAP, WIDTH and WIDER; where the search starts, START_GAP of the
-    turn that is expected under the first torque, as a part of the limit, and START_WIDTH.
-    """
-
-    gap: float
-    width: float
-    wider: float
-    begin: float
-    start_width: float
 
 
 @Record.register
@@ -131,9 +117,9 @@ def touching(
         facing.points, facing.starts, cover.min_area, cover.first, cover.shape, cover.flank_ends, limit
     )
     at = facing.points.pinion, facing.points.gear
-    own, column_min = _turns(hats, cover.shape[1], facing.teeth.size)
+    own, column_min = turns_of(hats, cover.shape[1], facing.teeth.size)
     gap, arm, width = hats.gap, hats.lever_arm, strip.width
-    keep = _expected(own, column_min, strip.gap * limit, width)
+    keep = expected(own, column_min, strip.gap * limit, width)
     forward, overlap, longest = 0, 0.0, 0.0
     drives = False
     for i in range(gap.size):
@@ -157,7 +143,7 @@ def touching(
         loads = _loads(every, keep, surfaces)
         matrix = influence_of(ends, facing.teeth, surfaces, loads[0], loads[1], coupled)
         force, begin = table(count, which.size), strip.begin * limit
-        start = taken(_expected(own, column_min, begin, strip.start_width), which)
+        start = taken(expected(own, column_min, begin, strip.start_width), which)
         apart, levers = taken(gap, which), taken(arm, which)
         for t in range(count):
             steps[t], forces, rotation[t], slope[t], residual[t], change = solved(
@@ -193,7 +179,7 @@ def touching(
             tried |= keep[hat]
         if tried:
             width *= strip.wider
-            wider = _expected(own, column_min, strip.gap * limit, width)
+            wider = expected(own, column_min, strip.gap * limit, width)
             for hat in others:
                 keep[hat] |= wider[hat]
     carriers = _loaded(force)
@@ -221,31 +207,6 @@ def touching(
         _on_nodes(loads[1][0], ends, force, surfaces[0]),
         _on_nodes(loads[1][1], ends, force, surfaces[1]),
     )
-
-
-@called
-def _turns(hats: Hats, columns: int, pairs: int) -> tuple[Array, Array]:
-    """Turn (n,) of the pinion that closes each hat's gap, and the least (n,) in its column of hats."""
-    count = hats.gap.size
-    own, of_column = numbers(count, np.inf), numbers(pairs * columns, np.inf)
-    for i in range(count):
-        if hats.lever_arm[i] > 0.0:
-            own[i] = hats.gap[i] / hats.lever_arm[i]
-            column = hats.pair[i] * columns + hats.node[i] % columns
-            of_column[column] = min(of_column[column], own[i])
-    column_min = empty_numbers(count)
-    for i in range(count):
-        column_min[i] = of_column[hats.pair[i] * columns + hats.node[i] % columns]
-    return own, column_min
-
-
-@called
-def _expected(own: Array, column_min: Array, min_turn: float, width: float) -> Mask:
-    """Hats that are expected to touch: the lesser a column's least gap, the wider."""
-    expected = marks(own.size, False)
-    for i in range(own.size):
-        expected[i] = own[i] - column_min[i] < width * (min_turn - column_min[i])
-    return expected
 
 
 @called
