@@ -9,9 +9,9 @@ from facegear.contact import averages
 from facegear.contact.averages import Rows
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.lanes import load, multiply_add, splat, store, take
 from facegear.machine_code.memory import LANES
 from facegear.machine_code.picked import empty_integers, empty_table, integers, table, taken
-from facegear.machine_code.vectors import load, multiply_add, splat, store, take
 
 SOURCES = Path(averages.__file__), *picked.SOURCES
 compiled = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")

@@ -9,10 +9,10 @@ from facegear.contact.both_sides import fours
 from facegear.contact.influence import Surface, part_of
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.lanes import add, load, multiply_add, splat, store, sums, take
 from facegear.machine_code.memory import LANES
 from facegear.machine_code.picked import cube, empty_integers, integers, listed, table, taken
 from facegear.machine_code.prefetch import request
-from facegear.machine_code.vectors import add, load, multiply_add, splat, store, sums, take
 
 SOURCES = Path(influence.__file__), *picked.SOURCES
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)

@@ -3,15 +3,17 @@
 from typing import Any
 
 from llvmlite import ir
-from numba import types
+from numba import njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
+
+from facegear.machine_code.versions import NUMBA_IS_KNOWN
 
 _FOR_READING, _KEPT, _DATA = (ir.Constant(ir.IntType(32), value) for value in (0, 3, 1))
 
 
 @intrinsic
-def request(typing_context: Any, array: Any, index: Any) -> Any:
+def _request(typing_context: Any, array: Any, index: Any) -> Any:
     """Have the processor fetch the line of its cache that holds an element of a C-contiguous array, at a flat
     index, without waiting for it. Nothing is changed.
     """
@@ -28,3 +30,11 @@ def request(typing_context: Any, array: Any, index: Any) -> Any:
         return context.get_dummy_value()
 
     return types.void(array, types.intp), code
+
+
+@njit
+def _ask_for_nothing(array: Any, index: Any) -> None:
+    """In place of a request, which changes nothing."""
+
+
+request = _request if NUMBA_IS_KNOWN else _ask_for_nothing

@@ -49,21 +49,32 @@ def test_a_contact_of_bodies_that_are_known_compiles_nothing_once_its_machine_co
     assert compiled.split() == []
 
 
+PLAIN = """
+import numpy as np
+from facegear.contact.bodies.surface import face_functions
+from facegear.contact.both_sides import add_averages
+from facegear.contact.prepare import prepare
+from facegear.machine_code import versions
+prepare()
+rows = np.array([0, 2, 3]), np.array([0, 2, 1]), np.array([0.5, 0.25, 2.0])
+matrix, compliance = np.zeros((2, 2)), np.arange(9.0).reshape(3, 3)
+add_averages(matrix, (0, 0), 2.0, rows, compliance, rows, False)
+found = *face_functions(np.array([[0.25, 1.75], [3.0, 2.5]]), (5, 5)), matrix
+print(versions.NUMBA_IS_KNOWN, *np.concatenate([part.ravel() for part in found]).tolist())
+"""
+
+
 def test_without_numbas_private_parts_the_same_functions_run_with_the_same_answers():
     """By Python itself here: compiling them takes minutes."""
-    at = [[0.25, 1.75], [3.0, 2.5]]
-    program = (
-        "import numpy as np\nfrom facegear.contact.bodies.surface import face_functions\n"
-        "from facegear.contact.prepare import prepare\nfrom facegear.machine_code import versions\n"
-        f"prepare()\nfound = face_functions(np.array({at}), (5, 5))\n"
-        "print(versions.NUMBA_IS_KNOWN, *np.concatenate([part.ravel() for part in found]).tolist())"
-    )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "NUMBA_DISABLE_JIT": "1"}
     done = subprocess.run(
-        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", PLAIN], env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     known, *numbers = done.stdout.split()
-    expected = np.concatenate([part.ravel() for part in face_functions(np.array(at), (5, 5))])
+    averages = np.array([[0.5, 0.0, 0.25], [0.0, 2.0, 0.0]])
+    matrix = 2.0 * averages @ np.arange(9.0).reshape(3, 3) @ averages.T
+    expected = *face_functions(np.array([[0.25, 1.75], [3.0, 2.5]]), (5, 5)), matrix.T
     assert known == "False"
-    np.testing.assert_allclose(np.array(numbers, float), expected, rtol=1e-14, atol=1e-15)
+    flat = np.concatenate([part.ravel() for part in expected])
+    np.testing.assert_allclose(np.array(numbers, float), flat, rtol=1e-14, atol=1e-15)
