@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from facegear.contact.averages import HatPoints
-from facegear.contact.bodies.surface import face_functions
+from facegear.contact.bodies.surface import areas_at, face_functions
 from facegear.contact.fillet_contact import kept_hats
 from facegear.contact.flanks import PinionPoints
 from facegear.contact.influence import Surface
@@ -34,9 +34,10 @@ def prepare() -> None:
     blank = Blank(*[0.0] * len(Blank._fields))
     cut(blank, RAYS, RAYS, 0.0, RAYS, RAYS, NONE, NONE, MARKS, 0.0, NONE)
     placed_rays(np.zeros((0, 3, 3)), RAYS, NUMBERS, NUMBERS, RAYS, RAYS)
-    by_tip_edge(np.zeros(0, np.int8), NONE, NONE, 1.0, NONE, CUBICS, CUBICS)
+    by_tip_edge(np.zeros(0, np.int8), NONE, NONE, 1.0, 1.0, 1.0, NONE, CUBICS, CUBICS)
     _gather()
     face_functions(PLACES, (3, 3))
+    areas_at(RAYS, np.zeros((0, 9), np.int64), np.zeros((0, 9, 2)), NONE)
     nearest_of(RAYS, np.asfortranarray(np.zeros((2, 2))))
     kept_hats(NUMBERS, NUMBERS, MARKS, NONE, 0.0)
 

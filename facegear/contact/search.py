@@ -159,7 +159,9 @@ def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integer
 def _beside(nodes: Mask) -> Mask:
     """Cells (p, m - 1, n - 1) between nodes (p, m, n) that a marked node stands at or beside."""
     for axis in (1, 2):
-        padded = np.pad(nodes, [(1, 1) if axis == other else (0, 0) for other in range(3)])
-        size = padded.shape[axis] - 3
-        nodes = np.any([np.take(padded, range(k, k + size), axis) for k in range(4)], axis=0)
+        around = [(1, 1) if axis == other else (0, 0) for other in range(3)]
+        padded = np.moveaxis(np.pad(nodes, around), axis, 0)
+        size = len(padded) - 3
+        beside = padded[:size] | padded[1 : size + 1] | padded[2 : size + 2] | padded[3:]
+        nodes = np.moveaxis(beside, 0, axis)
     return nodes

@@ -1,19 +1,21 @@
 """What of the gear's tooth stands opposite points of the pinion, and the reverse for the gear's tip edge."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.arrays import Array, Integers
-from facegear.geometry import face_gear, pinion
+from facegear.geometry import closed_forms, face_gear, pinion, ray_surfaces
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import fillet_points
 from facegear.geometry.placement import to_pinion_section
+from facegear.geometry.ray_surfaces import psi_at
 from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
 from facegear.machine_code.compiler import compiler, for_callers
 
-compiled, inlined = compiler(), for_callers()
+compiled, inlined = compiler(Path(ray_surfaces.__file__), Path(closed_forms.__file__)), for_callers()
 
 FILLET_SAMPLES = 2000
 
@@ -72,10 +74,11 @@ def located(design: PairDesign, seen: Separation) -> GearHits:
     """Where on the gear's tooth a separation ends."""
     edge, shape = face_gear.tip_edge_by_radius(design), seen.gap.shape
     cubics = edge.roll.x, np.ascontiguousarray(edge.roll.c), np.ascontiguousarray(edge.angle.c)
+    base, ratio, _, _ = face_gear.shaper_numbers(design)
     hit = seen.part.ravel(), seen.u.ravel(), seen.radius.ravel()
-    flank, beyond = (part.reshape(shape) for part in by_tip_edge(*hit, design.shaper_tip_roll, *cubics))
-    fillet, on = np.full(shape, np.nan), np.nonzero(seen.part == FILLET)
-    fillet[on] = face_gear.fillet_fraction(design, seen.v[on], seen.u[on])
+    flank, fillet, beyond = (
+        part.reshape(shape) for part in by_tip_edge(*hit, base, ratio, design.shaper_tip_roll, *cubics)
+    )
     return GearHits(gap=seen.gap, radius=seen.radius, flank=flank, fillet=fillet, beyond=beyond)
 
 
@@ -84,24 +87,29 @@ def by_tip_edge(
     part: NDArray[np.int8],
     u: Array,
     radius: Array,
+    base: float,
+    ratio: float,
     last_roll: float,
     radii: Array,
     rolls: Array,
     angles: Array,
-) -> tuple[Array, Array]:
-    """`flank` and `beyond` (n,) of `GearHits` by what is hit and where on it, (n,) of `Separation`.
+) -> tuple[Array, Array, Array]:
+    """`flank`, `fillet` and `beyond` (n,) of `GearHits` by what is hit and where on it, (n,) of `Separation`.
 
-    last_roll (rad): where the flank ends at the fillet. Cubics (4, r) of the tip edge's roll and gear angle
-    (rad) begin at gear radii (r + 1,) m, evenly spaced.
+    base, ratio: of the shaper; last_roll (rad): where the flank ends at the fillet. Cubics (4, r) of the tip
+    edge's roll and gear angle (rad) begin at gear radii (r + 1,) m, evenly spaced.
     """
-    flank, beyond = np.full(part.size, np.nan), np.full(part.size, np.nan)
+    flank, fillet, beyond = np.full((3, part.size), np.nan)
     for i in range(part.size):
         if part[i] == FLANK:
             tip = _cubic(radii, rolls, radius[i])
             flank[i] = (u[i] - tip) / (last_roll - tip)
+        elif part[i] == FILLET:
+            start = psi_at(base, ratio, radius[i], last_roll)
+            fillet[i] = (u[i] - start) / (0.5 * np.pi - start)
         elif part[i] == TIP_LAND:
             beyond[i] = radius[i] * (_cubic(radii, angles, radius[i]) - u[i])
-    return flank, beyond
+    return flank, fillet, beyond
 
 
 @inlined

@@ -111,7 +111,7 @@ def cut_fillet(
     radius = sqrt(x * x + y * y)
     if not (done and psi <= 0.5 * pi and blank.inner <= radius <= blank.outer):
         return inf, psi, radius
-    start = _psi_at(blank, radius, blank.tip_roll)
+    start = psi_at(blank.base, blank.ratio, radius, blank.tip_roll)
     if isnan(start):
         return nan, psi, radius
     return (distance if psi >= start else inf), psi, radius
@@ -166,10 +166,11 @@ def tip_angle(blank: Blank, radius: float) -> float:
 
 
 @inlined
-def _psi_at(blank: Blank, radius: float, roll: float) -> float:
-    psi = first_psi(blank.base, blank.ratio, radius)
+def psi_at(base: float, ratio: float, radius: float, roll: float) -> float:
+    """Slope psi of the flank's normal at a gear radius and roll; nan where it is not found."""
+    psi = first_psi(base, ratio, radius)
     for _ in range(PSI_STEPS):
-        value, slope = radius_at_roll(blank.base, blank.ratio, radius, roll, psi)
+        value, slope = radius_at_roll(base, ratio, radius, roll, psi)
         step = min(max(value / slope, -0.1), 0.1)
         psi -= step
         if abs(step) < CLOSE:

@@ -122,9 +122,27 @@ def edge_hats(nodes: int) -> tuple[Array, Integers, Array]:
 
 def cell_areas(surface: Array) -> Array:
     """Area (m2) that each Gauss point of the pressure basis stands for, surface nodes (nu, nv, 3)."""
-    nodes, gradients, weights = _at_cell_points(surface.shape[:2])
-    tangents = np.einsum("qad,qai->dqi", gradients, surface.reshape(-1, 3)[nodes])
-    return np.linalg.norm(np.cross(*tangents), axis=1) * weights
+    rows, columns, _ = surface.shape
+    positions = np.ascontiguousarray(surface.reshape(-1, 3))
+    return np.asarray(areas_at(positions, *_at_cell_points((rows, columns))))
+
+
+@compiled
+def areas_at(positions: Array, nodes: Integers, gradients: Array, weights: Array) -> Array:
+    """Areas (q,) that q points stand for by weights (q,), of a surface through `positions` (n, 3) of its
+    nodes, by its `face_functions`.
+    """
+    areas = np.empty(weights.size)
+    for point in range(weights.size):
+        ux, uy, uz, vx, vy, vz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for a in range(nodes.shape[1]):
+            node, u, v = nodes[point, a], gradients[point, a, 0], gradients[point, a, 1]
+            x, y, z = positions[node, 0], positions[node, 1], positions[node, 2]
+            ux, uy, uz = ux + u * x, uy + u * y, uz + u * z
+            vx, vy, vz = vx + v * x, vy + v * y, vz + v * z
+        square = (uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2
+        areas[point] = weights[point] * np.sqrt(square)
+    return areas
 
 
 @lru_cache(maxsize=8)
