@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from facegear.arrays import Array, Integers
-from facegear.contact import influence
+from facegear.contact import both_sides, influence
 from facegear.contact.averages import Rows
 from facegear.contact.both_sides import fours
 from facegear.contact.influence import Surface, part_of
@@ -14,7 +14,7 @@ from facegear.machine_code.memory import LANES
 from facegear.machine_code.picked import cube, empty_integers, integers, listed, table, taken
 from facegear.machine_code.prefetch import request
 
-SOURCES = Path(influence.__file__), *picked.SOURCES
+SOURCES = Path(influence.__file__), Path(both_sides.__file__), *picked.SOURCES
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
