@@ -1,4 +1,4 @@
-"""The numba versions whose private parts `stored.py` and `vectors.py` were tried with.
+"""The numba versions whose private parts this package was tried with.
 
 With any other version `compiler.py` and `lanes.py` use the plain, public `njit`: the results are the same,
 but nothing is stored between processes and the first call of each process takes a minute or more.
