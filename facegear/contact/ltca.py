@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from facegear.arrays import Array
 from facegear.contact.bodies.compliance import FlankCompliance
@@ -75,7 +75,7 @@ def loaded_contact(
     progress = Progress("loaded contact", len(phi1))
     searched = _Searched(model, options, list(zip(phi1.tolist(), phi2.tolist(), strict=True)))
     results: list[LoadedPosition] = []
-    with threadpool_limits(1):
+    with _libraries().limit(limits=1):
         for row, position in enumerate(positions):
             pair = _PairAtPosition(searched, row, position=float(position), unloaded=-float(unloaded[row]))
             solved, turned = solve_position(pair, torques, guess)
@@ -83,6 +83,14 @@ def loaded_contact(
             results += solved
             progress.step()
     return results
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """Those of threads that a contact uses: to look for them takes longer than a position."""
+    import scipy.linalg.cython_lapack  # noqa: F401, what compiled functions call
+
+    return ThreadpoolController()
 
 
 @dataclass(eq=False)

@@ -152,49 +152,58 @@ def _results(pair: PairAtPosition, contact: Touching, torques: Array) -> list[Lo
     approach, overlap = base * contact.rotation, base * contact.overlap
     average = np.where(overlap <= UNKNOWN_REFERENCE * approach, torques / base / approach, np.nan)
     local, part = 1.0 / (base**2 * contact.slope), contact.force * hats.lever_arm / torques[:, None]
-    column = np.searchsorted(PAIRS, teeth)
-    ends = np.searchsorted(hats.pair, np.arange(teeth.size + 1))
-    results = []
-    for row, torque in enumerate(torques.tolist()):
-        load_share = np.zeros(len(PAIRS))
-        load_share[column] = np.bincount(hats.pair, part[row], teeth.size)
-        results.append(
-            LoadedPosition(
-                position=pair.position,
-                torque=torque,
-                ste=pair.unloaded + float(approach[row]),
-                unloaded=pair.unloaded,
-                k_average=float(average[row]),
-                k_local=float(local[row]),
-                load_share=load_share,
-                fillet_share=float(part[row][hats.fillet].sum()),
-                overlap=overlap,
-                residual=float(contact.residual[row]),
-                steps=int(contact.steps[row]),
-                candidates=contact.candidates,
-                spots=_spots(contact, row, ends),
-            )
-        )
-    return results
-
-
-def _spots(contact: Touching, row: int, ends: Integers) -> tuple[Spot, ...]:
-    """Of the torque in a row; hats of each pair end at `ends` (p + 1,), 0 first."""
-    hats = contact.hats
-    on = np.flatnonzero(contact.force[row] > 0.0)
-    node, force, fillet = hats.node[on], contact.force[row][on], hats.fillet[on]
-    begun = np.searchsorted(on, ends).tolist()
-    return tuple(
-        Spot(
-            tooth=tooth,
-            hats=node[first:last],
-            force=force[first:last],
-            fillet=fillet[first:last],
-            on_pinion=contact.on_pinion[row, number],
-            on_gear=contact.on_gear[row, number],
-        )
-        for number, (tooth, (first, last)) in enumerate(
-            zip(contact.teeth.tolist(), pairwise(begun), strict=True)
-        )
-        if last > first
+    of_pair = hats.pair[:, None] == np.arange(teeth.size)
+    load_share = np.zeros((torques.size, len(PAIRS)))
+    load_share[:, np.searchsorted(PAIRS, teeth)] = part @ of_pair
+    spots = _spots(contact)
+    columns = (
+        torques,
+        pair.unloaded + approach,
+        average,
+        local,
+        part @ hats.fillet,
+        contact.residual,
+        contact.steps,
     )
+    return [
+        LoadedPosition(
+            position=pair.position,
+            torque=torque,
+            ste=ste,
+            unloaded=pair.unloaded,
+            k_average=k_average,
+            k_local=k_local,
+            load_share=load_share[row],
+            fillet_share=fillet_share,
+            overlap=overlap,
+            residual=residual,
+            steps=steps,
+            candidates=contact.candidates,
+            spots=spots[row],
+        )
+        for row, (torque, ste, k_average, k_local, fillet_share, residual, steps) in enumerate(
+            zip(*(column.tolist() for column in columns), strict=True)
+        )
+    ]
+
+
+def _spots(contact: Touching) -> list[tuple[Spot, ...]]:
+    """Of each torque, tooth by tooth."""
+    hats, (torques, pairs) = contact.hats, contact.on_pinion.shape[:2]
+    row, on = np.nonzero(contact.force > 0.0)
+    node, force, fillet = hats.node[on], contact.force[row, on], hats.fillet[on]
+    begun = np.searchsorted(row * pairs + hats.pair[on], np.arange(torques * pairs + 1)).tolist()
+    tooth, spots = contact.teeth.tolist(), [list[Spot]() for _ in range(torques)]
+    for number, (first, last) in enumerate(pairwise(begun)):
+        torque, pair = divmod(number, pairs)
+        if last > first:
+            spot = Spot(
+                tooth=tooth[pair],
+                hats=node[first:last],
+                force=force[first:last],
+                fillet=fillet[first:last],
+                on_pinion=contact.on_pinion[torque, pair],
+                on_gear=contact.on_gear[torque, pair],
+            )
+            spots[torque].append(spot)
+    return [tuple(some) for some in spots]

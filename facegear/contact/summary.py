@@ -73,7 +73,7 @@ def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
     tip edges, the share of the torque that fillets carry and the interference are the largest of all
     positions, which need not be one position's. A mean stiffness over positions of which one has none is nan.
     """
-    values = {name: ltca[name].to_numpy() for name in ltca.columns}
+    values = dict(zip(ltca.columns, ltca.to_numpy(float).T, strict=True))
     torques = np.unique(values["torque_n_m"])
     order = np.argsort(values["position"], kind="stable")
     groups = [order[values["torque_n_m"][order] == torque] for torque in torques]

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from facegear.arrays import Array
 from facegear.harmonics.fit import fit_harmonics
 from facegear.harmonics.series import Harmonics
 
@@ -16,8 +17,7 @@ def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
     Positive where the drive flank comes late. The mean is taken off: it turns the pinions, and what it does
     to the backlash stands in that of the pair as assembled. An error that is constant is exactly zero.
     """
-    rows = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")
-    samples = rows["unloaded_ste_um"].to_numpy(float)
+    samples = unloaded_samples(ltca)
     if np.ptp(samples) <= ROUNDING_UM:
         return Harmonics(np.zeros(order + 1), np.zeros(order + 1)), 0.0
     fit = fit_harmonics(1e-6 * (samples - samples.mean()))
@@ -25,6 +25,15 @@ def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
     b = series.b.copy()
     b[0] = 0.0
     return Harmonics(series.a, b), float(fit.truncation[order])
+
+
+def unloaded_samples(ltca: pd.DataFrame) -> Array:
+    """Unloaded transmission error (p,) um of a contact table at its positions, rising."""
+    torque, position, error = (
+        ltca[name].to_numpy(float) for name in ("torque_n_m", "position", "unloaded_ste_um")
+    )
+    rows = np.flatnonzero(torque == torque.min())
+    return np.asarray(error[rows[np.argsort(position[rows])]])
 
 
 def peak_to_peak(series: Harmonics) -> float:

@@ -21,9 +21,10 @@ from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution
 from facegear.contact.summary import contact_summary
 from facegear.geometry.bodies import BODIES
-from facegear.stiffness.curve import load_table
+from facegear.stiffness.curve import LoadTable
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.source import curve_from_contact
+from facegear.stiffness.unloaded import unloaded_samples
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passing_tension import PassingTension
@@ -63,7 +64,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
             stiffness=curve.series,
             unloaded=curve.error,
             backlash_added=added,
-            answers=_answers(analysis, tensions, numbers, request),
+            answers=_answers(analysis, tensions, numbers, curve.table, request),
             rubbed=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,
         )
 
@@ -75,13 +76,16 @@ def _request(pair: Values) -> StiffnessRequest:
 
 
 def _answers(
-    analysis: ContactAnalysis, tensions: Tensions, numbers: ToothNumbers, request: StiffnessRequest
+    analysis: ContactAnalysis,
+    tensions: Tensions,
+    numbers: ToothNumbers,
+    stiffness: LoadTable,
+    request: StiffnessRequest,
 ) -> PairAnswers:
     assert request.torque is not None
     torque, ltca = request.torque, analysis.ltca[0]
-    unloaded = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")["unloaded_ste_um"]
-    approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
-    error = 1e-6 * unloaded.to_numpy(float) + approach
+    approach = torque / numbers.pinion_base_radius / stiffness.at(torque, "average")
+    error = 1e-6 * unloaded_samples(ltca) + approach
     roots = {body: tension.under(analysis.loads) for body, tension in tensions.items()}
     return PairAnswers(error, contact_pressure(contact_summary(ltca)), roots)
 
