@@ -1,6 +1,6 @@
 """Config of the bodies: what all pinions or face gears share, and what is different in a single one."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -74,6 +74,9 @@ class PinionBody(Section):
     )
     clearance_diametral_um: float | None = Field(None, ge=0, le=2e4, description=DIAMETRAL)
     runout: RunoutSection | None = None
+    tilt: ClassVar[None] = None
+    hub_tilt: ClassVar[None] = None
+    body: ClassVar[None] = None
 
     @property
     def bearing_clearance_um(self) -> float:
@@ -164,6 +167,9 @@ class SinglePinion(Section):
     )
     runout: RunoutSection | None = None
     cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")
+    tilt: ClassVar[None] = None
+    hub_tilt: ClassVar[None] = None
+    body: ClassVar[None] = None
 
     @property
     def bearing_clearance_um(self) -> float | None:
@@ -194,3 +200,7 @@ class SingleGear(Section):
     body: BodySection | None = Field(None, description="hub, web and rim that bend")
     runout: RunoutSection | None = None
     cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")
+
+
+LIKE_ALL_PINIONS, LIKE_ALL_GEARS = SinglePinion(), SingleGear()
+"""Single ones in which nothing is different."""

@@ -12,10 +12,19 @@ from typing import Any, Self
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion, TiltSection
+from facegear.config.bodies import (
+    LIKE_ALL_GEARS,
+    LIKE_ALL_PINIONS,
+    GearBody,
+    PinionBody,
+    RunoutSection,
+    SingleGear,
+    SinglePinion,
+    TiltSection,
+)
 from facegear.config.changes import TEETH
 from facegear.config.shafts import OUTPUT, TurningMassSection
-from facegear.config.transmission import PinionPlace, SingleMesh, Transmission
+from facegear.config.transmission import LIKE_ALL_MESHES, PinionPlace, Transmission
 from facegear.config.transmission_error import error_series
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
@@ -160,7 +169,7 @@ def half_backlash(section: Transmission) -> float:
 
 def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | None = None) -> Imperfections:
     """Errors of single meshes and bodies, in m."""
-    meshes = [section.single_meshes.get(name, SingleMesh()) for name in shape.mesh_names]
+    meshes = [section.single_meshes.get(name, LIKE_ALL_MESHES) for name in shape.mesh_names]
     pinions, gears = _singles(section, shape)
     clearances = [
         section.pinion.bearing_clearance_um if own.bearing_clearance_um is None else own.bearing_clearance_um
@@ -222,8 +231,8 @@ def other_gear_torque(section: Transmission) -> float:
 def _singles(section: Transmission, shape: Layout) -> tuple[list[SinglePinion], list[SingleGear]]:
     """What each pinion and each face gear has of its own, in the order of the layout."""
     return (
-        [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions],
-        [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears],
+        [section.single_pinions.get(pinion.name, LIKE_ALL_PINIONS) for pinion in shape.pinions],
+        [section.single_gears.get(gear.side.value, LIKE_ALL_GEARS) for gear in shape.gears],
     )
 
 
@@ -261,9 +270,10 @@ def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None)
     """A body from what all have and what it has of its own."""
     stiffness = (own and own.bearing_stiffness_n_per_m) or section.bearing_stiffness_n_per_m
     assert stiffness is not None
-    bends = (getattr(own, "body", None) or getattr(section, "body", None)) is not None
-    key = "hub_tilt" if bends else "tilt"
-    tilt = getattr(own, key, None) or getattr(section, key, None)
+    if ((own and own.body) or section.body) is None:
+        tilt = (own and own.tilt) or section.tilt
+    else:
+        tilt = (own and own.hub_tilt) or section.hub_tilt
     return Body(
         *_inertias(section, own),
         (stiffness.x, stiffness.y, stiffness.z),
@@ -279,7 +289,7 @@ def _tilt(section: TiltSection) -> Tilt:
 
 def _inertias(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> tuple[float, float]:
     """Mass and inertia."""
-    own = own or SinglePinion()
+    own = own or LIKE_ALL_PINIONS
     return (
         section.mass_kg if own.mass_kg is None else own.mass_kg,
         section.inertia_kg_m2 if own.inertia_kg_m2 is None else own.inertia_kg_m2,

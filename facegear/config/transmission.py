@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
-from facegear.config.bodies import GearBody, PinionBody, SingleGear, SinglePinion
+from facegear.config.bodies import LIKE_ALL_PINIONS, GearBody, PinionBody, SingleGear, SinglePinion
 from facegear.config.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.config.transmission_error import TransmissionError
 
@@ -57,6 +57,10 @@ class SingleMesh(Section):
     backlash_um: float | None = Field(None, ge=0, le=1e5)
     stiffness_factor: float = Field(1.0, gt=0, le=100)
     transmission_error: TransmissionError | None = None
+
+
+LIKE_ALL_MESHES = SingleMesh()
+"""A mesh in which nothing is different."""
 
 
 class Torque(Section):
@@ -182,7 +186,7 @@ class Transmission(Section):
         key, common = "pinion.bearing_stiffness_n_per_m", self.pinion.bearing_stiffness_n_per_m
         by_common = []
         for pinion in self.pinions:
-            own = self.single_pinions.get(pinion.name, SinglePinion()).bearing_stiffness_n_per_m
+            own = self.single_pinions.get(pinion.name, LIKE_ALL_PINIONS).bearing_stiffness_n_per_m
             shaft = self.shaft_of(pinion)
             if own is not None and shaft is not None:
                 allowed = "left out: the pinion has a shaft, which its bearings hold"
@@ -205,7 +209,7 @@ class Transmission(Section):
 
     def _clearance_in_round_bearings(self) -> None:
         for pinion in self.pinions:
-            single = self.single_pinions.get(pinion.name, SinglePinion())
+            single = self.single_pinions.get(pinion.name, LIKE_ALL_PINIONS)
             own = single.bearing_clearance_um is not None
             clearance = single.bearing_clearance_um if own else self.pinion.bearing_clearance_um
             key = f"single_pinions.{pinion.name}.clearance_um" if own else "pinion.clearance_um"

@@ -23,9 +23,6 @@ STEPS = 12
 """Steps that the chord method may take; each must gain a factor of two."""
 RETURNS = 5
 """Returns in succession that must follow the guide's multipliers."""
-COARSE = 1e2
-"""Changes above this, times the tolerance, are known well enough from steps that disturbances would find too
-long."""
 HOLDING = 0.99
 """Multipliers of a guide lie below: what it draws in slowly is better watched."""
 
@@ -51,8 +48,12 @@ class Guide:
 
     @cached_property
     def chord(self) -> Array:
-        """Newton's step (2 n, 2 n) for a change over the period."""
+        """The matrix (2 n, 2 n) of step()."""
         return np.asarray(((self.orbit.vectors / (1.0 - self.orbit.multipliers)) @ self.inverse).real)
+
+    def step(self, change: Array) -> Array:
+        """Newton's step (2, n) for a change (2, n) over the period."""
+        return (self.chord @ change.ravel()).reshape(2, -1)
 
 
 def guide_of(system: System, orbit: Orbit | None) -> Guide | None:
@@ -78,7 +79,7 @@ def _guided(integrator: Integrator, state: Array, guide: Guide) -> Settled | Non
     for block in BLOCKS:
         run = integrator.run(ends[-1], block)
         ends = np.concatenate([ends, run.ends])
-        nearest = _orbit_near(integrator, ends[-1], guide)
+        nearest = _orbit_near(integrator, ends[-2:], guide)
         if nearest is None:
             return None
         orbit, residual = nearest
@@ -87,19 +88,25 @@ def _guided(integrator: Integrator, state: Array, guide: Guide) -> Settled | Non
     return None
 
 
-def _orbit_near(integrator: Integrator, state: Array, guide: Guide) -> tuple[Array, float] | None:
-    """The orbit (2, n) that the chord method comes to from a state, and the change over its period."""
-    here, best, fine = state, np.inf, False
+def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Array, float] | None:
+    """The orbit (2, n) that the chord method comes to from the last two states (2, 2, n) of a run, a period
+    apart, and the change over its period.
+
+    The last step is not run: it gains at least what the least of those before it has gained.
+    """
+    here, end = states
+    best, least = change(integrator, here, end), 0.0
     for _ in range(STEPS):
-        end = integrator.run(here, 1, fine=fine).state
+        here = here + guide.step(end - here)
+        end = integrator.run(here, 1, fine=True).state
         residual = change(integrator, here, end)
-        if fine and residual <= ROUNDING:
+        if residual <= ROUNDING:
             return here, residual
         if not residual < 0.5 * best:
             return None
-        near = residual <= COARSE * integrator.tolerance
-        best, fine = residual if fine or not near else np.inf, fine or near
-        here = here + (guide.chord @ (end - here).ravel()).reshape(2, -1)
+        best, least = residual, max(least, residual / best)
+        if least * residual <= ROUNDING:
+            return here + guide.step(end - here), least * residual
     return None
 
 

@@ -10,9 +10,11 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from oscillators import backlash_oscillator
 
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.guide import RETURNS, drawn_in, guide_of
-from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
+from facegear.dynamics.steady_state.guide import RETURNS, drawn_in, guide_of, guided
+from facegear.dynamics.steady_state.orbits import ROUNDING, change
+from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start, steady_state
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import GEOMETRIC
 
@@ -70,6 +72,18 @@ def test_a_machine_led_by_the_nominal_one_settles_on_its_own_orbit_within_a_quar
     assert 4 * led.periods_run <= alone.periods_run
     moved = np.abs(alone.deflections - nominal.deflections).max()
     assert np.abs(led.deflections - alone.deflections).max() < 1e-6 * moved
+
+
+def test_the_orbit_that_a_guide_leads_to_repeats_to_rounding_though_its_last_step_is_not_run():
+    nominal = simulate(series_machine(0.0), 3000.0)
+    guide = guide_of(nominal.system, nominal.orbit)
+    for shift in (0.3, 1.0):
+        model = build_model(series_machine(shift))
+        integrator = Integrator(model.system, nominal.frequency)
+        settled = guided(integrator, integrator.by_phase(static_start(model)), guide)
+        end = integrator.run(settled.state, 1, fine=True).state
+        assert settled.residual <= ROUNDING
+        assert change(integrator, settled.state, end) <= 3.0 * ROUNDING
 
 
 def test_an_orbit_in_other_coordinates_leads_nothing():
