@@ -1,5 +1,6 @@
 """A figure as drawing (svg) and as picture (png) at once: matplotlib goes over its artists once for both."""
 
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -7,7 +8,6 @@ import numpy as np
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.backends.backend_svg import RendererSVG
-from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.path import Path as Curve
 from matplotlib.textpath import text_to_path
@@ -20,24 +20,65 @@ EFFORT = 3
 """Of the compression of a picture (1 to 9): twice as fast as the usual 6, for 4 % more bytes."""
 
 
-def draw_both(figure: Figure, svg: Path, png: Path) -> None:
-    """Write a figure to both files, the picture at the figure's resolution."""
+class Picture(RendererAgg):
+    """A picture whose letters are the curves that a drawing has: what is known of them serves both."""
+
+    def draw_text(
+        self,
+        gc: GraphicsContextBase,
+        x: float,
+        y: float,
+        s: str,
+        prop: FontProperties,
+        angle: float,
+        ismath: Any = False,
+        mtext: Any = None,
+    ) -> None:
+        self._draw_text_as_path(gc, x, y, s, prop, angle, ismath, mtext)
+
+    def get_text_width_height_descent(
+        self, s: str, prop: FontProperties, ismath: Any
+    ) -> tuple[float, float, float]:
+        width, height, descent = text_to_path.get_text_width_height_descent(s, prop, ismath)
+        pixels = self.points_to_pixels(1.0)
+        return pixels * width, pixels * height, pixels * descent
+
+
+class Canvas(FigureCanvasAgg):
+    """What a figure of a set resolution is laid out for, and its picture drawn on."""
+
+    @cached_property
+    def picture(self) -> Picture:
+        """The picture, empty until the figure is drawn."""
+        return Picture(*self.get_width_height(physical=True), self.figure.dpi)
+
+    def get_renderer(self) -> Picture:
+        return self.picture
+
+
+def draw_both(canvas: Canvas, svg: Path, png: Path) -> None:
+    """Write the figure of a canvas to both files."""
+    figure, picture = canvas.figure, canvas.picture
     width, height = POINTS * figure.get_size_inches()
-    picture = RendererAgg(*figure.canvas.get_width_height(physical=True), figure.dpi)
-    picture.mathtext_parser = text_to_path.mathtext_parser
     with open(svg, "w", encoding="utf-8") as stream:
         drawing = RendererSVG(width, height, stream, image_dpi=figure.dpi, metadata={"Date": None})
         figure.draw(_Both(picture, drawing))
         drawing.finalize()
+    write_picture(picture, png)
+
+
+def draw_picture(canvas: Canvas, png: Path) -> None:
+    """Write the figure of a canvas as a picture alone."""
+    canvas.picture.clear()
+    canvas.figure.draw(canvas.picture)
+    write_picture(canvas.picture, png)
+
+
+def write_picture(picture: Picture, png: Path) -> None:
+    """Write what is drawn of a picture, which has no transparent parts."""
     opaque = np.ascontiguousarray(np.asarray(picture.buffer_rgba())[..., :3])
-    resolution = (figure.dpi, figure.dpi)
+    resolution = (picture.dpi, picture.dpi)
     Image.fromarray(opaque).save(png, format="png", compress_level=EFFORT, dpi=resolution)
-
-
-def read_formulas_once(figure: Figure) -> None:
-    """Have a figure measured with the reader of formulas that drawings have, which remembers them."""
-    if isinstance(figure.canvas, FigureCanvasAgg):
-        figure.canvas.get_renderer().mathtext_parser = text_to_path.mathtext_parser
 
 
 class _Both(RendererBase):

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from facegear.io.atomic import atomic_path
 from facegear.plots import interactive
-from facegear.plots.both import draw_both, read_formulas_once
+from facegear.plots.both import Canvas, draw_both, draw_picture
 from facegear.plots.once import found_once
 
 STYLE = {
@@ -52,11 +52,12 @@ def save(figure: Figure, *paths: str | Path) -> None:
     by_ending = {Path(path).suffix: path for path in paths}
     both = [by_ending[ending] for ending in (".svg", ".png")] if {".svg", ".png"} <= {*by_ending} else []
     with styled(), plt.rc_context({"figure.constrained_layout.use": False}), found_once():
-        lay_out(figure)
         figure.set_dpi(STYLE["savefig.dpi"])
+        canvas = Canvas(figure)
+        lay_out(figure)
         if both:
             with atomic_path(both[0]) as svg, atomic_path(both[1]) as png:
-                draw_both(figure, svg, png)
+                draw_both(canvas, svg, png)
         for path in paths:
             if path in both:
                 continue
@@ -64,6 +65,8 @@ def save(figure: Figure, *paths: str | Path) -> None:
             with atomic_path(path) as temporary:
                 if ending == ".json":
                     interactive.write(figure, temporary, bool(both))
+                elif ending == ".png":
+                    draw_picture(canvas, temporary)
                 else:
                     figure.savefig(temporary, metadata={"Date": None} if ending == ".svg" else None)
     plt.close(figure)
@@ -72,7 +75,6 @@ def save(figure: Figure, *paths: str | Path) -> None:
 def lay_out(figure: Figure) -> None:
     """Give all parts of a figure their places, which it keeps from then on."""
     if (engine := figure.get_layout_engine()) is not None:
-        read_formulas_once(figure)
         engine.execute(figure)
         figure.set_layout_engine(None)
 

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.axis import Axis
 
 from facegear.plots import style
-from facegear.plots.once import found_once
+from facegear.plots.once import TEXTS, found_once
 
 
 def stacked():
@@ -50,6 +50,17 @@ def test_a_figure_is_the_same_file_as_with_everything_found_anew(made, tmp_path,
     style.save(made(), *(tmp_path / f"anew.{ending}" for ending in endings))
     for ending in endings:
         assert (tmp_path / f"once.{ending}").read_bytes() == (tmp_path / f"anew.{ending}").read_bytes()
+
+
+def test_figures_that_share_texts_are_the_same_files_as_each_alone(tmp_path):
+    with found_once(TEXTS):
+        for made in (stacked, shared_across):
+            style.save(made(), *(tmp_path / f"{made.__name__}.{ending}" for ending in ("svg", "png")))
+    style.save(shared_across(), tmp_path / "alone.svg", tmp_path / "alone.png")
+    for ending in ("svg", "png"):
+        assert (tmp_path / f"shared_across.{ending}").read_bytes() == (
+            tmp_path / f"alone.{ending}"
+        ).read_bytes()
 
 
 def test_nothing_is_kept_after_a_figure_is_written(tmp_path):
