@@ -8,6 +8,7 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Integers
 from facegear.contact.gear_flank import GearFlank
+from facegear.contact.known_contact import KnownContact
 from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
 from facegear.contact.nodal_loads import load_arrays
 from facegear.contact.options import ContactPlan
@@ -74,8 +75,11 @@ def contact_analysis(
     flanks: tuple[GearFlank, GearFlank],
     plan: ContactPlan,
     every_flank: bool = True,
+    known: KnownContact | None = None,
 ) -> ContactAnalysis:
     """Contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
+
+    `known`: the contact of a pair that differs little, with the same nodes and plan.
 
     All pairs that differ in assembly errors and deviations are solved on the same compliances. Raises
     NotConverged naming position and torque.
@@ -85,11 +89,11 @@ def contact_analysis(
     if not every_flank:
         different, numbers = different[:1], np.zeros_like(numbers)
     models = [model.of(other) for other in different]
-    return ContactAnalysis(models, [_solved(each, materials, plan) for each in models], numbers)
+    return ContactAnalysis(models, [_solved(each, materials, plan, known) for each in models], numbers)
 
 
 def _solved(
-    model: ContactModel, materials: tuple[Material, Material], plan: ContactPlan
+    model: ContactModel, materials: tuple[Material, Material], plan: ContactPlan, known: KnownContact | None
 ) -> tuple[list[LoadedPosition], FlankPressure]:
-    results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
+    results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options, known)
     return results, flank_pressure(results, model.flanks, materials)

@@ -4,28 +4,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 
+import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.flanks import FlankPair
 from facegear.contact.influence import Surface, surface_of
+from facegear.contact.known_contact import KnownContact
 from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try
-from facegear.contact.position import MARGIN, LoadedPosition, first_turn, solve_position
+from facegear.contact.position import MARGIN, LoadedPosition, contact_at, first_turn, results_of
 from facegear.contact.search import cover_of, facing_points
 from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
-from facegear.contact.strip_of_hats import GAP, START_GAP, START_WIDTH, WIDER, WIDTH, Strip
+from facegear.contact.strip_of_hats import GAP, KNOWN_WIDTH, START_GAP, START_WIDTH, WIDER, WIDTH, Strip
 from facegear.contact.touching import Cover, Facing, Touching, touching
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import pinion_angle
-from facegear.geometry.unloaded import unloaded_motion
+from facegear.geometry.unloaded import PAIRS, unloaded_motion
 from facegear.progress import Progress
 
 AT_ONCE = 8
 """Positions whose candidates are searched together."""
 ROOM = 1.12
 """By how much farther they are searched than the position before needed."""
+KNOWN_MARGIN, KNOWN_ROOM = 1.02, 1.01
+"""In place of MARGIN and ROOM where it is known how the contact of a pair that differs little goes on from
+position to position."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,9 +66,11 @@ def loaded_contact(
     positions: Sequence[float],
     torques: Sequence[float],
     options: ContactOptions | None = None,
+    known: KnownContact | None = None,
 ) -> list[LoadedPosition]:
     """Solve all torques (N m) at all positions (0..1 of a pitch, 0.5 where phi1 = 0), position by position.
 
+    `known`: the contact of a pair that differs little, at the same positions and torques.
     One thread works on it: the matrices of a position are small, and threads of BLAS that wait for one
     another take several times the work. Raises NotConverged naming the position and the torque.
     """
@@ -71,18 +78,26 @@ def loaded_contact(
     design, face = model.design, model.design.face_gear
     phi1 = pinion_angle(design, positions)
     phi2, unloaded = unloaded_motion(design, phi1)
-    guess = first = first_turn(torques, design.pinion_base_radius, face.outer_radius - face.inner_radius)
+    first = first_turn(torques, design.pinion_base_radius, face.outer_radius - face.inner_radius)
     progress = Progress("loaded contact", len(phi1))
-    searched = _Searched(model, options, list(zip(phi1.tolist(), phi2.tolist(), strict=True)))
-    results: list[LoadedPosition] = []
+    placements = list(zip(phi1.tolist(), phi2.tolist(), strict=True))
+    searched = _Searched(model, options, placements, known)
+    pairs = [
+        _PairAtPosition(searched, row, position=float(position), unloaded=-float(unloaded[row]))
+        for row, position in enumerate(positions)
+    ]
+    contacts, turned = [], 0.0
     with _libraries().limit(limits=1):
-        for row, position in enumerate(positions):
-            pair = _PairAtPosition(searched, row, position=float(position), unloaded=-float(unloaded[row]))
-            solved, turned = solve_position(pair, torques, guess)
-            guess = turned if turned > 0.0 else first  # fillets in the way turn the pinion back
-            results += solved
+        for row, pair in enumerate(pairs):
+            turn = turned if turned > 0.0 else first  # fillets in the way turn the pinion back
+            if known is not None:
+                turn = known.turn[row] * (turned / known.turn[row - 1] if turned > 0.0 else 1.0)
+            contacts.append(contact_at(pair, torques, searched.margin(row) * turn))
+            turned = float(contacts[-1].rotation[0])
             progress.step()
-    return results
+    # all at once: each finds what Python needs in the processor's cache, where a solution has cleared it
+    solved = [results_of(*each, torques) for each in zip(pairs, contacts, strict=True)]
+    return [result for of_position in solved for result in of_position]
 
 
 @cache
@@ -100,6 +115,7 @@ class _Searched:
     model: ContactModel
     options: ContactOptions
     placements: list[tuple[float, float]]
+    known: KnownContact | None
     ahead: dict[int, Facing] = field(default_factory=dict)
     limit: float = 0.0
 
@@ -107,11 +123,30 @@ class _Searched:
         """Points of a position that a turn by `limit` (rad) would close, and perhaps a few more."""
         if row not in self.ahead or limit > self.limit:
             last = row + (AT_ONCE if row else 1)  # the first position says how far teeth give way
-            some, self.limit = self.placements[row:last], ROOM * limit
+            some, self.limit = self.placements[row:last], self._room(row, last) * limit
             teeth = [pairs_to_try(self.model.design, phi1, self.options) for phi1, _ in some]
             seen = facing_points(self.model.flanks, some, teeth, self.limit, self.options)
             self.ahead = dict(enumerate(seen, row))
         return self.ahead[row]
+
+    def _room(self, row: int, last: int) -> float:
+        """By how much farther positions up to `last` are searched than the one in a row needs."""
+        if self.known is None:
+            return ROOM
+        return KNOWN_ROOM * float(self.known.turn[row:last].max() / self.known.turn[row])
+
+    def margin(self, row: int) -> float:
+        """By how much farther contact is sought than a position is expected to turn: less where it is known
+        how another contact went on from the position before.
+        """
+        return KNOWN_MARGIN if row and self.known is not None else MARGIN
+
+    def strip(self, row: int, teeth: Integers) -> Strip:
+        """In which contact of the pairs `teeth` (p,) is sought at first."""
+        margin, width, near = self.margin(row), WIDTH, np.zeros((0, 0), bool)
+        if self.known is not None:
+            width, near = KNOWN_WIDTH, self.known.near[row, np.searchsorted(PAIRS, teeth)]
+        return Strip(GAP * MARGIN / margin, width, WIDER, START_GAP / margin, START_WIDTH, near)
 
     @cached_property
     def cover(self) -> Cover:
@@ -142,6 +177,5 @@ class _PairAtPosition:
     def touching(self, torques: Array, limit: float) -> Touching:
         searched = self.searched
         facing, coupled = searched.at(self.row, limit), searched.options.coupled
-        parts = Strip(GAP, WIDTH, WIDER, START_GAP / MARGIN, START_WIDTH)
-        accuracy = NEWTON_STEPS, TOLERANCE
-        return touching(facing, searched.cover, searched.surfaces, torques, limit, parts, coupled, accuracy)
+        strip, accuracy = searched.strip(self.row, facing.teeth), (NEWTON_STEPS, TOLERANCE)
+        return touching(facing, searched.cover, searched.surfaces, torques, limit, strip, coupled, accuracy)

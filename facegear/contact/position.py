@@ -122,8 +122,17 @@ def solve_position(
     `guess` is a first guess of the largest turn (rad); the largest turn found is returned with the results,
     as the next guess. Raises NotConverged naming position and torque.
     """
-    limit, order = MARGIN * guess, np.argsort(torques)[::-1]
-    loads = np.array([float(torques[index]) for index in order])
+    contact = contact_at(pair, torques, MARGIN * guess)
+    return results_of(pair, contact, torques), float(contact.rotation[0])
+
+
+def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> Touching:
+    """The contact of a position under all torques (N m), the largest first.
+
+    It is sought for turns up to `limit` (rad), and farther where it turns farther. Raises NotConverged naming
+    position and torque.
+    """
+    loads = np.sort(np.array(torques, float))[::-1].copy()
 
     def where(torque: float) -> str:
         return f"position {pair.position:.6f}, torque {torque:g} N m"
@@ -140,10 +149,16 @@ def solve_position(
             continue
         for torque, steps, residual in zip(loads, contact.steps, contact.residual, strict=True):
             check_solved(int(steps), float(residual), contact.sought, where(torque))
-        results = _results(pair, contact, loads)
-        return [results[row] for row in np.argsort(order)], float(contact.rotation[0])
+        return contact
     tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
     raise NotConverged("contact", where(max(torques)), tried)
+
+
+def results_of(pair: PairAtPosition, contact: Touching, torques: Sequence[float]) -> list[LoadedPosition]:
+    """What a contact is at a position, in the order of the torques (N m)."""
+    order = np.argsort(torques)[::-1]
+    results = _results(pair, contact, np.array([float(torques[index]) for index in order]))
+    return [results[row] for row in np.argsort(order)]
 
 
 def _results(pair: PairAtPosition, contact: Touching, torques: Array) -> list[LoadedPosition]:

@@ -52,7 +52,7 @@ def _touch() -> None:
         (surface, surface),
         np.ones(1),
         1.0,
-        Strip(*[1.0] * len(Strip._fields)),
+        Strip(1.0, 1.0, 1.0, 1.0, 1.0, np.zeros((0, 0), bool)),
         True,
         (NEWTON_STEPS, TOLERANCE),
     )

@@ -21,6 +21,10 @@ way by the rest), and by how much the gap of the others in it exceeds that, as a
 WIDER = 1.6
 """Factor on the second part where contact is missed beside the strip."""
 
+KNOWN_WIDTH = 0.08
+"""In place of WIDTH where the contact of a pair that differs little is known, whose hats are sought among,
+too."""
+
 START_GAP, START_WIDTH = 0.6, 0.14
 """The same for the first guess of what touches."""
 
@@ -29,6 +33,9 @@ START_GAP, START_WIDTH = 0.6, 0.14
 class Strip(NamedTuple):
     """How wide a strip contact is sought in, GAP, WIDTH and WIDER; where the search starts, START_GAP of the
     turn that is expected under the first torque, as a part of the limit, and START_WIDTH.
+
+    near: nodes (p, n) of the lattice of each pair whose hats belong to the strip in any case; (0, 0) if none
+    is known to.
     """
 
     gap: float
@@ -36,6 +43,7 @@ class Strip(NamedTuple):
     wider: float
     begin: float
     start_width: float
+    near: Mask
 
 
 @called

@@ -120,6 +120,8 @@ def touching(
     own, column_min = turns_of(hats, cover.shape[1], facing.teeth.size)
     gap, arm, width = hats.gap, hats.lever_arm, strip.width
     keep = expected(own, column_min, strip.gap * limit, width)
+    for i in range(gap.size if strip.near.size else 0):
+        keep[i] |= strip.near[hats.pair[i], hats.node[i]]
     forward, overlap, longest = 0, 0.0, 0.0
     drives = False
     for i in range(gap.size):

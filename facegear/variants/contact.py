@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from facegear.config.base import parse
@@ -16,10 +16,12 @@ from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import GearFlank
+from facegear.contact.known_contact import KnownContact, known_contact
 from facegear.contact.ltca import even_positions
 from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution
 from facegear.contact.summary import contact_summary
+from facegear.errors import FacegearError
 from facegear.geometry.bodies import BODIES
 from facegear.stiffness.curve import LoadTable
 from facegear.stiffness.request import StiffnessRequest
@@ -48,7 +50,20 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
     """
     backlash = geometric_backlash(ToothPair.of_config(pair["tooth_pair"]))
     plan, request = contact_plan(Contact.of_config(pair["contact"])), _request(pair)
-    bodies = _bodies(pair, flanks)
+    bodies, own_nodes = _bodies(pair, flanks), _nodes(pair["tooth_pair"])
+
+    @cache
+    def nominal() -> KnownContact | None:
+        """The contact of the pair itself; None where there is none."""
+        section = ToothPair.of_config(pair["tooth_pair"])
+        try:
+            both, _ = bodies(pair["tooth_pair"], section)
+            solved = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
+        except FacegearError:
+            return None
+        flanks_of_it, base_radius = solved.models[0].flanks, solved.models[0].design.pinion_base_radius
+        positions = even_positions(plan.positions)
+        return known_contact(solved.solved[0][0], positions, flanks_of_it.pinion.shape, base_radius)
 
     @lru_cache(maxsize=KEPT)
     def meshed(text: str) -> PairExcitation:
@@ -56,7 +71,10 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section, even_positions(plan.positions)) - backlash
         both, tensions = bodies(values, section)
-        analysis = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
+        known = nominal() if _nodes(values) == own_nodes else None
+        analysis = contact_analysis(
+            pair_design(section), materials(section), both, plan, every_flank=False, known=known
+        )
         curve = curve_from_contact(analysis.ltca[0], request)
         numbers = ToothNumbers.of_config(values)
         return PairExcitation(

@@ -1,5 +1,7 @@
 """What may touch: no hat that could carry load is left out, however few the solution is sought among."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -12,11 +14,13 @@ from facegear.contact.bodies.surface import face_functions, interpolation
 from facegear.contact.candidates import candidates_of
 from facegear.contact.displacement import displacement
 from facegear.contact.influence import influence, influence_matrix, surface_of
+from facegear.contact.known_contact import known_contact
 from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.search import cover_of, facing_points, find_candidates
 from facegear.contact.spreading import Lattice, composed
+from facegear.contact.touching import touching
 from facegear.geometry.opposite import located
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
@@ -92,6 +96,74 @@ def test_strip_that_is_too_narrow_is_found_out_and_widened(model_of, monkeypatch
     widened = loaded_contact(model, [0.3], [600.0])[0]
     assert widened.ste == pytest.approx(expected.ste, rel=1e-9)
     assert widened.residual < 1e-10
+
+
+POSITIONS, TORQUES = [0.05, 0.4, 0.7], [300.0, 1000.0]
+
+
+def known_of(model):
+    results = loaded_contact(model, POSITIONS, TORQUES)
+    pinion = model.flanks.pinion
+    return known_contact(results, POSITIONS, pinion.shape, model.design.pinion_base_radius)
+
+
+def same_results(found, expected):
+    for one, other in zip(found, expected, strict=True):
+        assert (one.position, one.torque) == (other.position, other.torque)
+        assert one.ste == pytest.approx(other.ste, rel=1e-10)
+        assert one.k_local == pytest.approx(other.k_local, rel=1e-10)
+        np.testing.assert_allclose(one.load_share, other.load_share, atol=1e-10)
+        for spot, same in zip(one.spots, other.spots, strict=True):
+            np.testing.assert_array_equal(spot.hats, same.hats)
+
+
+def test_contact_sought_beside_a_known_one_is_the_same_among_fewer_hats(model_of, monkeypatch):
+    known, model, sought = known_of(model_of()), misaligned(model_of(), offset=2e-5), []
+
+    def counted(*given):
+        contact = touching(*given)
+        sought.append(contact.sought)
+        return contact
+
+    monkeypatch.setattr(ltca, "touching", counted)
+    expected = loaded_contact(model, POSITIONS, TORQUES)
+    among_all, _ = list(sought), sought.clear()
+    same_results(loaded_contact(model, POSITIONS, TORQUES, known=known), expected)
+    assert len(sought) == len(POSITIONS)
+    assert sum(sought) < 0.97 * sum(among_all)
+
+
+@pytest.mark.parametrize("part", [0.5, 3.0])
+def test_known_contact_that_has_little_to_do_with_the_pair_changes_no_result(model_of, part):
+    known, model = known_of(model_of()), misaligned(model_of(), shaft_angle_error=2e-3)
+    turn = known.turn * np.array([part, 1.0, 1.0 / part])
+    wrong = replace(known, turn=turn, near=np.roll(known.near, 1, axis=0))
+    expected = loaded_contact(model, POSITIONS, TORQUES)
+    same_results(loaded_contact(model, POSITIONS, TORQUES, known=wrong), expected)
+
+
+def test_known_contact_marks_what_carries_load_and_what_stands_beside_across_the_profile(model_of):
+    model = model_of()
+    results, (rows, columns) = loaded_contact(model, POSITIONS, TORQUES), model.flanks.pinion.shape
+    known = known_contact(results, POSITIONS, (rows, columns), model.design.pinion_base_radius)
+    for at, position in enumerate(POSITIONS):
+        expected = set()
+        for result in results:
+            for spot in result.spots if result.position == position else ():
+                for row, column in zip(*np.divmod(spot.hats, columns), strict=True):
+                    around = [other for other in (row - 1, row, row + 1) if 0 <= other < rows]
+                    expected |= {(spot.tooth, other * columns + column) for other in around}
+        pair, node = np.nonzero(known.near[at])
+        assert set(zip(PAIRS[pair].tolist(), node.tolist(), strict=True)) == expected
+
+
+def test_contact_that_fillets_turn_back_is_none_to_go_by(model_of):
+    model = model_of(coarse=True, rack_tip_radius=0.25)
+    positions = np.arange(4) / 4
+    results = loaded_contact(model, positions, [10.0])
+    assert min(result.ste - result.unloaded for result in results) < 0.0
+    base_radius = model.design.pinion_base_radius
+    assert known_contact(results, positions.tolist(), model.flanks.pinion.shape, base_radius) is None
 
 
 def test_displacements_without_the_matrix_are_those_with_it(model_of):
