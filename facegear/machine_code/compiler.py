@@ -74,7 +74,6 @@ def by_type(**options: Any) -> Callable[[Callable[..., Any]], ByType]:
     is chosen is inlined into it, so that a choice costs nothing at run time. Python gets a TypeError for a
     type without an implementation, a compiled caller numba's TypingError.
     """
-    known = {"forceinline": True, **options} if NUMBA_IS_KNOWN else _public(options)
 
     def generic(signature: Callable[..., Any]) -> ByType:
         implementations: dict[type, Callable[..., Any]] = {}
@@ -96,7 +95,12 @@ def by_type(**options: Any) -> Callable[[Callable[..., Any]], ByType]:
 
             return register
 
-        overload(call, jit_options=known, strict=False)(typed)
+        if NUMBA_IS_KNOWN:
+            from facegear.machine_code.stored import chosen
+
+            chosen(call, typed, **options)
+        else:
+            overload(call, jit_options=_public(options), strict=False)(typed)
         call.of = of  # type: ignore[attr-defined]
         return call  # type: ignore[return-value]
 

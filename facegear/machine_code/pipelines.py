@@ -14,6 +14,9 @@ from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
+from facegear.machine_code.passes import Passes
+from facegear.machine_code.remembered import remembered
+
 
 class _CodeForCallers(JITCodeLibrary):
     """LLVM code that waits, as it was written, to be linked into what calls it.
@@ -155,20 +158,22 @@ def _with(lowering: type[NativeLowering]) -> type[Compiler]:
 
     class Lowering(Compiler):
         def define_pipelines(self) -> list[Any]:
-            pipelines = super().define_pipelines()
-            for pipeline in pipelines:
-                pipeline.passes = [
+            made = []
+            for pipeline in super().define_pipelines():
+                passes = [
                     (lowering, name) if step is NativeLowering else (step, name)
                     for step, name in pipeline.passes
                 ]
-                pipeline.finalize()
-            return pipelines
+                made.append(Passes(pipeline.pipeline_name, passes))
+                made[-1].finalize()
+            return made
 
         def _compile_core(self) -> Any:
             collects = gc.isenabled()
             gc.disable()
             try:
-                return super()._compile_core()
+                with remembered():
+                    return super()._compile_core()
             finally:
                 if collects:
                     gc.enable()

@@ -21,7 +21,9 @@ def _request(typing_context: Any, array: Any, index: Any) -> Any:
         return None
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        data = context.make_array(array)(context, builder, args[0]).data
+        from facegear.machine_code.vectors import data_of
+
+        data = data_of(context, builder, array, args[0])
         address = builder.bitcast(builder.gep(data, [args[1]]), ir.IntType(8).as_pointer())
         constants = [_FOR_READING, _KEPT, _DATA]
         kind = ir.FunctionType(ir.VoidType(), [address.type, *(constant.type for constant in constants)])

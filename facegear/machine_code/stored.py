@@ -18,6 +18,7 @@ from numba import njit, types
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
+from numba.core.typing.templates import infer, infer_global, make_overload_template
 
 from facegear.io.run_lock import hold
 from facegear.machine_code import addresses, kept, shipped
@@ -186,3 +187,14 @@ def inlined(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         return dispatcher
 
     return typed
+
+
+def chosen(function: Callable[..., Any], choose: Callable[..., Any], **options: Any) -> None:
+    """Have compiled callers of a function take, inlined, the one that is chosen by the types of arguments.
+
+    Numba's own `overload` makes machine code of each of them beside.
+    """
+    template = make_overload_template(function, choose, options, strict=False, inline="never")
+    template._get_jit_decorator = lambda self: inlined
+    infer(template)
+    infer_global(function, types.Function(template))

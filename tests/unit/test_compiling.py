@@ -1,12 +1,17 @@
 """What compiling a function leaves alone and what it switches off meanwhile."""
 
 import gc
+from typing import NamedTuple
 
+import numpy as np
 import pytest
+from numba.core.base import BaseContext
+from numba.core.codegen import JITCodeLibrary
 from numba.core.errors import TypingError
+from numba.core.types.functions import BaseFunction
 from numba.extending import overload
 
-from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.compiler import by_type, compiler, for_callers
 from facegear.machine_code.kept import VARIABLE
 
 
@@ -66,3 +71,82 @@ def test_a_part_is_there_though_the_first_that_might_call_it_never_does(tmp_path
     outer = for_callers(forceinline=False)(lambda value: 2.0 * inner(value))
     function = compiler()(lambda value: never(value) + outer(value))
     assert function(3.0) == 11.0
+
+
+@pytest.mark.parametrize("compiles", [True, False])
+def test_numba_has_its_own_methods_back_when_a_function_is_compiled_or_cannot_be(
+    tmp_path, monkeypatch, compiles
+):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    own = BaseFunction.get_call_type, BaseContext.get_function, BaseContext.get_abi_sizeof
+    meanwhile = []
+
+    def probe(value):
+        return value
+
+    def looked_at(value):
+        meanwhile.append((BaseFunction.get_call_type, BaseContext.get_function, BaseContext.get_abi_sizeof))
+        return (lambda value: value) if compiles else None
+
+    overload(probe, strict=False)(looked_at)
+    function = compiler()(lambda value: probe(value))
+    if compiles:
+        assert function(2.0) == 2.0
+    else:
+        with pytest.raises(TypingError):
+            function(2.0)
+    assert all(method is not old for method, old in zip(meanwhile[0], own, strict=True))
+    assert (BaseFunction.get_call_type, BaseContext.get_function, BaseContext.get_abi_sizeof) == own
+
+
+def test_what_is_remembered_of_a_call_holds_for_the_options_of_its_caller_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+
+    def inverse(value):
+        return 1.0 / value
+
+    overload(inverse, strict=False)(lambda value: lambda value: 1.0 / value)
+    silent = for_callers(error_model="numpy")(lambda value: inverse(value))
+    strict = for_callers(error_model="python")(lambda value: inverse(value))
+    function = compiler()(lambda first, second: silent(first) + strict(second) + silent(first))
+    assert function(0.0, 1.0) == np.inf
+    with pytest.raises(ZeroDivisionError):
+        function(1.0, 0.0)
+
+
+def test_functions_within_functions_and_array_expressions_are_compiled_as_ever(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+
+    def squares(values):
+        return sum([value * value for value in values])
+
+    function = compiler()(squares)
+    assert function(np.arange(4.0)) == 14.0
+    combined = compiler()(lambda first, second: first + 2.0 * second)
+    assert combined(np.arange(3.0), np.ones(3)).tolist() == [2.0, 3.0, 4.0]
+
+
+class Halved(NamedTuple):
+    value: float
+
+
+def test_what_is_chosen_by_type_is_machine_code_in_its_callers_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    finalize, made = JITCodeLibrary._finalize_final_module, []
+
+    def counted(library):
+        made.append(library.name)
+        finalize(library)
+
+    @by_type()
+    def changed(first, factor):
+        """What is made of a value."""
+
+    @changed.of(Halved)
+    def halved(first, factor):
+        return factor * first.value / 2.0
+
+    function = compiler()(lambda first: changed(first, 3.0))
+    monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
+    assert function(Halved(4.0)) == 6.0
+    assert not any("halved" in name for name in made) and made

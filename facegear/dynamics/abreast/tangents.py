@@ -45,7 +45,8 @@ def shorten(shape: Structure, lanes: Lanes, lane: int) -> float:
     total = 0.0
     for k in range(shape.n):
         weight = lanes.values[shape.offsets[WEIGHTS] + k, lane]
-        total += (weight * lanes.turn[0, k, lane]) ** 2 + (weight * lanes.turn[1, k, lane]) ** 2
+        displacement, velocity = weight * lanes.turn[0, k, lane], weight * lanes.turn[1, k, lane]
+        total += displacement * displacement + velocity * velocity
     length = np.sqrt(total)
     for k in range(shape.n):
         lanes.turn[0, k, lane] /= length

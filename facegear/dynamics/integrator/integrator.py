@@ -163,7 +163,7 @@ class Integrator:
     @cached_property
     def longest_step(self) -> float:
         """Longest step, rad, that disturbances of the motion may be moved over, whatever the motion does."""
-        return float(disturbance_step(self.packed, self.order, self.tolerance))
+        return disturbance_step(self.packed.fastest, self.order, self.tolerance)
 
     def padded(self, states: Array) -> Array:
         """States (..., n) as the kernels hold them; a copy."""

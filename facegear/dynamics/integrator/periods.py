@@ -1,5 +1,6 @@
 """Run whole mesh periods: samples, fractions of time in contact, tangents."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.contact_states import flank_of
 from facegear.dynamics.integrator.dense import Extrema, Steps, add_extrema, keep_step
-from facegear.dynamics.integrator.kernel import inlined, kernel, longest
+from facegear.dynamics.integrator.kernel import inlined, longest
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
 from facegear.dynamics.integrator.sums import Sums, add_step, start_sums
@@ -129,16 +130,15 @@ def run_periods(
     return DONE
 
 
-@kernel
-def disturbance_step(packed: Packed, order: int, tolerance: float) -> float:
+def disturbance_step(fastest: float, order: int, tolerance: float) -> float:
     """Step at which the last Taylor term of the fastest disturbance is a hundred times the tolerance.
 
     The fastest are the most damped; one of half its frequency is then below the tolerance at any order used.
     """
-    logarithm = np.log(min(100.0 * tolerance, 0.01))
+    logarithm = math.log(min(100.0 * tolerance, 0.01))
     for i in range(2, order + 1):
-        logarithm += np.log(float(i))
-    return np.exp(logarithm / order) / packed.fastest
+        logarithm += math.log(i)
+    return math.exp(logarithm / order) / fastest
 
 
 @inlined
@@ -147,7 +147,8 @@ def _shorten(packed: Packed, tangent: Array) -> float:
     total = 0.0
     for i in range(2):
         for k in range(packed.n):
-            total += (packed.weights[k] * tangent[i, k]) ** 2
+            along = packed.weights[k] * tangent[i, k]
+            total += along * along
     length = np.sqrt(total)
     for i in range(2):
         for k in range(packed.n):
