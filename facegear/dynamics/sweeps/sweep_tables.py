@@ -42,23 +42,10 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     `past_law_fraction` is there where a mesh is past its law at some speed.
     """
     order, labels = np.argsort(piece.speeds), np.array(piece.labels)
-    frames = []
+    curves: list[tuple[str, str, np.ndarray]] = []
 
     def add(quantity: str, item: str, values: np.ndarray) -> None:
-        frames.append(
-            pd.DataFrame(
-                {
-                    "direction": direction,
-                    "speed_rpm": piece.speeds[order],
-                    "quantity": quantity,
-                    "body_or_mesh": item,
-                    "value": values[order],
-                    "class": labels[order],
-                    "periodic": piece.periodic[order],
-                    "after_irregular": piece.after_irregular[order],
-                }
-            )
-        )
+        curves.append((quantity, item, values[order]))
 
     for m, mesh in enumerate(layout.mesh_names):
         for quantity, (factor, field) in PER_MESH.items():
@@ -73,7 +60,18 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
                     add(f"{letter}_{name}_um", body, UM * getattr(piece, f"translation_{name}")[:, b, axis])
     for name in PER_SPEED:
         add(name, "machine", getattr(piece, name))
-    return pd.concat(frames, ignore_index=True).dropna(subset="value")
+    quantities, items, values = zip(*curves, strict=True)
+    table = {
+        "direction": direction,
+        "speed_rpm": np.tile(piece.speeds[order], len(curves)),
+        "quantity": np.repeat(quantities, order.size),
+        "body_or_mesh": np.repeat(items, order.size),
+        "value": np.concatenate(values),
+        "class": np.tile(labels[order], len(curves)),
+        "periodic": np.tile(piece.periodic[order], len(curves)),
+        "after_irregular": np.tile(piece.after_irregular[order], len(curves)),
+    }
+    return pd.DataFrame(table).dropna(subset="value")
 
 
 JUMP_COLUMNS = (
