@@ -152,7 +152,7 @@ class Stage:
     - resumable: file beside which finished parts are kept, so that a killed job goes on after the last
     - runs: stages whose machine code its jobs run
     - local: short enough for the computer that submits jobs to a cluster
-    - priority: long jobs, and those that long ones wait for, start first
+    - priority: long jobs, and those that long ones wait for, start first; figures (0) wait for all of them
     """
 
     name: str
@@ -170,7 +170,7 @@ class Stage:
     minutes: int | None = None
     runs: tuple[str, ...] = ()
     local: bool = False
-    priority: int = 0
+    priority: int = 10
 
     @property
     def function(self) -> str:

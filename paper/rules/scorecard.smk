@@ -23,6 +23,7 @@ rule scorecard:
         csv="results/{case}/scorecard.csv",
         html="results/{case}/scorecard.html",
         manifest="results/{case}/scorecard.provenance.json",
+    priority: 10
     resources:
         mem_mb=1300,
     params:

@@ -31,8 +31,11 @@ COMMON = (
     "scipy.optimize",
     "xarray",
     "facegear.plots.style",
+    "facegear.config.cases",
 )
 """What most jobs import, made while the run still finds out what there is to do."""
+OBJECTS = 50_000
+"""Made by a job until Python looks for unused ones that refer to each other: small jobs end before."""
 LOST = 120
 """Exit code of Python where what it has printed cannot be written."""
 KILOBYTE, BLOCK = 1024, 512
@@ -93,6 +96,7 @@ def _begin(connection: socket.socket, jobs: dict[int, socket.socket], own: Itera
         with connection:
             if not _is_watched(connection):
                 os._exit(1)
+        gc.set_threshold(OBJECTS)
         gc.enable()
         _run(asked)
     jobs[process] = connection

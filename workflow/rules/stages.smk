@@ -33,7 +33,6 @@ for stage in DRAWN:
         output:
             **pictures(stage.figures),
             manifest=f"results/{{case}}/figures/{stage.name}{FIGURES}.provenance.json",
-        priority: stage.priority
         localrule: True
         resources:
             **resources(stage.figures.memory_mb),

@@ -99,6 +99,7 @@ ROWS = (
         },
         asked=asked.shares_load,
         minutes=15,
+        priority=58,
     ),
     Stage(
         name="hunting",
