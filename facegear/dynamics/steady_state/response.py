@@ -41,14 +41,13 @@ class SteadyState:
         Change over the period, over the length scale.
     periods, per_period
         Mesh periods (the orbit's own period, else the window) and samples in each.
-    deflections : (K, meshes)
-        With e(t) taken off, m.
     coordinates : (K, n)
         Of the system.
     averages
         Over the whole response.
-    fractions : (3, meshes)
-        Of time open, on the drive flank, on the back flank.
+    touching : (3, contacts)
+        Fraction of the time that each mesh or flank spends open, on its drive and on its back flank, as the
+        steps count it.
     orbit
         The periodic orbit where it was refined on its own.
     exponent
@@ -69,10 +68,9 @@ class SteadyState:
     residual: float
     periods: int
     per_period: int
-    deflections: Array
     coordinates: Array
     averages: Averages
-    fractions: Array
+    touching: Array
     orbit: Orbit | None
     exponent: tuple[float, float] | None
     periods_run: int
@@ -95,6 +93,16 @@ class SteadyState:
         return None if self.orbit is None else self.orbit.liouville
 
     @cached_property
+    def deflections(self) -> Array:
+        """Deflections of the samples (K, meshes), with e(t) taken off, m."""
+        return by_mesh(self.system, self._each)
+
+    @cached_property
+    def fractions(self) -> Array:
+        """Fraction of the time (3, meshes) open, on the drive flank, on the back flank."""
+        return mesh_fractions(self.system, self.touching, self._each)
+
+    @cached_property
     def forces(self) -> Array:
         """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
         return mesh_forces(self.system, self._each, self.per_period)
@@ -102,15 +110,13 @@ class SteadyState:
     @cached_property
     def _each(self) -> Array:
         """Deflections of each mesh or flank."""
-        if not self.system.two_flanks:
-            return self.deflections
         return each_deflection(self.system, self.coordinates, self.per_period)
 
     @property
     def past_law(self) -> Array:
         """Fraction of samples (meshes,) at which a mesh is pressed in past the last level of its law."""
         if self.system.law.straight:
-            return np.zeros(self.deflections.shape[1])
+            return np.zeros(self.system.pairs or self.system.contacts)
         return past_law(self.system, self._each)
 
     @property
@@ -134,7 +140,6 @@ def response_of(
 ) -> SteadyState:
     """The response that a run has been watched for, and why its class does not hold, if so."""
     settled, window, exponent = seen.settled, seen.window, seen.exponent
-    each = each_deflection(system, window.samples, window.per_period)
     averages, square = window.averages, integrator.frequency**2
     return SteadyState(
         system=system,
@@ -144,10 +149,9 @@ def response_of(
         residual=settled.residual,
         periods=window.periods,
         per_period=window.per_period,
-        deflections=by_mesh(system, each),
         coordinates=window.samples,
         averages=replace(averages, force=averages.force * square, pull=averages.pull * square),
-        fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
+        touching=window.fractions[:, : system.contacts],
         orbit=settled.orbit,
         exponent=(exponent.value, exponent.half_width) if exponent else None,
         periods_run=seen.periods_run,
