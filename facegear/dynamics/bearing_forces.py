@@ -1,13 +1,20 @@
 """Forces on the bearings of every body: at rest, and over the response at one speed."""
 
+from functools import lru_cache
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Integers, Mask
+from facegear.dynamics.at_instants import add_ring_forces
+from facegear.dynamics.integrator.reduction import Reduced
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.steady_state.statistics import moments
 from facegear.dynamics.track import Track, track
+from facegear.transmission.linear_model import LinearModel
+from facegear.transmission.machine import Machine
 from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_bearing_forces
@@ -40,34 +47,51 @@ def bearing_forces(model: Model, motion: Track) -> Array:
     outside and is no bearing's. With clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its
     damping is beta dF/dt.
     """
-    linear = model.machine.linear
-    rings, bodies = linear.rings, linear.translations
-    places, speeds = _held(model, bodies.ravel())
-    in_rings = np.zeros(bodies.shape, dtype=bool)
-    in_rings[rings.body, :2] = True
-    alone = (places.any(axis=0) | speeds.any(axis=0)) & ~in_rings.ravel()
-    rows = model.reduced.basis[linear.ring_coordinates.ravel()].T
-    nothing, first = np.zeros_like(rows), np.count_nonzero(alone)
-    moving_parts = motion.along(
-        np.concatenate([places[:, alone], rows, nothing], axis=1),
-        np.concatenate([speeds[:, alone], nothing, rows], axis=1),
-    )
-    forces = np.zeros((alone.size, motion.count))
-    forces[alone] = moving_parts[:first]
-    forces = forces.reshape(*bodies.shape, -1)
+    linear, felt = model.machine.linear, _felt(model.machine.alike, model.reduced)
+    rings = linear.rings
+    moving_parts = motion.along(felt.places, felt.speeds)
+    first = len(moving_parts) - 4 * rings.body.size
+    forces = np.zeros((felt.alone.size, motion.count))
+    forces[felt.alone] = moving_parts[:first]
+    forces = forces.reshape(*linear.translations.shape, -1)
     if rings.body.size:
         moved, moving = moving_parts[first:].reshape(2, rings.body.size, 2, -1)
-        forces[rings.body, :2] = _ring_force(
-            moved, moving, rings.stiffness, rings.clearance, linear.bearing_damping
-        )
+        held = rings.stiffness, rings.clearance, linear.bearing_damping
+        add_ring_forces(moved, moving, *held, rings.body, forces)
     return forces
 
 
-def _held(model: Model, coordinates: Integers) -> tuple[Array, Array]:
+class _Felt(NamedTuple):
+    """What bearings feel of a motion: places and speeds (n, columns) that make the forces of those `alone`
+    (3 bodies,), on which no ring acts, then place and speed of each body in a ring along x and y.
+    """
+
+    alone: Mask
+    places: Array
+    speeds: Array
+
+
+@lru_cache(maxsize=8)
+def _felt(machine: Machine, reduced: Reduced) -> _Felt:
+    linear = machine.linear
+    places, speeds = _held(linear, reduced, linear.translations.ravel())
+    in_rings = np.zeros(linear.translations.shape, dtype=bool)
+    in_rings[linear.rings.body, :2] = True
+    alone = (places.any(axis=0) | speeds.any(axis=0)) & ~in_rings.ravel()
+    rows = reduced.basis[linear.ring_coordinates.ravel()].T
+    nothing = np.zeros_like(rows)
+    return _Felt(
+        alone,
+        np.concatenate([places[:, alone], rows, nothing], axis=1),
+        np.concatenate([speeds[:, alone], nothing, rows], axis=1),
+    )
+
+
+def _held(linear: LinearModel, reduced: Reduced, coordinates: Integers) -> tuple[Array, Array]:
     """What a place and a speed of the reduced coordinates (n, coordinates) give to the force or moment on
     springs and dampers along some coordinates.
     """
-    linear, basis = model.machine.linear, model.reduced.basis
+    basis = reduced.basis
     springs = basis.T @ linear.stiffness[:, coordinates]
     return springs, linear.bearing_damping * springs + basis.T @ linear.dampers[coordinates].T
 
@@ -82,20 +106,9 @@ def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) ->
     if line is None:
         return np.zeros((len(forces), 0, 5))
     motion = track(response)
-    moments = {i: motion.along(*_held(model, line.tilts(i))).T for i in line.tilting}
+    linear, reduced = model.machine.linear, model.reduced
+    moments = {i: motion.along(*_held(linear, reduced, line.tilts(i))).T for i in line.tilting}
     return shaft_bearing_loads(line, forces, moments)
-
-
-def _ring_force(displacement: Array, speed: Array, stiffness: Array, clearance: Array, lag: float) -> Array:
-    """Forces (R, 2, K) of R bearings with clearance at displacements and speeds (R, 2, K)."""
-    clearance = clearance[:, None]
-    distance = np.maximum(np.hypot(displacement[:, 0], displacement[:, 1]), clearance)
-    free = clearance / distance
-    touching = lag * (distance > clearance)
-    turned = free * (displacement * speed).sum(axis=1) / distance**2 * touching
-    fraction = 1.0 - free
-    along = (fraction + turned)[:, None] * displacement + (fraction * touching)[:, None] * speed
-    return np.asarray(stiffness[:, None, None] * along)
 
 
 def velocities(response: SteadyState) -> Array:

@@ -6,11 +6,11 @@ from functools import cached_property
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.at_instants import press_in, split_loads
 from facegear.dynamics.steady_state.mesh_samples import errors_of_period
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.track import Track
-from facegear.mesh_law.law import beyond_edges
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import NO_LOAD, carried
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,10 +28,14 @@ class DenseMotion:
         jacobian = system.mesh_jacobian[: system.contacts].T
         deflections = self.track.along(jacobian, np.zeros_like(jacobian))
         by_period = deflections.reshape(system.contacts, -1, self.per_period)
-        by_period -= errors_of_period(system, self.per_period).T[:, None]
-        edges = (system.lower, system.upper)
-        lower, upper = (edge[: system.contacts, None, None] for edge in edges)
-        return beyond_edges(by_period, lower, upper)
+        edges = system.lower[: system.contacts], system.upper[: system.contacts]
+        press_in(by_period, errors_of_period(system, self.per_period), *edges)
+        return by_period
+
+    @cached_property
+    def deepest(self) -> Array:
+        """How far each mesh or flank is pressed in at most (contacts,), m."""
+        return np.maximum(self.beyond.max(axis=(1, 2)), -self.beyond.min(axis=(1, 2)))
 
     @cached_property
     def forces(self) -> Array:
@@ -50,6 +54,13 @@ class DenseMotion:
         return carried(self.forces)
 
     @property
+    def flank_loads(self) -> Array:
+        """The same of drive flanks, then back flanks (2 meshes, K), none negative."""
+        loads = np.empty((2 * len(self.forces), self.track.count))
+        split_loads(self.forces, NO_LOAD, loads)
+        return loads
+
+    @property
     def past_law(self) -> Array:
         """Fraction of the instants (contacts,) at which a contact is pressed in past the last level of its
         law.
@@ -57,5 +68,8 @@ class DenseMotion:
         law = self.response.system.law
         if law.straight:
             return np.zeros(law.contacts)
-        past = np.abs(self.beyond) > law.levels[-1][:, None, None]
+        last = law.levels[-1]
+        if not (self.deepest > last).any():
+            return np.zeros(law.contacts)
+        past = np.abs(self.beyond) > last[:, None, None]
         return np.asarray(past.mean(axis=(1, 2)))

@@ -78,11 +78,8 @@ def dynamic_quantities(
     """
     model = build_model(machine)
     motion = measured_motion(model, speed_rpm, settings, options, guide)
-    forces = motion.loads
     groups, shared = _groups(machine.layout)
-    counted = tally(
-        np.concatenate([np.maximum(forces, 0.0), np.maximum(-forces, 0.0)]), motion.per_period, groups
-    )
+    counted = tally(motion.flank_loads, motion.per_period, groups)
     loaded = np.where(counted.largest_mean > 0.0, counted.largest_mean, np.nan)
     values = (
         *(counted.largest_mean / even_shares(machine))[shared],

@@ -84,9 +84,13 @@ def _line_contacts(machine: Machine) -> MeshContacts:
     )
 
 
-@lru_cache(maxsize=16)
 def flank_law(machine: Machine) -> MeshLaw:
     """The law of all drive flanks, then all back flanks: the machine's own, or else its mesh stiffness."""
+    return _flank_law(machine.alike)
+
+
+@lru_cache(maxsize=16)
+def _flank_law(machine: Machine) -> MeshLaw:
     if machine.law is not None:
         return machine.law
     if machine.tables is None:
@@ -165,6 +169,11 @@ def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) 
 
 def error_series(machine: Machine) -> tuple[Harmonics, ...]:
     """e(t) of every flank over the reference's mesh cycle, m, without what is constant or slow."""
+    return _error_series(machine.alike)
+
+
+@lru_cache(maxsize=16)
+def _error_series(machine: Machine) -> tuple[Harmonics, ...]:
     own = machine.imperfections.series
     shapes = [own.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
     return _both(tuple(shapes), machine.error_phases)

@@ -1,12 +1,14 @@
 """The lumped model with everything that drives it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Integers, Mask
+from facegear.by_content import kept_by_content
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.force_table import ForceTable
@@ -149,6 +151,14 @@ class Machine:
         )
 
     @cached_property
+    def alike(self) -> "Machine":
+        """The one machine for all that differ from this one in backlashes, constant and slow errors and the
+        amount of their clearances alone: what those do not change is computed of it, once.
+        """
+        own, rest = self.imperfections, tuple([getattr(self, name) for name in _WITHOUT_ERRORS])
+        return _alike(rest, own.stiffness, own.clocking, own.series, own.bearing_clearance > 0.0)
+
+    @cached_property
     def resting(self) -> "Machine":
         """The machine with its drive line as it is at rest, where its answer follows from that."""
         line = self.drive_line
@@ -207,6 +217,31 @@ class Machine:
     def error_phases(self) -> Array:
         """Transmission error phase of each mesh in mesh periods, shape (meshes,)."""
         return self.phases if self.error_lags is None else self.error_lags
+
+
+_WITHOUT_ERRORS = tuple(
+    [part.name for part in fields(Machine) if part.name not in ("half_backlash", "imperfections")]
+)
+
+
+@kept_by_content(8)
+def _alike(
+    rest: tuple[Any, ...],
+    stiffness: Array,
+    clocking: Array,
+    series: dict[int, Harmonics],
+    with_clearance: Mask,
+) -> Machine:
+    """The machine of these fields _WITHOUT_ERRORS without backlash, its clearances 1 m."""
+    given = dict(zip(_WITHOUT_ERRORS, rest, strict=True))
+    flaws = replace(
+        perfect(given["layout"]),
+        stiffness=stiffness,
+        clocking=clocking,
+        series=series,
+        bearing_clearance=np.where(with_clearance, 1.0, 0.0),
+    )
+    return Machine(**given, half_backlash=0.0, imperfections=flaws)
 
 
 def mesh_frequency(layout: Layout, speed_rpm: float) -> float:

@@ -1,11 +1,11 @@
 """Statics as the compiled solver takes it: three unknowns for each pinion, and a core for all else."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.by_content import kept_by_content
 from facegear.transmission.contact_energy import Springs
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
@@ -49,12 +49,13 @@ def unknowns(machine: Machine) -> tuple[Integers, Array]:
 
 
 def _frame_of(machine: Machine) -> _Frame:
-    linear = machine.linear
-    return _frame(machine.layout, linear.stiffness, linear.rows, linear.lengths)
+    return _frame(machine.alike)
 
 
-@kept_by_content(8)
-def _frame(layout: Layout, stiffness: Array, rows: Array, lengths: Array) -> _Frame:
+@lru_cache(maxsize=8)
+def _frame(machine: Machine) -> _Frame:
+    layout, linear = machine.layout, machine.linear
+    stiffness, rows, lengths = linear.stiffness, linear.rows, linear.lengths
     kept, scale = _unknowns(layout, lengths)
     blocks, springs = _blocks(layout, kept, stiffness, rows), _springs(layout, kept, scale, stiffness, rows)
     return _Frame(blocks, kept, scale, springs)

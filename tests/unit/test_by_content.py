@@ -85,6 +85,28 @@ def test_machines_of_one_layout_share_what_no_error_changes():
     assert models[0].system.error is models[1].system.error
 
 
+def test_machines_of_a_series_have_one_machine_without_errors_and_no_other_machine_has_it():
+    layout = make_layout(kinematics=GEOMETRIC)
+    flaws = replace(perfect(layout), bearing_clearance=np.full(len(layout.pinions), 1e-5))
+    first = make_machine(layout, imperfections=flaws)
+    moved = replace(
+        flaws,
+        error=flaws.error + 1e-6,
+        position=flaws.position + 1e-6,
+        half_backlash=flaws.half_backlash + 1e-6,
+        bearing_clearance=2.0 * flaws.bearing_clearance,
+    )
+    assert replace(first, half_backlash=2.0 * first.half_backlash, imperfections=moved).alike is first.alike
+    for name, value in (
+        ("stiffness", 2.0 * flaws.stiffness),
+        ("clocking", flaws.clocking + 0.1),
+        ("bearing_clearance", 0.0 * flaws.bearing_clearance),
+    ):
+        other = replace(first, imperfections=replace(flaws, **{name: value}))
+        assert other.alike is not first.alike, name
+    assert replace(first, torques=2.0 * first.torques).alike is not first.alike
+
+
 def test_machines_that_differ_in_errors_and_clearances_share_reduction_and_law_and_nothing_that_differs():
     layout = make_layout(kinematics=GEOMETRIC)
     models = []

@@ -9,11 +9,11 @@ forces (rubbing.py). One degree of freedom is a case like any other.
 """
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.by_content import kept_by_content
 from facegear.dynamics.integrator.coupling import Coupling
 from facegear.dynamics.integrator.reduction import Reduced
 from facegear.harmonics.series import Harmonics
@@ -24,8 +24,6 @@ from facegear.transmission.machine import Machine, OpenFlanks
 from facegear.transmission.mesh_friction import MeshFriction, flank_ratios, friction_rows
 
 NO_ERROR = Harmonics(np.zeros(1), np.zeros(1))
-
-_kinds = kept_by_content(4)(different)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +119,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
     """The system of a machine in its reduced coordinates; runouts and pitch deviations are left out."""
     contacts, rings = mesh_contacts(machine), machine.linear.rings
     nothing = 3 * rings.body.size * [0.0]
-    error, error_kind = _kinds((*contacts.error, *len(nothing) * [NO_ERROR]))
+    error, error_kind = _kinds(machine.alike)
     load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
     return System(
@@ -145,6 +143,12 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         coupling=reduced.coupling and reduced.coupling.per_speed(machine.layout.pinion_teeth),
         rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduced),
     )
+
+
+@lru_cache(maxsize=8)
+def _kinds(machine: Machine) -> tuple[Array, Integers]:
+    """The different series of e(t) among contacts and rings, and the kind of each; shared, only read."""
+    return different((*mesh_contacts(machine).error, *3 * machine.linear.rings.body.size * [NO_ERROR]))
 
 
 def _rubbing(machine: Machine, friction: MeshFriction, reduced: Reduced) -> FlankRubbing:

@@ -95,7 +95,7 @@ def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Ar
     The last step is not run: it gains at least what the least of those before it has gained.
     """
     here, end = states
-    best, least = change(integrator, here, end), 0.0
+    best, ratio = change(integrator, here, end), 0.0
     for _ in range(STEPS):
         here = here + guide.step(end - here)
         end = integrator.run(here, 1, fine=True).state
@@ -104,9 +104,9 @@ def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Ar
             return here, residual
         if not residual < 0.5 * best:
             return None
-        best, least = residual, max(least, residual / best)
-        if least * residual <= ROUNDING:
-            return here + guide.step(end - here), least * residual
+        best, ratio = residual, max(ratio, residual / best)
+        if ratio * residual <= ROUNDING:
+            return here + guide.step(end - here), ratio * residual
     return None
 
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.by_content import kept_by_content
 from facegear.dynamics.courses import Course, alone
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
@@ -40,14 +40,13 @@ class Model:
 
 def build_model(machine: Machine) -> Model:
     """Reduce a machine once for all speeds."""
-    linear = machine.linear
-    any_clearance = replace(linear.rings, clearance=np.ones_like(linear.rings.clearance))
-    reduced = _reduced(replace(linear, rings=any_clearance), machine.layout.contacts, machine.pushes)
+    reduced = _reduced(machine.alike)
     return Model(machine, reduced, machine_system(machine, reduced))
 
 
-_reduced = kept_by_content(4)(reduce)
-"""What has the same masses, bearings and contacts is reduced once, whatever its errors and clearances."""
+@lru_cache(maxsize=8)
+def _reduced(machine: Machine) -> Reduced:
+    return reduce(machine.linear, machine.layout.contacts, machine.pushes)
 
 
 def static_start(model: Model) -> State:
