@@ -65,7 +65,8 @@ def _in_mesh(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array])
     normals = np.divide(normals, area, where=area > 0, out=np.zeros_like(normals))
     brightness = 0.4 + 0.6 * np.abs(normals @ LightSource(azdeg=300, altdeg=50).direction)
     shaded = colours * brightness[:, None]
-    axes.add_collection3d(Poly3DCollection(faces, facecolors=shaded, edgecolors=shaded, linewidths=0.2))
+    look = {"facecolors": shaded, "edgecolors": shaded, "linewidths": 0.2, "rasterized": True}
+    axes.add_collection3d(Poly3DCollection(faces, **look))
     low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(high - low, zoom=1.0)
