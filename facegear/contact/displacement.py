@@ -9,18 +9,14 @@ from facegear.contact.both_sides import fours
 from facegear.contact.influence import Surface, part_of
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.lanes import add, load, multiply_add, splat, store, sums, take
+from facegear.machine_code.lanes import load, multiply_add, splat, store, take
 from facegear.machine_code.memory import LANES
-from facegear.machine_code.picked import cube, empty_integers, integers, listed, table, taken
-from facegear.machine_code.prefetch import request
+from facegear.machine_code.picked import cube, integers, listed, table, taken
 
 SOURCES = Path(influence.__file__), Path(both_sides.__file__), *picked.SOURCES
 compiled, called = compiler(*SOURCES), for_callers(forceinline=False)
 compiled_sums = compiler(*SOURCES, fastmath={"contract", "reassoc"}, error_model="numpy")
 """For sums of products, whose terms may be added in any order."""
-
-AHEAD = 2
-"""Rows of a compliance ahead of use that are requested from memory."""
 
 Loads = tuple[tuple[Rows, Rows], tuple[Rows, Rows]]
 """Loads of hats on the nodes of both surfaces, and on those before refinement."""
@@ -57,15 +53,16 @@ def displacement(
             moved = table(nodes[0].size, whole)
             if ends[i + 1] > ends[i]:
                 pushing = part_of(loads[0][side], ends[i], ends[i + 1])
-                _move(moved, nodes, body.own, pushing, forces[:, ends[i] : ends[i + 1]])
+                _move(moved, nodes[0], body.own, pushing, forces[:, ends[i] : ends[i + 1]])
             reach = len(body.others) // 2
             before = _nodes_of(body.interpolation, nodes[0], nodes[2], body.others.shape[1])
             beside = table(before[0].size, whole)
             for j in range(teeth.size if coupled else 0):
                 if i != j and ends[j + 1] > ends[j] and abs(teeth[i] - teeth[j]) <= reach:
                     pushing = part_of(loads[1][side], ends[j], ends[j + 1])
-                    push, block = forces[:, ends[j] : ends[j + 1]], teeth[i] - teeth[j] + reach
-                    _move(beside, before, body.others[block], pushing, push)
+                    # what teeth do to each other is symmetric: this block has a row for each loaded node
+                    push, block = forces[:, ends[j] : ends[j + 1]], teeth[j] - teeth[i] + reach
+                    _move(beside, before[0], body.others[block], pushing, push)
             _add_averages(moved, body.interpolation, nodes[0], nodes[2], before[1], beside, 1.0)
             _add_averages(total[here], rows, which[here], cases[here], nodes[1], moved, body.scale)
     return total
@@ -86,27 +83,37 @@ def _nodes_of(rows: Rows, which: Integers, cases: Integers, count: int) -> Asked
 
 
 @compiled
-def _move(moved: Array, nodes: Asked, compliance: Array, loads: Rows, forces: Array) -> None:
-    """Add to displacements (u, c) of nodes, as `_nodes_of` has them, those by load cases (t, m) of rows of
-    nodal loads, in whole LANES c >= t of cases, at least those that are asked for.
+def _move(moved: Array, used: Integers, compliance: Array, loads: Rows, forces: Array) -> None:
+    """Add to displacements (u, c) of nodes `used` (u,), rising, those by load cases (t, m) of rows of nodal
+    loads, in whole LANES c >= t of cases.
+
+    What a loaded node does stands in a row of the compliance, where neighbours are read together.
     """
-    used, _, asked = nodes
-    begin, pushed = _nodal(loads, forces, moved.shape[1], compliance.shape[1])
+    begin, slot = fours(used, compliance.shape[1])
+    pushing, pushed = _nodal(loads, forces, moved.shape[1], compliance.shape[0])
     width, cases = compliance.shape[1], moved.shape[1]
-    for a in range(used.size):
-        row, following = used[a] * width, used[min(a + AHEAD, used.size - 1)] * width
-        for q in range(begin.size):
-            request(compliance, following + take(begin, q))
-        for t in range(0, asked[a], LANES):
-            first = second = third = fourth = splat(0.0)
+    result = cube(begin.size, cases, LANES)
+    for t in range(0, cases, LANES):
+        for k in range(0, pushing.size, 2):
+            row, other = pushing[k] * width, pushing[k + 1] * width
+            a, b = splat(pushed[k, t]), splat(pushed[k + 1, t])
+            c, d = splat(pushed[k, t + 1]), splat(pushed[k + 1, t + 1])
+            e, f = splat(pushed[k, t + 2]), splat(pushed[k + 1, t + 2])
+            g, h = splat(pushed[k, t + 3]), splat(pushed[k + 1, t + 3])
             for q in range(begin.size):
-                values, at = load(compliance, row + take(begin, q)), LANES * (q * cases + t)
-                first = multiply_add(values, load(pushed, at), first)
-                second = multiply_add(values, load(pushed, at + LANES), second)
-                third = multiply_add(values, load(pushed, at + 2 * LANES), third)
-                fourth = multiply_add(values, load(pushed, at + 3 * LANES), fourth)
-            to = a * cases + t
-            store(moved, to, add(load(moved, to), sums(first, second, third, fourth)))
+                at, to = take(begin, q), LANES * (q * cases + t)
+                x, y = load(compliance, row + at), load(compliance, other + at)
+                store(result, to, multiply_add(a, x, multiply_add(b, y, load(result, to))))
+                to += LANES
+                store(result, to, multiply_add(c, x, multiply_add(d, y, load(result, to))))
+                to += LANES
+                store(result, to, multiply_add(e, x, multiply_add(f, y, load(result, to))))
+                to += LANES
+                store(result, to, multiply_add(g, x, multiply_add(h, y, load(result, to))))
+    for number in range(used.size):
+        at = slot[used[number]]
+        for t in range(forces.shape[0]):
+            moved[number, t] += result[at // LANES, t, at % LANES]
 
 
 @compiled_sums
@@ -131,23 +138,22 @@ def _add_averages(
 
 @called
 def _nodal(loads: Rows, forces: Array, cases: int, nodes: int) -> tuple[Integers, Array]:
-    """The first (f,) of every LANES neighbouring nodes, as `fours` has them, that load cases (t, m) of rows
-    load, and the loads (f, c, LANES) on them in `cases` c >= t.
+    """The nodes (f,) that load cases (t, m) of rows load, and the loads (f, c) on them in `cases` c >= t: an
+    even number, with a node without load where they are odd.
     """
     pointer, index, weight = loads
-    pushing, filled = empty_integers(index.size), 0
-    for i in range(forces.shape[1]):
-        pushes = False
-        for t in range(forces.shape[0]):
-            pushes |= forces[t, i] != 0.0
-        for k in range(pointer[i], pointer[i + 1] if pushes else pointer[i]):
-            pushing[filled] = index[k]
-            filled += 1
-    begin, slot = fours(pushing[:filled], nodes)
-    pushed = cube(begin.size, cases, LANES)
+    mark = integers(nodes, 0)
     for i in range(forces.shape[1]):
         for t in range(forces.shape[0]):
             for k in range(pointer[i], pointer[i + 1] if forces[t, i] != 0.0 else pointer[i]):
-                at = slot[index[k]]
-                pushed[at // LANES, t, at % LANES] += weight[k] * forces[t, i]
-    return begin, pushed
+                mark[index[k]] = 1
+    loaded, slot = listed(mark)
+    even = loaded.size + loaded.size % 2
+    pushing, pushed = integers(even, 0), table(even, cases)
+    for i in range(loaded.size):
+        pushing[i] = loaded[i]
+    for i in range(forces.shape[1]):
+        for t in range(forces.shape[0]):
+            for k in range(pointer[i], pointer[i + 1] if forces[t, i] != 0.0 else pointer[i]):
+                pushed[slot[index[k]], t] += weight[k] * forces[t, i]
+    return pushing, pushed
