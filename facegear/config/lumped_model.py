@@ -33,7 +33,14 @@ from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.imperfections import Imperfections, Runout
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
-from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
+from facegear.transmission.machine import (
+    Damping,
+    FlankTables,
+    Machine,
+    OpenFlanks,
+    balanced_torques,
+    pinion_torques,
+)
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
 
@@ -126,10 +133,12 @@ def machine(
     stiffness: Harmonics,
     unloaded: Harmonics | None = None,
     made: Described | None = None,
+    tables: tuple[FlankTables, ...] | None = None,
 ) -> Machine:
     """The machine that a config describes, with the reference mesh stiffness from its own stage.
 
-    `unloaded` is the pair's own e(t), m; made: described(section, teeth, unloaded), where the caller has it.
+    `unloaded` is the pair's own e(t), m; made: described(section, teeth, unloaded), where the caller has it;
+    tables: of the flanks at each gear, where their stiffness depends on the load.
     Raises ConfigError where the config asks for e(t) and there is none.
     """
     shape, flaws = made or described(section, teeth, unloaded)
@@ -148,6 +157,7 @@ def machine(
         imperfections=flaws,
         forces=external_forces(section, shape),
         drive_line=drive_line(section, shape),
+        tables=tables,
     )
 
 

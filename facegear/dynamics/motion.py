@@ -1,9 +1,8 @@
 """Kinds of motion and how a run is settled."""
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
-
-import numpy as np
 
 from facegear.arrays import Array
 
@@ -71,7 +70,7 @@ class Settings:
         """Order of the steps; higher pays for tighter tolerances."""
         if self.order is not None:
             return self.order
-        return int(np.clip(round(4.0 - 1.0 * np.log10(self.tolerance)), 6, 20))
+        return min(max(round(4.0 - math.log10(self.tolerance)), 6), 20)
 
 
 @dataclass(frozen=True, eq=False)

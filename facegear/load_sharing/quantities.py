@@ -1,11 +1,14 @@
 """What one machine among many is judged by: a few numbers of its load sharing, quasi-static or in motion."""
 
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.bearing_forces import bearing_forces
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.guide import Guide, guide_of
 from facegear.dynamics.steady_state.simulate import build_model
@@ -20,7 +23,6 @@ from facegear.load_sharing.quantity_names import PAST_LAW, quantity_names
 from facegear.load_sharing.run import measured_motion
 from facegear.load_sharing.tally import tally
 from facegear.transmission.flanks import past_law
-from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
 
 POSITIONS = 8
@@ -46,19 +48,19 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
     """
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // cycles, 1))
     hard = hardest_cycles(run)
-    groups, shared = _groups(machine.layout)
+    groups, shared, even, names = _counted(machine.alike, dynamic=False)
     counted, hardest = (tally(motion.flank_forces.T, POSITIONS, groups) for motion in (run, hard))
     largest_mean = np.maximum(counted.largest_mean, hardest.largest_mean)
     largest = np.maximum(counted.largest, hardest.largest)
     values = (
-        *(largest_mean / even_shares(machine))[shared],
+        *(largest_mean / even)[shared],
         *counted.coefficients,
         largest.max(),
         counted.open,
         counted.reversed,
         bearing_mass(np.moveaxis(run.bearings, 0, -1)),
     )
-    named = _named(machine.layout, values, dynamic=False)
+    named = dict(zip(names, map(float, values), strict=True))
     if machine.tables is not None:
         past = (past_law(machine, motion.cycles, motion.flank_forces).max() for motion in (run, hard))
         named[PAST_LAW] = float(max(past))
@@ -78,11 +80,11 @@ def dynamic_quantities(
     """
     model = build_model(machine)
     motion = measured_motion(model, speed_rpm, settings, options, guide)
-    groups, shared = _groups(machine.layout)
+    groups, shared, even, names = _counted(machine.alike, dynamic=True)
     counted = tally(motion.flank_loads, motion.per_period, groups)
     loaded = np.where(counted.largest_mean > 0.0, counted.largest_mean, np.nan)
     values = (
-        *(counted.largest_mean / even_shares(machine))[shared],
+        *(counted.largest_mean / even)[shared],
         *(counted.largest_load / loaded)[shared],
         *counted.coefficients,
         counted.largest.max(),
@@ -90,7 +92,7 @@ def dynamic_quantities(
         counted.reversed,
         bearing_mass(bearing_forces(model, motion.track)),
     )
-    named = _named(machine.layout, values, dynamic=True)
+    named = dict(zip(names, map(float, values), strict=True))
     if machine.tables is not None:
         named[PAST_LAW] = float(motion.past_law.max())
     return named, FlankLoads(counted.mean, counted.largest)
@@ -102,14 +104,23 @@ def orbit_of(machine: Machine, speed_rpm: float, settings: Settings, options: Sh
         response = measured_motion(build_model(machine), speed_rpm, settings, options).response
     except NotConverged:
         return None
-    return guide_of(response.system, response.orbit)
+    integrator = Integrator(response.system, response.frequency, settings.tolerance, settings.order)
+    return guide_of(integrator, response.orbit)
 
 
-def _named(layout: Layout, values: tuple[float, ...], dynamic: bool) -> dict[str, float]:
-    return dict(zip(quantity_names(layout, dynamic), map(float, values), strict=True))
+class _Counted(NamedTuple):
+    """Groups of meshes that share a load, their meshes group by group, even share of each mesh (meshes,), N,
+    and the names of what is counted.
+    """
+
+    groups: tuple[LoadGroup, ...]
+    shared: list[int]
+    even: Array
+    names: tuple[str, ...]
 
 
-def _groups(layout: Layout) -> tuple[tuple[LoadGroup, ...], list[int]]:
-    """Meshes that share a load, and all of them group by group."""
-    groups = load_groups(layout)
-    return groups, [mesh for group in groups for mesh in group.meshes]
+@lru_cache(maxsize=8)
+def _counted(machine: Machine, dynamic: bool) -> _Counted:
+    layout, groups = machine.layout, load_groups(machine.layout)
+    shared = [mesh for group in groups for mesh in group.meshes]
+    return _Counted(groups, shared, even_shares(machine), quantity_names(layout, dynamic))

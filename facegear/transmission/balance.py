@@ -62,7 +62,7 @@ def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Ar
 def bearing_loads(machine: Machine, displacements: Array) -> Array:
     """Force or moment of every degree of freedom on its bearing, (K, dof), beyond any clearance."""
     linear = machine.linear
-    loads = displacements @ linear.stiffness_without_rings
+    loads = displacements @ machine.alike.linear.stiffness_without_rings
     rings, at = linear.rings, linear.ring_coordinates
     moved = displacements[:, at]
     distance = np.maximum(np.hypot(moved[..., 0], moved[..., 1]), rings.clearance)

@@ -220,9 +220,8 @@ def judge(
         made = described(section, mesh.numbers, mesh.unloaded)
         require_buildable(section, mesh.numbers, made)
         require_room(section, mesh.numbers, made)
-        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded, made)
-        if mesh.tables is not None:
-            built = replace(built, tables=mesh.tables(built.layout))
+        tables = None if mesh.tables is None else mesh.tables(made[0])
+        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded, made, tables)
         if bodies is not None:
             built = bodies.joined(built, section, values["tooth_pair"])
         if surface is not None:

@@ -26,7 +26,7 @@ from facegear.dynamics.integrator.periods import (
 )
 from facegear.dynamics.integrator.sums import Sums, make_sums
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import Work, make_work
+from facegear.dynamics.integrator.work import Work, make_work, sizes
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
 
@@ -73,8 +73,8 @@ class Integrator:
     derivatives by mesh phase, in rad.
 
     tolerance: local error of a step over the length scale; order: of the steps, None: from the tolerance.
-    `like`: an integrator of a system of the same sizes, whose scratch space is used. Of two integrators that
-    share theirs only one may run at a time.
+    `like`: an integrator whose scratch space is used where it is that of a system of the same sizes. Of two
+    integrators that share theirs only one may run at a time.
     """
 
     def __init__(
@@ -89,7 +89,9 @@ class Integrator:
         self.packed: Packed = pack(system, frequency)
         if order is None:
             order = Settings(tolerance=tolerance).taylor_order
-        self.work: Work = make_work(system, self.packed, order) if like is None else like.work
+        self._sizes = (order, *sizes(system, self.packed))
+        shares = like is not None and like._sizes == self._sizes
+        self.work: Work = like.work if like is not None and shares else make_work(system, self.packed, order)
         self._empty = np.zeros((0, 2, self.packed.omega_squared.size))
 
     @property
@@ -220,6 +222,17 @@ class Integrator:
             steps=int(log.steps[0]),
             sums=log.sums,
         )
+
+    def returned(self, state: Array) -> Array:
+        """Where a state (2, n) is a mesh period later, by steps as short as tangents need. Raises
+        NotConverged.
+        """
+        return self._run_alone(state, 1, self._period, self.longest_step)[:, : self.packed.n]
+
+    @cached_property
+    def _period(self) -> Log:
+        """What returned() has written and nobody reads."""
+        return self._log(1)
 
     def steps(self, state: Array, periods: int, count: int, begin: float = 0.0) -> tuple[Array, int, Steps]:
         """Run whole mesh periods from a state (2, n) at a phase `begin`, in rad, of the first one.

@@ -112,13 +112,30 @@ class Work(NamedTuple):
     pressing: Pressing | None
 
 
+def sizes(system: System, packed: Packed) -> tuple[object, ...]:
+    """What scratch space depends on beside the order: that of systems with the same ones may be shared."""
+    rubbing, rings, coupled = packed.rubbing, packed.rings, packed.coupled
+    return (
+        (packed.n, packed.m, *packed.mesh_jacobian.shape),
+        (packed.error.shape[2], _harmonics(system, packed)),
+        type(system.law),
+        rings and rings.clearance.size,
+        rubbing and rubbing.ratios.shape,
+        coupled and (coupled.blocks.starts.size, coupled.blocks.rows.size),
+    )
+
+
+def _harmonics(system: System, packed: Packed) -> int:
+    """Harmonics and the mean of the longest series."""
+    ratios = 0 if packed.rubbing is None else len(packed.rubbing.ratios)
+    return max(system.law.harmonic_fractions.size, len(packed.error), len(packed.load), ratios)
+
+
 def make_work(system: System, packed: Packed, order: int) -> Work:
     """Allocate scratch space."""
     n, m = packed.mesh_jacobian.shape
     rows = order + 1
-    rubbing = packed.rubbing
-    ratios = 0 if rubbing is None else len(rubbing.ratios)
-    harmonics = max(system.law.harmonic_fractions.size, len(packed.error), len(packed.load), ratios)
+    rubbing, harmonics = packed.rubbing, _harmonics(system, packed)
     by_coordinate, by_row = (rows, n), (rows, m)
     tables = aligned_together(
         {

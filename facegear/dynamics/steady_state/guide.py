@@ -29,14 +29,16 @@ HOLDING = 0.99
 
 @dataclass(frozen=True, eq=False)
 class Guide:
-    """A stable orbit (2, n) of one mesh period, and the system that it belongs to."""
+    """A stable orbit (2, n) of one mesh period, and the integrator of the system that it belongs to, whose
+    scratch space those that it leads may use.
+    """
 
-    system: System
+    integrator: Integrator
     orbit: Orbit
 
     def serves(self, system: System) -> bool:
         """Whether the coordinates of another system are the same."""
-        own = self.system
+        own = self.integrator.system
         return np.array_equal(own.mesh_jacobian, system.mesh_jacobian) and np.array_equal(
             own.omega_squared, system.omega_squared
         )
@@ -56,10 +58,10 @@ class Guide:
         return (self.chord @ change.ravel()).reshape(2, -1)
 
 
-def guide_of(system: System, orbit: Orbit | None) -> Guide | None:
+def guide_of(integrator: Integrator, orbit: Orbit | None) -> Guide | None:
     """The guide that an orbit makes; None where it has more than one mesh period, or holds too loosely."""
     fit = orbit is not None and orbit.period == 1 and abs(orbit.multipliers[0]) < HOLDING
-    return Guide(system, orbit) if orbit is not None and fit else None
+    return Guide(integrator, orbit) if orbit is not None and fit else None
 
 
 def guided(integrator: Integrator, state: Array, guide: Guide) -> Settled | None:
@@ -98,7 +100,7 @@ def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Ar
     best, ratio = change(integrator, here, end), 0.0
     for _ in range(STEPS):
         here = here + guide.step(end - here)
-        end = integrator.run(here, 1, fine=True).state
+        end = integrator.returned(here)
         residual = change(integrator, here, end)
         if residual <= ROUNDING:
             return here, residual

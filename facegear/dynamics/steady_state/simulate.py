@@ -159,9 +159,10 @@ def _begun(
 ) -> Course[Begun]:
     """The first watch of a system from a start."""
     prepare_for(system)
-    integrator = Integrator(system, frequency, settings.tolerance, settings.order)
-    serves = guide is not None and settings.refine and guide.serves(system)
-    return begin(integrator, integrator.by_phase(start), settings, guide if serves else None, known)
+    guide = guide if guide is not None and settings.refine and guide.serves(system) else None
+    like = None if guide is None else guide.integrator
+    integrator = Integrator(system, frequency, settings.tolerance, settings.order, like)
+    return begin(integrator, integrator.by_phase(start), settings, guide, known)
 
 
 def _steady(system: System, begun: Begun) -> Course[SteadyState]:
