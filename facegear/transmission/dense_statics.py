@@ -22,8 +22,6 @@ FARTHEST = 2.0**60
 """How many steps ahead a line is looked along."""
 STRAIGHT = 1e-10
 """A slope is zero to this fraction of what it is at the start."""
-WHOLE = 1e-12
-"""A step is Newton's own to this fraction."""
 NO_PHASE = np.zeros(1)
 """The phase at which a law is asked that depends on none."""
 
@@ -255,23 +253,25 @@ def _pushed_on(springs: _Springs, tie: float, last: Array, displacement: Array) 
 def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
     """Newton's method with an exact line search on the piecewise quadratic energy of one round.
 
-    A whole step between places where the same contacts are pressed ends at the minimum of their quadratic.
+    A whole step between places where the same contacts are pressed ends at the minimum of their quadratic: no
+    line is searched there.
     """
     displacement, ties, contacts = anchor, tie * np.eye(len(anchor)), springs.contacts
     widest = np.abs(contacts.upper).max()
     quadratic = contacts.law.straight and not springs.rings.clearance.size
-    whole, pressed = False, np.zeros(0)
     for _ in range(MAX_ITERATIONS):
         deflections = springs.deflections(displacement)
         beyond = contacts.beyond(deflections)
-        if quadratic and whole and np.array_equal(np.sign(beyond), pressed):
-            return displacement
-        pressed = np.sign(beyond)
         gradient = springs.balance(displacement, contacts.forces(beyond)) + tie * (displacement - anchor)
         curvature = springs.curvature(displacement, contacts.slopes(beyond)) + ties
         step = -np.asarray(np.linalg.solve(curvature, gradient), np.float64)
+        whole = displacement + step
+        if quadratic and np.array_equal(
+            np.sign(contacts.beyond(springs.deflections(whole))), np.sign(beyond)
+        ):
+            return whole
         along = springs.along(displacement, deflections, step, tie, anchor).minimum()
-        moved, whole = displacement + along * step, abs(along - 1.0) <= WHOLE
+        moved = displacement + along * step
         size = max(np.abs(displacement).max(), widest)
         if np.abs(moved - displacement).max() <= 1e-15 * size:
             return moved
