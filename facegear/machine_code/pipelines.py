@@ -17,14 +17,27 @@ from numba.core.typed_passes import NativeLowering
 from facegear.machine_code.passes import Passes
 from facegear.machine_code.remembered import remembered
 
+_LITTLE = 1
+"""A level of optimisation that simplifies what is written."""
+
+
+def _loops_as_written(level: int) -> Any:
+    """Options of LLVM's passes at a level of optimisation, with loops neither unrolled nor made vectors."""
+    options = binding.create_pipeline_tuning_options(speed_level=level)
+    options.loop_unrolling = options.loop_vectorization = False
+    options.slp_vectorization = config.SLP_VECTORIZE
+    return options
+
 
 class _CodeForCallers(JITCodeLibrary):
     """LLVM code that waits, as it was written, to be linked into what calls it.
 
-    Where sums may be added in any `order`, which one it is follows from the passes over each function.
+    Where sums may be added in any `order`, which one it is follows from the passes over each function. Where
+    products and sums may be fused, which are follows from them, too: passes that do little are enough for it
+    and leave less to link and optimise.
     """
 
-    order = False
+    order = fused = False
     _shared_module: Any
     _linking_libraries: list[JITCodeLibrary]
 
@@ -67,6 +80,13 @@ class _CodeForCallers(JITCodeLibrary):
     def _optimize_functions(self, module: Any) -> None:
         if self.order:
             super()._optimize_functions(module)
+        elif self.fused:
+            module.data_layout = self._codegen._data_layout
+            builder = binding.create_pass_builder(self._codegen._tm, _loops_as_written(_LITTLE))
+            passes = builder.getFunctionPassManager()
+            for function in module.functions:
+                if not function.is_declaration:
+                    passes.run(function, builder)
 
 
 def _link(module: Any, libraries: Iterable[JITCodeLibrary]) -> None:
@@ -100,17 +120,8 @@ class _CodeAsWritten(_CodeOfAll):
     """
 
     def _optimize_final_module(self) -> None:
-        module, codegen = self._final_module, self._codegen
-        passes, builder = codegen._module_pass_manager(
-            loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
-        )
-        passes.run(module, builder)
-        options = binding.create_pipeline_tuning_options(speed_level=config.OPT)
-        options.loop_unrolling = options.loop_vectorization = False
-        options.slp_vectorization = config.SLP_VECTORIZE
-        builder = binding.create_pass_builder(codegen._tm, options)
-        passes = builder.getModulePassManager()
-        passes.run(module, builder)
+        builder = binding.create_pass_builder(self._codegen._tm, _loops_as_written(config.OPT))
+        builder.getModulePassManager().run(self._final_module, builder)
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -124,7 +135,8 @@ class _Lower(NativeLowering):
         """Make the code of a function, which only Python and compiled callers call."""
         state.flags.no_cfunc_wrapper = True
         state.library = self.kind(state.targetctx.codegen(), state.func_id.func_qualname)
-        state.library.order = bool(state.flags.fastmath)
+        allowed = state.flags.fastmath.flags if state.flags.fastmath else set()
+        state.library.order, state.library.fused = not allowed <= {"contract"}, "contract" in allowed
         state.library.enable_object_caching()
         return bool(super().run_pass(state))
 

@@ -120,12 +120,14 @@ def run_periods(
             if taken > MAX_STEPS:
                 return TOO_MANY_STEPS
         log.steps[0] += taken
+        total = 0.0
         for k in range(n):
             log.ends[period, 0, k] = displacement[k]
             log.ends[period, 1, k] = velocity[k]
+            total += displacement[k] + velocity[k]
         if log.growth.size > 0:
             log.growth[period] = np.log(_shorten(packed, tangents[0]))
-        if not np.isfinite(displacement.sum() + velocity.sum()):
+        if not np.isfinite(total):
             return NOT_FINITE
     return DONE
 
