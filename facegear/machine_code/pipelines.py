@@ -4,15 +4,17 @@ Made of numba's private parts, as `stored.py` is.
 """
 
 import gc
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from llvmlite import binding
-from numba import config
+from numba import config, jit
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
+from numba.core.typing.templates import _OverloadFunctionTemplate
 
 from facegear.machine_code.passes import Passes
 from facegear.machine_code.remembered import remembered
@@ -184,7 +186,7 @@ def _with(lowering: type[NativeLowering]) -> type[Compiler]:
             collects = gc.isenabled()
             gc.disable()
             try:
-                with remembered():
+                with remembered(), _numbas_own_as_parts():
                     return super()._compile_core()
             finally:
                 if collects:
@@ -195,3 +197,31 @@ def _with(lowering: type[NativeLowering]) -> type[Compiler]:
 
 Whole, AsWritten, ForCallers = _with(_Lower), _with(_LowerAsWritten), _with(_LowerForCallers)
 """For functions that Python calls, for those whose loops stay as they are, and for parts of others."""
+
+
+def _part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Decorator for functions of numba's own, which are written for the literal values of arguments, too."""
+
+    def decorated(function: Callable[..., Any]) -> Any:
+        dispatcher = jit(pipeline_class=ForCallers, **options)(function)
+
+        def add_overload(overload: Any) -> None:
+            dispatcher.overloads[tuple(overload.signature.args)] = overload
+
+        dispatcher.add_overload = add_overload
+        return dispatcher
+
+    return decorated
+
+
+@contextmanager
+def _numbas_own_as_parts() -> Iterator[None]:
+    """Have functions of numba's own, such as those behind max(), be parts of their callers: it makes machine
+    code of each of them, which nothing calls.
+    """
+    own = _OverloadFunctionTemplate._get_jit_decorator
+    _OverloadFunctionTemplate._get_jit_decorator = lambda template: _part
+    try:
+        yield
+    finally:
+        _OverloadFunctionTemplate._get_jit_decorator = own

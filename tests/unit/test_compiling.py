@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from numba import njit
 from numba.core.base import BaseContext
 from numba.core.codegen import JITCodeLibrary
 from numba.core.errors import TypingError
@@ -150,3 +151,22 @@ def test_what_is_chosen_by_type_is_machine_code_in_its_callers_alone(tmp_path, m
     monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
     assert function(Halved(4.0)) == 6.0
     assert not any("halved" in name for name in made) and made
+
+
+def test_functions_of_numbas_own_are_machine_code_in_their_callers_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    finalize, made = JITCodeLibrary._finalize_final_module, []
+
+    def counted(library):
+        made.append(library.name)
+        finalize(library)
+
+    def more(value):
+        return value
+
+    overload(more, strict=False)(lambda value: lambda value: max(value, 1.0) + len(np.zeros(3)))
+    function = compiler()(lambda value: more(value))
+    monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
+    assert function(0.5) == 4.0 and function(2.0) == 5.0
+    assert made and not any("more" in name or "max" in name or "zeros" in name for name in made)
+    assert njit(lambda value: more(value) * max(value, 1.0))(2.0) == 10.0
