@@ -42,19 +42,19 @@ def _is_plain(array: Any) -> bool:
     return isinstance(array, types.Array) and array.layout == "C" and array.dtype == types.float64
 
 
-def data_of(context: Any, builder: Any, kind: types.Array, array: Any) -> Any:
+def _data_of(context: Any, builder: Any, kind: types.Array, array: Any) -> Any:
     """The address of an array's first number; numba's own way there writes the whole array to the stack."""
     return builder.extract_value(array, context.data_model_manager[kind].get_field_position("data"))
 
 
 def _place(context: Any, builder: Any, kind: types.Array, array: Any, index: Any) -> Any:
-    return builder.gep(data_of(context, builder, kind, array), [index])
+    return builder.gep(_data_of(context, builder, kind, array), [index])
 
 
 def _pointer(
     context: Any, builder: Any, array: types.Array, args: Any, kind: VectorType, counted: ir.Type
 ) -> Any:
-    data = data_of(context, builder, array, args[0])
+    data = _data_of(context, builder, array, args[0])
     first = builder.gep(builder.bitcast(data, counted.as_pointer()), [args[1]])
     return builder.bitcast(first, kind.of(DOUBLE).as_pointer())
 
