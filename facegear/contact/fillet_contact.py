@@ -13,7 +13,9 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.position import Spot
 from facegear.geometry import pinion
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler
+from facegear.machine_code.picked import marks
 
 APART = 2.0
 """Rows of the lattice between two loaded hats of a plane from which on they belong to two contacts."""
@@ -40,14 +42,16 @@ def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
     return replace(spot, hats=spot.hats[keep], force=spot.force[keep], fillet=spot.fillet[keep])
 
 
-@compiler()
+@compiler(*picked.SOURCES)
 def kept_hats(row: Integers, plane: Integers, fillet: Mask, line: Array, apart: float) -> Mask:
     """Which loaded hats, in rows and planes (m,), are neither in a fillet nor part of a contact in one.
 
     A contact: hats of a plane no more than `apart` rows from the next. One that reaches a fillet lies in it,
     unless the plane's contact line (n,) is within `apart` rows of it.
     """
-    kept = ~fillet
+    kept = marks(fillet.size, True)
+    for hat in range(fillet.size):
+        kept[hat] = not fillet[hat]
     for hat in range(row.size):
         if not fillet[hat]:
             continue

@@ -87,8 +87,9 @@ def radius_at_height(
     base: float, ratio: float, radius: Numbers, height: Numbers, psi: Numbers
 ) -> tuple[Numbers, Numbers]:
     """The same at a height, taken from the lift downwards and over the base radius."""
-    p, q = base * (1 - height * np.cos(psi)) / np.sin(psi), base / (ratio * np.cos(psi))
-    p_psi = base * (height - np.cos(psi)) / np.sin(psi) ** 2
+    sine = np.sin(psi)
+    p, q = base * (1 - height * np.cos(psi)) / sine, base / (ratio * np.cos(psi))
+    p_psi = base * (height - np.cos(psi)) / (sine * sine)
     return p * p + q * q - radius * radius, 2 * p * p_psi + 2 * q * q * np.tan(psi)
 
 

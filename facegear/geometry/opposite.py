@@ -13,9 +13,12 @@ from facegear.geometry.pinion_surface import fillet_points
 from facegear.geometry.placement import to_pinion_section
 from facegear.geometry.ray_surfaces import psi_at
 from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
+from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
+from facegear.machine_code.picked import integers, numbers
 
-compiled, inlined = compiler(Path(ray_surfaces.__file__), Path(closed_forms.__file__)), for_callers()
+SOURCES = Path(ray_surfaces.__file__), Path(closed_forms.__file__), *picked.SOURCES
+compiled, inlined = compiler(*SOURCES), for_callers()
 
 FILLET_SAMPLES = 2000
 
@@ -99,7 +102,7 @@ def by_tip_edge(
     base, ratio: of the shaper; last_roll (rad): where the flank ends at the fillet. Cubics (4, r) of the tip
     edge's roll and gear angle (rad) begin at gear radii (r + 1,) m, evenly spaced.
     """
-    flank, fillet, beyond = np.full((3, part.size), np.nan)
+    flank, fillet, beyond = numbers(part.size, np.nan), numbers(part.size, np.nan), numbers(part.size, np.nan)
     for i in range(part.size):
         if part[i] == FLANK:
             tip = _cubic(radii, rolls, radius[i])
@@ -190,11 +193,12 @@ def _fillet_feet(
 @compiled
 def nearest_of(points: Array, curve: Array) -> Integers:
     """The point (n,) of a curve (m, 2) nearest to each of points (n, 3) in their first two coordinates."""
-    nearest = np.zeros(points.shape[0], np.int64)
+    nearest = integers(points.shape[0], 0)
     for i in range(points.shape[0]):
         min_square = np.inf
         for j in range(curve.shape[0]):
-            square = (points[i, 0] - curve[j, 0]) ** 2 + (points[i, 1] - curve[j, 1]) ** 2
+            x, y = points[i, 0] - curve[j, 0], points[i, 1] - curve[j, 1]
+            square = x * x + y * y
             if square < min_square:
                 min_square, nearest[i] = square, j
     return nearest

@@ -107,7 +107,8 @@ def cut_rays(
         # no point of the ray is farther in or out than by this, in squares of the radius
         begin = sqrt(p[0] * p[0] + p[1] * p[1])
         aside = 2 * search_radius * abs(p[0] * n[0] + p[1] * n[1]) + search_radius * search_radius
-        if not (blank.inner**2 - aside < begin * begin < blank.outer**2 + aside):
+        shortest, longest = blank.inner * blank.inner - aside, blank.outer * blank.outer + aside
+        if not shortest < begin * begin < longest:
             continue
         low = p[2] - search_radius * abs(n[2])
         if not abs(distance) < search_radius and low < blank.fillet_top:

@@ -17,7 +17,7 @@ from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, Me
 from facegear.arrays import Array, Integers
 from facegear.machine_code import picked
 from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import cube, empty_table, integer_table, integers
+from facegear.machine_code.picked import cube, empty_numbers, empty_table, integer_table, integers
 
 compiled, inlined = compiler(*picked.SOURCES), for_callers(error_model="numpy")
 
@@ -132,7 +132,7 @@ def areas_at(positions: Array, nodes: Integers, gradients: Array, weights: Array
     """Areas (q,) that q points stand for by weights (q,), of a surface through `positions` (n, 3) of its
     nodes, by its `face_functions`.
     """
-    areas = np.empty(weights.size)
+    areas = empty_numbers(weights.size)
     for point in range(weights.size):
         ux, uy, uz, vx, vy, vz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for a in range(nodes.shape[1]):
@@ -140,8 +140,8 @@ def areas_at(positions: Array, nodes: Integers, gradients: Array, weights: Array
             x, y, z = positions[node, 0], positions[node, 1], positions[node, 2]
             ux, uy, uz = ux + u * x, uy + u * y, uz + u * z
             vx, vy, vz = vx + v * x, vy + v * y, vz + v * z
-        square = (uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2
-        areas[point] = weights[point] * np.sqrt(square)
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        areas[point] = weights[point] * np.sqrt(x * x + y * y + z * z)
     return areas
 
 
