@@ -190,9 +190,14 @@ def _contours(
     filled = axes.contourf(radius, height, gap, levels=levels, norm=colours, cmap="viridis_r", extend="min")
     axes.figure.colorbar(filled, ax=axes, label="separation (um)", ticks=levels)
     top, flank = 1e3 * flanks["gear_flank"][0], 1e3 * flanks["gear_flank"][-1]
-    for line, label in ((top, "tip edge"), (flank, "end of the flank")):
-        axes.plot(np.hypot(line[:, 0], line[:, 1]), line[:, 2], color="0.2", lw=0.8)
-        axes.annotate(label, (np.hypot(*line[-1, :2]), line[-1, 2]), fontsize=9, va="bottom", ha="right")
+    for line, label, point, points in (
+        (top, "tip edge", -1, 2),
+        (flank, "end of the flank", len(flank) // 2, -3),
+    ):
+        out, side = np.hypot(line[:, 0], line[:, 1]), "bottom" if points > 0 else "top"
+        axes.plot(out, line[:, 2], color="0.2", lw=0.8)
+        place = {"xytext": (0, points), "textcoords": "offset points", "va": side, "ha": "right"}
+        axes.annotate(label, (out[point], line[point, 2]), fontsize=9, **place)
     path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
     rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
     axes.plot(1e3 * contact["path_y"], height[rows, height.shape[1] // 2], "r.", ms=4, label="contact path")

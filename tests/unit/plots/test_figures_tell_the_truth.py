@@ -15,6 +15,7 @@ from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.modal import amplitudes, mode_shapes, typical_modes
 from facegear.plots.response import deflections
 from facegear.plots.style import save
+from facegear.plots.tooth_pair import separation
 
 
 @pytest.fixture
@@ -137,6 +138,34 @@ def test_the_legend_of_curves_compared_leaves_the_offset_of_their_numbers_free()
     offset = top.yaxis.get_offset_text()
     assert offset.get_text()
     assert not offset.get_window_extent().overlaps(top.get_legend().get_window_extent())
+    plt.close(figure)
+
+
+def test_names_of_the_edges_of_a_flank_stand_off_their_curves():
+    radius = np.linspace(0.25, 0.275, 21)
+    end = -0.0445 - 0.003 * np.sqrt((radius - 0.25) / 0.025)
+    edges = [np.column_stack([radius, np.zeros(21), z]) for z in (np.full(21, -0.0395), end)]
+    across, height = np.meshgrid(radius, np.linspace(-0.044, -0.04, 5), indexing="ij")
+    contact = {
+        "contour_facing": np.ones_like(across),
+        "contour_gap": 1e-3 * np.abs(across - 0.265),
+        "contour_radius": across,
+        "contour_y": across,
+        "contour_height": height,
+        "contour_roll": np.linspace(0.2, 0.4, 21)[:, None],
+        "path_roll": np.linspace(0.25, 0.35, 3),
+        "path_y": np.full(3, 0.265),
+    }
+    gap = {"gap_um": 7.8, "gear_radius_mm": 259.6, "gear_part": "tip edge", "pinion_part": "fillet"}
+    figure = separation({"smallest_gap": gap}, {"gear_flank": np.stack(edges)}, contact)
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    names = {"tip edge", "end of the flank"}
+    boxes = [text.get_window_extent() for text in axes.texts if text.get_text() in names]
+    assert len(boxes) == len(names)
+    for line in axes.lines[:2]:
+        for x, y in axes.transData.transform(line.get_xydata()):
+            assert not any(box.contains(x, y) for box in boxes)
     plt.close(figure)
 
 
