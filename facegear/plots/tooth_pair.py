@@ -196,8 +196,8 @@ def _contours(
     ):
         out, side = np.hypot(line[:, 0], line[:, 1]), "bottom" if points > 0 else "top"
         axes.plot(out, line[:, 2], color="0.2", lw=0.8)
-        place = {"xytext": (0, points), "textcoords": "offset points", "va": side, "ha": "right"}
-        axes.annotate(label, (out[point], line[point, 2]), fontsize=9, **place)
+        options = {"xytext": (0, points), "textcoords": "offset points", "va": side, "ha": "right"}
+        axes.annotate(label, (out[point], line[point, 2]), fontsize=9, **options)
     path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
     rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
     axes.plot(1e3 * contact["path_y"], height[rows, height.shape[1] // 2], "r.", ms=4, label="contact path")
