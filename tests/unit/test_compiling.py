@@ -16,6 +16,20 @@ from facegear.machine_code.compiler import by_type, compiler, for_callers
 from facegear.machine_code.kept import VARIABLE
 
 
+@pytest.fixture
+def made(tmp_path, monkeypatch):
+    """Names of what is made machine code from here on, none of which is stored."""
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    finalize, names = JITCodeLibrary._finalize_final_module, []
+
+    def counted(library):
+        names.append(library.name)
+        finalize(library)
+
+    monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
+    return names
+
+
 @pytest.mark.parametrize("as_written", [True, False])
 @pytest.mark.parametrize("compiles", [True, False])
 def test_no_garbage_is_collected_while_a_function_is_compiled_and_then_it_is_again(
@@ -131,14 +145,7 @@ class Halved(NamedTuple):
     value: float
 
 
-def test_what_is_chosen_by_type_is_machine_code_in_its_callers_alone(tmp_path, monkeypatch):
-    monkeypatch.setenv(VARIABLE, str(tmp_path))
-    finalize, made = JITCodeLibrary._finalize_final_module, []
-
-    def counted(library):
-        made.append(library.name)
-        finalize(library)
-
+def test_what_is_chosen_by_type_is_machine_code_in_its_callers_alone(made):
     @by_type()
     def changed(first, factor):
         """What is made of a value."""
@@ -148,25 +155,16 @@ def test_what_is_chosen_by_type_is_machine_code_in_its_callers_alone(tmp_path, m
         return factor * first.value / 2.0
 
     function = compiler()(lambda first: changed(first, 3.0))
-    monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
     assert function(Halved(4.0)) == 6.0
     assert not any("halved" in name for name in made) and made
 
 
-def test_functions_of_numbas_own_are_machine_code_in_their_callers_alone(tmp_path, monkeypatch):
-    monkeypatch.setenv(VARIABLE, str(tmp_path))
-    finalize, made = JITCodeLibrary._finalize_final_module, []
-
-    def counted(library):
-        made.append(library.name)
-        finalize(library)
-
+def test_functions_of_numbas_own_are_machine_code_in_their_callers_alone(made):
     def more(value):
         return value
 
     overload(more, strict=False)(lambda value: lambda value: max(value, 1.0) + len(np.zeros(3)))
     function = compiler()(lambda value: more(value))
-    monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
     assert function(0.5) == 4.0 and function(2.0) == 5.0
     assert made and not any("more" in name or "max" in name or "zeros" in name for name in made)
     assert njit(lambda value: more(value) * max(value, 1.0))(2.0) == 10.0
