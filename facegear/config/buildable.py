@@ -6,7 +6,8 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.config.bodies import SingleGear, SinglePinion
-from facegear.config.lumped_model import Described, ToothNumbers, described, half_backlash
+from facegear.config.lumped_model import Described, described, half_backlash
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.transmission.assembly import Assembly, assembly, squeezed

@@ -21,7 +21,8 @@ from facegear.config.changes import (
 )
 from facegear.config.contact import Contact
 from facegear.config.lubrication import LubricationSection
-from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque
+from facegear.config.lumped_model import given_torques, other_gear_torque
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study

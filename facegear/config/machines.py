@@ -7,7 +7,8 @@ from typing import Any
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.lumped_model import ToothNumbers, lumped_sections, machine
+from facegear.config.lumped_model import machine
+from facegear.config.machine_layout import ToothNumbers, lumped_sections
 from facegear.config.mesh_law import flank_tables
 from facegear.config.transmission import Transmission
 from facegear.gear_body.reduced import ReducedBody

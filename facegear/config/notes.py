@@ -5,7 +5,7 @@ from typing import Any
 
 from facegear.config.buildable import preloads
 from facegear.config.checks import geometric_backlash
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.tooth_pair import ToothPair
 from facegear.geometry.design import BACKLASH_DIFFERS_UM
 

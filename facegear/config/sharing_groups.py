@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from facegear.config.lumped_model import wired_layout
+from facegear.config.machine_layout import wired_layout
 from facegear.load_sharing.groups import load_groups
 
 

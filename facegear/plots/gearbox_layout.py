@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
-from facegear.config.lumped_model import ToothNumbers
-from facegear.config.lumped_model import layout as layout_of
+from facegear.config.machine_layout import ToothNumbers
+from facegear.config.machine_layout import layout as layout_of
 from facegear.config.transmission import Transmission
 from facegear.plots.style import NARROW, styled
 from facegear.transmission.layout import Layout, Role, Side

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.transmission import Transmission
 from facegear.plots.gearbox_layout import layout_figure
 from facegear.plots.style import NARROW, styled

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from facegear.arrays import Array
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.shafts import ShaftSection
 from facegear.config.transmission import Transmission
 from facegear.plots.style import NARROW, styled

@@ -41,7 +41,7 @@ class ShaftsResult(Result):
 
         Raises FacegearError where no pinion has a shaft.
         """
-        from facegear.config.lumped_model import lumped_sections
+        from facegear.config.machine_layout import lumped_sections
         from facegear.plots.shafts import figures
 
         pair = self.values["tooth_pair"]

@@ -7,7 +7,7 @@ import pandas as pd
 from facegear.arrays import Arrays
 from facegear.config.branches import Branches, branch_plan
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.dynamics.branches import operating_tables, tables

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.strength import Strength
 from facegear.config.transmission import Transmission

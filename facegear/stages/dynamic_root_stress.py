@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.lumped_model import ToothNumbers, stiffness_phases
+from facegear.config.lumped_model import stiffness_phases
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome

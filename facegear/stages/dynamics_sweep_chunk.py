@@ -4,7 +4,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model

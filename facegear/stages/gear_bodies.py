@@ -8,7 +8,8 @@ import pandas as pd
 
 from facegear.config.elastic_bodies import contact_patch, elastic_gears, fitted_shape
 from facegear.config.gear_body import BodySection
-from facegear.config.lumped_model import ToothNumbers, given_torques, layout
+from facegear.config.lumped_model import given_torques
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError

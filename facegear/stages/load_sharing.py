@@ -6,7 +6,7 @@ import pandas as pd
 from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.load_sharing.run import load_sharing as shared

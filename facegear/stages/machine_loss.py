@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.arrays import Array, Arrays
 from facegear.config.lubrication import LubricationSection, limits_of
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.strength import Strength
 from facegear.config.tooth_pair import ToothPair

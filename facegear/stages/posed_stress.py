@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Arrays
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.config.transmission import Transmission

@@ -10,7 +10,7 @@ from facegear.config.changes import GAPS, MODULI, without
 from facegear.config.checks import geometric_backlash
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.contact_setup import contact_setup
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.mesh import Mesh
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.config.tooth_pair import ToothPair, materials, pair_design

@@ -10,7 +10,7 @@ import numpy as np
 from facegear.config.base import parse
 from facegear.config.changes import movable, moved, placed, variable_part
 from facegear.config.checks import check_positions
-from facegear.config.lumped_model import wired_layout
+from facegear.config.machine_layout import wired_layout
 from facegear.config.search import ObjectiveSection, Search, jump_range
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.tooth_pair import ToothPair

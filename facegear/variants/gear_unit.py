@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.model import Config
 from facegear.errors import ConfigError, FacegearError
 from facegear.exchange.rexs import Shaft, Spur, Unit, read_rexs

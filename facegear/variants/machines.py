@@ -14,7 +14,8 @@ from facegear.config.dynamics import Accuracy, settings
 from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lubrication import LubricationSection, limits_of
-from facegear.config.lumped_model import ToothNumbers, described, machine
+from facegear.config.lumped_model import described, machine
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.mesh_law import tables_of
 from facegear.config.transmission import Transmission
 from facegear.dynamics.motion import Settings

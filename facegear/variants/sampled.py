@@ -16,7 +16,7 @@ from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.changes import movable, moved, variable_part
 from facegear.config.lubrication import LubricationSection
-from facegear.config.lumped_model import wired_layout
+from facegear.config.machine_layout import wired_layout
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.tooth_pair import ToothPair
 from facegear.errors import FacegearError

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.harmonics.series import Harmonics
 
 TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)

@@ -1,6 +1,6 @@
 """Branches of periodic motions: error against tolerance, and cost of an orbit against settling."""
 
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.progress import Progress

@@ -3,7 +3,7 @@
 import pandas as pd
 
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays

@@ -1,7 +1,7 @@
 """Cost and error of sweeps against settings."""
 
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.progress import Progress

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.plots.style import save

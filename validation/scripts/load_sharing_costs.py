@@ -2,7 +2,7 @@
 
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.progress import Progress

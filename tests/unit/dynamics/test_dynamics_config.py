@@ -5,7 +5,8 @@ import pytest
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Dynamics, settings, sweep_plan
-from facegear.config.lumped_model import ToothNumbers, layout, machine
+from facegear.config.lumped_model import machine
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
 from facegear.harmonics.series import Harmonics

@@ -11,7 +11,7 @@ from facegear.config.base import parse
 from facegear.config.elastic_bodies import body_shape, crosses_rectangle
 from facegear.config.gear_body import BodySection
 from facegear.config.load import load_config
-from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.model import Config
 from facegear.errors import ConfigErrors
 from facegear.gear_body.mesh import body_mesh, reentrant

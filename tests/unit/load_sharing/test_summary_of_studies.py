@@ -8,7 +8,7 @@ from references import against, agrees
 
 from facegear.config.base import parse
 from facegear.config.load import load_config
-from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.transmission import Transmission
 from facegear.io.files import write_part
 from facegear.load_sharing.study_forces import force_table

@@ -7,7 +7,7 @@ import pytest
 
 import facegear
 from facegear.config.changes import TEETH
-from facegear.config.lumped_model import wired_layout
+from facegear.config.machine_layout import wired_layout
 from facegear.plots.gearbox_layout import HALF_FACE, layout_figure
 
 

@@ -12,7 +12,7 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 import facegear
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.errors import ConfigErrors, InvalidInput
 from facegear.geometry.conjugate import contact_at

@@ -7,7 +7,7 @@ from references import against, agrees
 from test_operating_pose import MESHES, POSE_AND_LOAD
 
 import facegear
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.strength import Strength
 from facegear.config.tooth_pair import pair_design
 from facegear.config.transmission import Transmission

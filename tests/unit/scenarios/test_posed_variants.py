@@ -5,7 +5,7 @@ import pytest
 
 import facegear
 from facegear.config.base import parse
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors

@@ -10,7 +10,7 @@ import pytest
 import facegear
 from facegear.config.base import parse
 from facegear.config.load import load_config
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.model import resolved
 from facegear.config.tooth_pair import ToothPair

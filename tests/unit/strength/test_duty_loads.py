@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 import facegear
-from facegear.config.lumped_model import lumped_sections
+from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors

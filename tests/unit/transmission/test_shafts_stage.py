@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 
 import facegear
 from facegear.config.base import parse
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machine_layout import ToothNumbers
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
