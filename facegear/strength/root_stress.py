@@ -82,14 +82,19 @@ def root_stress(
     """
     shape, count = angle.shape, len(positions)
     teeth = np.arange(min(loads) - 1, max(loads) + 2) if teeth is None else teeth
-    stress = np.zeros((len(teeth), len(torques) * count, readings.shape[1]))
+    stress = np.zeros((len(teeth), len(torques), count, readings.shape[1]))
     reach = len(readings) // 2
+    by_node = np.ascontiguousarray(readings.swapaxes(1, 2))
     for tooth, force in loads.items():
-        cases, nodes = np.flatnonzero(np.diff(force.indptr)), np.unique(force.indices)
-        pressed = force[cases][:, nodes].toarray()
-        for row in np.flatnonzero(np.abs(teeth - tooth) <= reach):
-            stress[row, cases] -= pressed @ readings[teeth[row] - tooth + reach][:, nodes].T
-    by_torque = stress.reshape(len(teeth), len(torques), count, -1).swapaxes(0, 1)
+        near = np.flatnonzero(np.abs(teeth - tooth) <= reach)
+        for position in range(count):
+            # the torques of a position press on few nodes, and on much the same ones
+            here = force[position::count]
+            cases, nodes = np.flatnonzero(np.diff(here.indptr)), np.unique(here.indices)
+            pressed = here[cases][:, nodes].toarray()
+            for row in near:
+                stress[row, cases, position] -= pressed @ by_node[teeth[row] - tooth + reach, nodes]
+    by_torque = stress.swapaxes(0, 1)
     passage = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),
