@@ -7,6 +7,7 @@ import pytest
 from references import against, agrees
 
 from validation.contact.pair_peer import CLOSE
+from validation.contact.refinement_levels import CUTS, DEFAULT, FINEST, LINEAR, SECTORS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "contact.md").read_text()
@@ -35,6 +36,53 @@ def pair_rows():
         cells = [f"{value:{form}} ({error:+.1f} %)" for value, error, form in numbers]
         costs = f"{one.cpu_seconds:.0f} | {one.memory_gb:.2f}"
         yield f"| {one.program} | {one.level} | {1e-3 * one.dof:.0f} | {' | '.join(cells)} | {costs} |"
+
+
+def levels():
+    """Rows of a level: its largest errors of all torques (percent), and what it costs."""
+    table = pd.read_csv(MEASURED / "contact.csv")
+    errors = table.set_index("level")[["mean_error_percent", "amplitude_1_error_percent"]]
+    found = table.groupby("level").first()
+    found[["mean", "first"]] = errors.abs().groupby("level").max()
+    return found
+
+
+def percent(value):
+    """Two digits of an error in percent."""
+    return f"{value:.{2 if value < 0.995 else 1 if value < 9.95 else 0}f} %"
+
+
+def level_rows():
+    for level, one in levels().loc[list(CUTS)].iterrows():
+        resolution, cuts = level.split("_")
+        name = f"{resolution} {cuts.replace('x', ' x ')}"
+        name = {DEFAULT: f"**{name}** (default)", FINEST: f"{name}, the finest"}.get(level, name)
+        errors = " | " if level == FINEST else f" {percent(one['mean'])} | {percent(one['first'])} "
+        steps = " + ".join(f"{one[f'{step}_s']:.1f}" for step in ("assembly", "factorisation", "compliance"))
+        yield (
+            f"| {name} | {1e-6 * one['dof']:.2f} M |{errors}| {steps} + {one['contact_s']:.2f} | "
+            f"{one['total_s']:.1f} | {one['memory_gb']:.1f} |"
+        )
+
+
+def simpler_rows():
+    """Two levels a row: sectors, then elements with fewer nodes."""
+    found = levels()
+    for texts, pair in (("5-tooth sectors / 9", SECTORS), ("8-node hexahedra / tetrahedra", LINEAR)):
+        both = found.loc[list(pair)]
+        errors = (" / ".join(percent(value) for value in both[name]) for name in ("mean", "first"))
+        seconds = " / ".join(f"{value:.1f}" for value in both["total_s"])
+        yield f"| coarse 3 x 1 x 2, {texts} | 0.11 M | {' | '.join(errors)} | | {seconds} | 0.8 |"
+
+
+@pytest.mark.parametrize("message", [*level_rows(), *simpler_rows()])
+def test_a_row_about_a_resolution_is_the_stored_measurement(message):
+    assert message in PAGE
+
+
+def test_the_time_of_a_contact_on_the_page_is_the_stored_one():
+    seconds = levels().loc[DEFAULT, "contact_s_per_position_and_load"]
+    assert f"{1e3 * seconds:.1f} ms a position and torque" in PAGE
 
 
 @pytest.mark.parametrize("message", list(pair_rows()))
