@@ -85,15 +85,16 @@ def root_stress(
     stress = np.zeros((len(teeth), len(torques), count, readings.shape[1]))
     reach = len(readings) // 2
     by_node = np.ascontiguousarray(readings.swapaxes(1, 2))
-    for tooth, force in loads.items():
-        near = np.flatnonzero(np.abs(teeth - tooth) <= reach)
-        for position in range(count):
-            # the torques of a position press on few nodes, and on much the same ones
-            here = force[position::count]
-            cases, nodes = np.flatnonzero(np.diff(here.indptr)), np.unique(here.indices)
-            pressed = here[cases][:, nodes].toarray()
-            for row in near:
-                stress[row, cases, position] -= pressed @ by_node[teeth[row] - tooth + reach, nodes]
+    for position in range(count):
+        # the torques of a position press on few nodes, and on much the same ones
+        here = {tooth: force[position::count] for tooth, force in loads.items()}
+        nodes = {tooth: np.unique(force.indices) for tooth, force in here.items()}
+        pressed = {tooth: -force[:, nodes[tooth]].toarray() for tooth, force in here.items()}
+        for row, read in enumerate(teeth):
+            felt = [tooth for tooth in loads if abs(read - tooth) <= reach]
+            if felt:
+                readings_here = np.vstack([by_node[read - tooth + reach, nodes[tooth]] for tooth in felt])
+                stress[row, :, position] = np.hstack([pressed[tooth] for tooth in felt]) @ readings_here
     by_torque = stress.swapaxes(0, 1)
     passage = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(

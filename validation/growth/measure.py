@@ -15,7 +15,8 @@ from facegear.arrays import Array
 
 LONG = 2.0
 """Seconds of a call from which on once is enough; shorter ones are repeated."""
-REPEATS = 4
+REPEATS, TOGETHER = 4, 1.0
+"""How often at least, and for how many seconds together."""
 NEGLIGIBLE_MB = 10.0
 """Memory below this cannot be distinguished from what the process itself takes."""
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "MKL", "OPENBLAS", "NUMBA")}
@@ -31,7 +32,7 @@ def measured(name: str, number: int) -> dict[str, float]:
     curve = CURVES[name]
     size, call = curve.prepare(curve.values[number])
     seconds: list[float] = []
-    while not seconds or (max(seconds) < LONG and len(seconds) < REPEATS):
+    while not seconds or (max(seconds) < LONG and (len(seconds) < REPEATS or sum(seconds) < TOGETHER)):
         _forget_peak()
         before, begin = _memory_mb("VmRSS"), time.process_time()
         result = call()
