@@ -15,8 +15,8 @@ from facegear.arrays import Array
 
 LONG = 2.0
 """Seconds of a call from which on once is enough; shorter ones are repeated."""
-REPEATS, TOGETHER = 4, 1.0
-"""How often at least, and for how many seconds together."""
+REPEATS, TOGETHER = 4, 3.0
+"""How often at least, and for how many seconds together: a process does not run at its full speed at once."""
 NEGLIGIBLE_MB = 10.0
 """Memory below this cannot be distinguished from what the process itself takes."""
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "MKL", "OPENBLAS", "NUMBA")}
