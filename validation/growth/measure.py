@@ -17,8 +17,10 @@ LONG = 2.0
 """Seconds of a call from which on once is enough; shorter ones are repeated."""
 REPEATS, TOGETHER = 4, 1.0
 """How often at least, and for how many seconds together."""
-PROCESSES = 3
-"""Of a point with short calls: the memory that a process is given decides up to a third of their time."""
+PROCESSES, SHORT = 3, 0.5
+"""Of a point whose calls take no more seconds than this: the memory that a process is given decides up to a
+third of their time.
+"""
 NEGLIGIBLE_MB = 10.0
 """Memory below this cannot be distinguished from what the process itself takes."""
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "MKL", "OPENBLAS", "NUMBA")}
@@ -71,7 +73,7 @@ def growth_table(sizes: Mapping[str, int], step: Callable[[], None] = lambda: No
     for name, count in sizes.items():
         for number in range(count):
             points = [_in_a_process(name, number)]
-            while points[0]["called_s"] < LONG and len(points) < PROCESSES:
+            while points[0]["called_s"] < SHORT and len(points) < PROCESSES:
                 points.append(_in_a_process(name, number))
             quickest = min(points, key=lambda point: point["seconds"])
             largest = max(point["seconds"] for point in points)
