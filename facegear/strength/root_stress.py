@@ -82,7 +82,7 @@ def root_stress(
     """
     shape, count = angle.shape, len(positions)
     teeth = np.arange(min(loads) - 1, max(loads) + 2) if teeth is None else teeth
-    stress = np.zeros((len(teeth), len(torques), count, readings.shape[1]))
+    stress = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
     reach = len(readings) // 2
     by_node = np.ascontiguousarray(readings.swapaxes(1, 2))
     for position in range(count):
@@ -94,13 +94,12 @@ def root_stress(
             felt = [tooth for tooth in loads if abs(read - tooth) <= reach]
             if felt:
                 readings_here = np.vstack([by_node[read - tooth + reach, nodes[tooth]] for tooth in felt])
-                stress[row, :, position] = np.hstack([pressed[tooth] for tooth in felt]) @ readings_here
-    by_torque = stress.swapaxes(0, 1)
+                stress[:, row, position] = np.hstack([pressed[tooth] for tooth in felt]) @ readings_here
     passage = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),
         passage=passage,
-        stress=by_torque.reshape(len(torques), passage.size, *shape),
+        stress=stress.reshape(len(torques), passage.size, *shape),
         along=along,
         angle=angle,
         error=np.full(len(along), np.nan) if error is None else error,
