@@ -85,16 +85,16 @@ def root_stress(
     stress = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
     reach = len(readings) // 2
     by_node = np.ascontiguousarray(readings.swapaxes(1, 2))
+    felt = [[tooth for tooth in loads if abs(read - tooth) <= reach] for read in teeth]
     for position in range(count):
         # the torques of a position press on few nodes, and on much the same ones
         here = {tooth: force[position::count] for tooth, force in loads.items()}
         nodes = {tooth: np.unique(force.indices) for tooth, force in here.items()}
         pressed = {tooth: -force[:, nodes[tooth]].toarray() for tooth, force in here.items()}
         for row, read in enumerate(teeth):
-            felt = [tooth for tooth in loads if abs(read - tooth) <= reach]
-            if felt:
-                readings_here = np.vstack([by_node[read - tooth + reach, nodes[tooth]] for tooth in felt])
-                stress[:, row, position] = np.hstack([pressed[tooth] for tooth in felt]) @ readings_here
+            if near := felt[row]:
+                here_read = np.vstack([by_node[read - tooth + reach, nodes[tooth]] for tooth in near])
+                stress[:, row, position] = np.hstack([pressed[tooth] for tooth in near]) @ here_read
     passage = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),

@@ -21,6 +21,7 @@ PROCESSES, SHORT = 3, 0.5
 """Of a point whose calls take no more seconds than this: the memory that a process is given decides up to a
 third of their time.
 """
+COLUMNS = ["curve", "size", "seconds", "seconds_largest", "peak_mb", "own_mb", "load"]
 NEGLIGIBLE_MB = 10.0
 """Memory below this cannot be distinguished from what the process itself takes."""
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "MKL", "OPENBLAS", "NUMBA")}
@@ -76,20 +77,13 @@ def growth_table(sizes: Mapping[str, int], step: Callable[[], None] = lambda: No
             while points[0]["called_s"] < SHORT and len(points) < PROCESSES:
                 points.append(_in_a_process(name, number))
             quickest = min(points, key=lambda point: point["seconds"])
-            largest = max(point["seconds"] for point in points)
-            rows.append(
-                {
-                    "curve": name,
-                    "size": quickest["size"],
-                    "seconds": quickest["seconds"],
-                    "seconds_largest": largest,
-                    "peak_mb": quickest["peak_mb"],
-                    "own_mb": quickest["own_mb"],
-                    "load": os.getloadavg()[0],
-                }
-            )
+            of_processes = {
+                "seconds_largest": max(point["seconds"] for point in points),
+                "load": os.getloadavg()[0],
+            }
+            rows.append({"curve": name, **quickest, **of_processes})
             step()
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows)[COLUMNS]
 
 
 def _in_a_process(name: str, number: int) -> dict[str, float]:

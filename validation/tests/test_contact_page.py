@@ -72,7 +72,10 @@ def simpler_rows():
         both = found.loc[list(pair)]
         errors = (" / ".join(percent(value) for value in both[name]) for name in ("mean", "first"))
         seconds = " / ".join(f"{value:.1f}" for value in both["total_s"])
-        yield f"| coarse 3 x 1 x 2, {texts} | 0.11 M | {' | '.join(errors)} | | {seconds} | 0.8 |"
+        dof, memory = 1e-6 * both["dof"].max(), both["memory_gb"].max()
+        yield (
+            f"| coarse 3 x 1 x 2, {texts} | {dof:.2f} M | {' | '.join(errors)} | | {seconds} | {memory:.1f} |"
+        )
 
 
 @pytest.mark.parametrize("message", [*level_rows(), *simpler_rows()])
