@@ -199,11 +199,22 @@ def limits_of(section: LubricationSection) -> Limits:
     scuffing = section.scuffing
     return Limits(
         contact_temperature=scuffing.temperature_c or section.oil.scuffing_temperature_c,
+        contact_temperature_source=_source_of_contact_temperature(section),
         fzg_stage=scuffing.fzg_stage or section.oil.fzg_stage,
         structure_factor=scuffing.structure_factor,
         lubricant_factor=section.friction.lubricant_factor or section.oil.lubricant_factor,
         film_ratio=section.allowed_film_ratio,
     )
+
+
+def _source_of_contact_temperature(section: LubricationSection) -> str:
+    """Where the allowed contact temperature is from, in words."""
+    if section.scuffing.temperature_c:
+        return "lubrication.scuffing.temperature_c"
+    if section.oil.scuffing_temperature_c:
+        return section.oil.scuffing_temperature_source or f"oil card: {section.oil.source}"
+    stage = section.scuffing.fzg_stage or section.oil.fzg_stage
+    return "not given" if stage is None else f"FZG load stage {stage:g}"
 
 
 def map_speeds(section: LubricationSection, nominal_rpm: float) -> tuple[float, ...]:

@@ -61,6 +61,9 @@ class OilCard(Section):
     scuffing_temperature_c: float | None = Field(
         None, gt=0, le=1000, description="mean contact temperature at which tests scuffed"
     )
+    scuffing_temperature_source: str | None = Field(
+        None, description="where this temperature is from, for the table of safeties; null: source"
+    )
     fzg_stage: float | None = Field(None, ge=1, le=14, description="FZG failure load stage A/8.3/90")
 
     @model_validator(mode="after")

@@ -11,6 +11,9 @@ from facegear.config.transmission_error import TransmissionError
 
 MAX_PINIONS = 60
 
+GEAR_NAMES = ("lower face gear", "upper face gear")
+"""Names of the face gears among the bodies of every table; no pinion may share one of them."""
+
 
 class PinionPlace(Section):
     """One pinion: where it stands, what it does, and its torque if not the role's."""
@@ -228,6 +231,9 @@ class Transmission(Section):
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) < len(names):
             refuse("pinions", names, "names that differ from pinion to pinion")
+        for number, name in enumerate(names):
+            if name in GEAR_NAMES:
+                refuse(f"pinions.{number}.name", name, f"another name than {' or '.join(GEAR_NAMES)}")
         if len(set(self.face_gears)) < len(self.face_gears):
             refuse("face_gears", list(self.face_gears), "lower, upper, or both once")
         output = "upper" if "upper" in self.face_gears else self.face_gears[0]

@@ -115,7 +115,7 @@ def _variables(machine: Machine, speed_rpm: float) -> list[Variable]:
             Variable(f"torque_{body}", f"Torque on {body}", "N.m", float(torque))
             for body, torque in zip(bodies, machine.torques, strict=True)
         ),
-        *(Variable(f"deflection_{name}", f"Deflection {place}", "m") for name, place in contacts),
+        *(Variable(f"deflection_{name}", f"Deflection {edges}", "m") for name, edges in contacts),
         *(Variable(f"force_{name}", "Elastic force along the line of action", "N") for name, _ in contacts),
         *(
             Variable(f"bearing_{body}_{letter}", f"Force of {body} on its bearing along {letter}", "N")
@@ -131,18 +131,18 @@ def unique_words(names: Sequence[str]) -> list[str]:
     """Return each name with `_` for all but letters and digits; words that become equal are numbered.
 
     FMI asks for unique names of variables. The first of equal words stays as it is; the others end in the
-    lowest number from 2 on that no other variable has.
+    smallest number from 2 on that no other variable has.
     """
     words = [re.sub(r"\W+", "_", name) for name in names]
     taken = set(words)
-    found: list[str] = []
+    numbered_words: list[str] = []
     for word in words:
         unique = word
-        if word in found:
-            unique = next(numbered for n in count(2) if (numbered := f"{word}_{n}") not in taken)
+        if word in numbered_words:
+            unique = next(candidate for n in count(2) if (candidate := f"{word}_{n}") not in taken)
             taken.add(unique)
-        found.append(unique)
-    return found
+        numbered_words.append(unique)
+    return numbered_words
 
 
 def _header(model: Model, speed_rpm: float) -> str:

@@ -38,7 +38,9 @@ class LoadHistory:
         return load_groups(self.machine.layout)
 
     def coefficients(self, group: LoadGroup) -> Array:
-        """Largest load of a group over its mean (K,); nan where none carries any."""
+        """Largest load of a group over its mean (K,); nan where none carries any, or nothing is split."""
+        if not group.splits_load:
+            return np.full(len(self.loads), np.nan)
         return sharing_coefficient(self.loads[:, list(group.meshes)])
 
     @property

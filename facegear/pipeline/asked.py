@@ -180,15 +180,22 @@ def branches(case: Case) -> bool:
 
 
 def shares_load(case: Case) -> bool:
-    """Whether some meshes share a load."""
-    from facegear.config.sharing_groups import group_kinds
+    """Whether the machine splits a load among some of its meshes."""
+    from facegear.config.sharing_groups import split_kinds
 
-    return machine(case) and bool(group_kinds(case.values))
+    return machine(case) and bool(split_kinds(case.values))
+
+
+def grouped(case: Case) -> bool:
+    """Whether several pinions do the same."""
+    from facegear.config.sharing_groups import has_groups
+
+    return machine(case) and has_groups(case.values)
 
 
 def hunting(case: Case) -> bool:
-    """Whether some meshes share a load, with geometric kinematics."""
-    return shares_load(case) and case.values["transmission"]["mesh_kinematics"] == "geometric"
+    """Whether several pinions do the same, with geometric kinematics."""
+    return grouped(case) and case.values["transmission"]["mesh_kinematics"] == "geometric"
 
 
 def following(case: Case) -> bool:

@@ -28,7 +28,7 @@ ROWS = (
             "summary": File("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
             "forces": File("load_sharing/forces.csv", ("mean_n", "largest_n"), text=("mesh", "group")),
         },
-        asked=asked.shares_load,
+        asked=asked.grouped,
     ),
     Stage(
         name="load_sharing_summary",

@@ -118,6 +118,10 @@ HARMONIC = {"order": 1, "amplitude_um": 1.0}
             {"transmission__pinions__1__torque_n_m": -1e6},
             "[1].torque_n_m = -1000000.0: must be at most",
         ),
+        (
+            {"transmission__pinions__1__name": "lower face gear"},
+            'transmission.pinions.1.name = "lower face gear": must be another name than lower face gear or',
+        ),
         ({"contact__torques_n_m": [150.0, 1e6]}, "contact.torques_n_m = 1000000.0: must be at most"),
         (
             {"tooth_pair__pinion__lead_crowning": {"amount_um": 20.0, "start_mm": 12.0, "length_mm": 8.0}},
