@@ -79,7 +79,7 @@ def test_an_error_is_either_given_or_from_contact(error, line):
     ],
 )
 def test_an_error_from_contact_is_refused_where_stiffness_is_given(changes):
-    given = {"mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4e8}]}}
+    given = {"mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "cos_n_per_m": 4e8}]}}
     with pytest.raises(ConfigErrors, match="no contact analysis gives e"):
         facegear.example().with_values(given | changes)
 
