@@ -63,14 +63,14 @@ class MeshStiffness(Section):
     )
     mean_n_per_m: float | None = Field(
         default=None,
-        gt=0,
+        ge=1,
         le=1e12,
         description="fem_scaled: required; harmonics: required unless order 0 gives it; fem: for the modes "
         "only, which take the computed mean without it",
     )
     torque_n_m: float | None = Field(
         default=None,
-        gt=0,
+        ge=1e-6,
         le=1e7,
         description="load on the pinion per mesh at which k is taken, within contact.torques_n_m; null: the "
         "largest of them",
@@ -84,7 +84,9 @@ class MeshStiffness(Section):
     definition: Literal["average", "local"] = Field(
         default="average", description="F / deflection, or its slope dF / d deflection at that load"
     )
-    harmonics_kept: int = Field(default=8, ge=0, le=MAX_ORDER)
+    harmonics_kept: int = Field(
+        default=8, ge=0, le=MAX_ORDER, description="largest order of k(t) that is kept"
+    )
     variation: float = Field(
         default=1.0, ge=0, le=100, description="factor on k(t) about its mean; 1: as computed or given"
     )
@@ -101,6 +103,7 @@ class MeshStiffness(Section):
     csv_pitch_deg: float | None = Field(
         default=None,
         gt=0,
+        le=1e6,
         exclude=True,
         description="left out: the pitch that the angles of a csv cover, which must be that of the pinion",
     )

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import combinations
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
+FigureNumber = Annotated[int, Field(ge=1, le=999)]
 
 
 class StudyPoint(Section):
@@ -97,7 +98,7 @@ class Study(Section):
     axes: tuple[Axis, ...] = Field(
         min_length=1, max_length=2, description="one axis, or two for every combination of their points"
     )
-    figures: tuple[int, int] | None = Field(
+    figures: tuple[FigureNumber, FigureNumber] | None = Field(
         None,
         description="numbers of these figures in the publication that the config reproduces: inputs, idlers",
     )
