@@ -258,7 +258,7 @@ class Gearbox:
         Raises ConfigError for a load outside those of the contact analysis.
 
         >>> import facegear
-        >>> facegear.example().stiffness().table()["b_n_per_m"].round(-3).to_list()[0]
+        >>> facegear.example().stiffness().table()["cos_n_per_m"].round(-3).to_list()[0]
         410000000.0
         """
         from facegear.results.stiffness import StiffnessResult

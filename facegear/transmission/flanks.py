@@ -266,7 +266,7 @@ def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Arra
 
 def mirrored(series: Harmonics) -> Harmonics:
     """The series of f(-t)."""
-    return Harmonics(-series.a, series.b)
+    return Harmonics(-series.sine, series.cosine)
 
 
 @kept_by_content(8)
