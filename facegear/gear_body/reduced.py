@@ -98,9 +98,14 @@ class ReducedBody:
         """All of it by names that begin with the gear's."""
         return {f"{gear}_{own.name}": getattr(self, own.name) for own in fields(self)}
 
-    def own_residual(self, direction: Array) -> float:
-        """What a flank gives way under its own force beyond the modes, m/N; direction (2,) of the force.
+    def residual_of_flanks(self, directions: Array) -> Array:
+        """Return the compliance (f, f) between flanks of one mesh that the modes leave out, m/N.
+
+        Parameters
+        ----------
+        directions : (f, 2)
+            Axial and tangential part of a unit force on each flank.
 
         Motions along the axis and round it are a quarter wave apart, so that they do not mix.
         """
-        return float(direction**2 @ np.diagonal(self.residual.sum(axis=0)))
+        return np.asarray((directions * np.diagonal(self.residual.sum(axis=0))) @ directions.T)

@@ -23,12 +23,14 @@ def body_table(
     gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array
 ) -> pd.DataFrame:
     """One row: mass (kg) and inertia (kg m2) of the section, coordinates that its modes make, own compliance
-    along the line of action (m/N), the part of it that the modes hold, the largest compliance between two
-    flanks at angles (n,) rad that they do not hold (m/N), and the largest relative change of a frequency from
-    a coarser mesh.
+    along the line of action (m/N), the part of it that the modes hold, compliances that they leave out (m/N,
+    magnitudes): between the drive and the back flank of one mesh, and the largest one between flanks of two
+    meshes at angles (n,) rad, NaN for a single mesh; and the largest relative change of a frequency from a
+    coarser mesh.
     """
     mass, polar, diametral, _ = section_properties(body.section)
-    drive = flank_direction(pressure_angle)
+    drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
+    missing = body.static(patch) - body.modal(patch)
     whole = influence(body.static(patch), 0.0, drive, drive)
     changes = np.concatenate([*body.changes, np.zeros(1)])
     waves = sum(modes.frequencies.size * (2 if modes.order else 1) for modes in body.orders)
@@ -42,19 +44,21 @@ def body_table(
             "coordinates": [waves],
             "own_compliance_m_per_n": [whole],
             "modal_fraction": [influence(body.modal(patch), 0.0, drive, drive) / whole],
-            "left_out_between_m_per_n": [_left_out(body, patch, pressure_angle, angles)],
+            "left_out_between_flanks_m_per_n": [abs(influence(missing, 0.0, drive, back))],
+            "left_out_between_meshes_m_per_n": [_left_out(missing, drive, back, angles)],
             "frequency_change": [float(changes.max())],
         }
     )
 
 
-def _left_out(body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array) -> float:
-    """Largest influence between two flanks, of one mesh or of two, that the modes do not hold, m/N."""
-    missing = body.static(patch) - body.modal(patch)
-    drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
+def _left_out(missing: Array, drive: Array, back: Array, angles: Array) -> float:
+    """Return the largest influence (m/N) between flanks of two meshes by compliances (orders, 2, 2).
+
+    drive, back (2,): directions of a force on either flank; angles (n,) of the meshes, rad.
+    """
     apart = (angles[:, None] - angles)[~np.eye(angles.size, dtype=bool)]
-    pairs = [(0.0, back), *((angle, other) for angle in apart.tolist() for other in (drive, back))]
-    return max(abs(influence(missing, angle, drive, other)) for angle, other in pairs)
+    pairs = [(angle, other) for angle in apart.tolist() for other in (drive, back)]
+    return max((abs(influence(missing, angle, drive, other)) for angle, other in pairs), default=np.nan)
 
 
 def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: float) -> pd.DataFrame:

@@ -83,11 +83,25 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
     assert solved == [0.06, 0.03, 0.06, 0.03]
 
 
-def test_what_the_modes_leave_out_between_flanks_is_less_than_at_a_flank_itself(outcome):
-    bodies = outcome.content["bodies"]
-    own = (1.0 - bodies["modal_fraction"]) * bodies["own_compliance_m_per_n"]
-    assert (bodies["left_out_between_m_per_n"] > 0.0).all()
-    assert (bodies["left_out_between_m_per_n"] < own).all()
+def test_what_modes_leave_out_between_flanks_of_one_mesh_and_of_two_are_columns_of_their_own(outcome):
+    """Both from sums of cosines and sines over the orders; the first is by far the larger."""
+    bodies = outcome.content["bodies"].set_index("gear")
+    angles = 2 * np.pi * np.array([0, 22.5, 45.5, 97.5, 120.5]) / 143
+    apart = (angles[:, None] - angles)[~np.eye(5, dtype=bool)]
+    s, c = np.sin(np.radians(25.0)), np.cos(np.radians(25.0))
+    for gear in ("lower", "upper"):
+        left = ReducedBody.of_arrays(outcome.content["reduced"], gear).residual
+        axial, around, mixed = left[:, 0, 0], left[:, 1, 1], left[:, 0, 1]
+        orders = np.outer(apart, np.arange(len(left)))
+        alike = np.cos(orders) @ (s**2 * axial + c**2 * around)
+        across = np.cos(orders) @ (s**2 * axial - c**2 * around) + np.sin(orders) @ (2 * s * c * mixed)
+        one_mesh = abs((s**2 * axial - c**2 * around).sum())
+        two_meshes = max(np.abs(alike).max(), np.abs(across).max())
+        found = bodies.loc[gear]
+        assert found["left_out_between_flanks_m_per_n"] == pytest.approx(one_mesh, rel=1e-9)
+        assert found["left_out_between_meshes_m_per_n"] == pytest.approx(two_meshes, rel=1e-9)
+        own = (1.0 - found["modal_fraction"]) * found["own_compliance_m_per_n"]
+        assert two_meshes < one_mesh < own
 
 
 def test_own_compliance_is_the_sum_over_the_orders_along_the_line_of_action(outcome):
@@ -147,7 +161,7 @@ def test_reduced_bodies_come_back_from_their_arrays(outcome):
     assert body.arrays("upper") == {key: value for key, value in arrays.items() if key.startswith("upper_")}
     static = outcome.content["bodies"].set_index("gear").loc["upper"]
     angle = np.radians(25.0)
-    own = body.own_residual(np.array([-np.sin(angle), np.cos(angle)]))
+    own = body.residual_of_flanks(np.array([[-np.sin(angle), np.cos(angle)]]))[0, 0]
     left = (1.0 - static["modal_fraction"]) * static["own_compliance_m_per_n"]
     assert own == pytest.approx(left, rel=1e-9)
 
