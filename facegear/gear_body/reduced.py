@@ -31,7 +31,9 @@ class ReducedBody:
     static : (orders, 2, 2)
         Compliance H_n below a mesh of W_p and V_p with all modes there are, m/N, from order 0.
     damping_ratio : ()
-        Of every mode, in the steel.
+        Part of the critical damping that every mode has, in the steel.
+    stiffness_damping : ()
+        Factor beta of the stiffness in the damping D = beta K of the steel, s, beside the former.
     pitch_height : ()
         Of the pitch plane over height 0, m.
     slope : (m,)
@@ -57,11 +59,13 @@ class ReducedBody:
     leaning: Array = field(default_factory=lambda: np.zeros(()))
     mass: Array = field(default_factory=lambda: np.zeros(()))
     moment: Array = field(default_factory=lambda: np.zeros(()))
+    stiffness_damping: Array = field(default_factory=lambda: np.zeros(()))
 
     @property
     def damping(self) -> Array:
-        """Damping of every mode for unit modal mass, (m,), 1/s."""
-        return np.asarray(4.0 * np.pi * self.damping_ratio * self.frequency)
+        """Damping of every mode for unit modal mass, 2 zeta w + beta w^2, (m,), 1/s."""
+        w = 2.0 * np.pi * self.frequency
+        return np.asarray(2.0 * self.damping_ratio * w + self.stiffness_damping * w**2)
 
     @property
     def slopes(self) -> Array:
