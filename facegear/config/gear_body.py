@@ -1,5 +1,6 @@
 """Config section `body` of a face gear: hub, web and rim that bend, or any section, and how finely."""
 
+from math import pi
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -11,6 +12,10 @@ from facegear.config.material import MaterialSection
 COLUMNS = ("r_mm", "height_mm")
 MAX_CORNERS = 200
 Corner = Annotated[float, Field(ge=-1e5, le=1e5)]
+DAMPING_RATIO = 0.002
+"""Damping ratio of a body's modes without a value: that of solid steel without joints."""
+MOST_DAMPED = 0.5
+"""Largest damping ratio of a mode."""
 
 
 class HubSection(Section):
@@ -76,7 +81,20 @@ class BodySection(Section):
         10000.0, ge=1, le=1e6, description="modes up to it are kept; what the others give counts as static"
     )
     nodal_diameters: int = Field(12, ge=0, le=40, description="largest number of which modes are kept")
-    damping_ratio: float = Field(0.002, ge=0, le=0.5, description="of every mode, in the steel that turns")
+    damping_ratio: float | None = Field(
+        None,
+        ge=0,
+        le=MOST_DAMPED,
+        description=f"of every mode, in the steel that turns; null: {DAMPING_RATIO}, or none beside "
+        "stiffness_damping_s",
+    )
+    stiffness_damping_s: float | None = Field(
+        None,
+        ge=0,
+        le=1,
+        description="in place of damping_ratio: beta of a damping beta K in proportion to the stiffness of "
+        "the steel that turns; a mode of f Hz then has the damping ratio pi f beta",
+    )
     contact_width_pitches: float = Field(
         4.0, ge=0.01, le=40, description="width of the raised cosine by which a mesh loads the rim; 4 fits"
     )
@@ -104,8 +122,15 @@ class BodySection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "BodySection":
-        require_all(self._check_parts, self._check_edges)
+        require_all(self._check_parts, self._check_edges, self._check_damping)
         return self
+
+    @property
+    def damping(self) -> tuple[float, float]:
+        """Damping ratio of every mode, and the factor beta (s) of the stiffness in the damping."""
+        if self.stiffness_damping_s is not None:
+            return 0.0, self.stiffness_damping_s
+        return DAMPING_RATIO if self.damping_ratio is None else self.damping_ratio, 0.0
 
     def _check_parts(self) -> None:
         if self.corners_mm:
@@ -118,6 +143,18 @@ class BodySection(Section):
         if (self.hub is None) != (self.web is None):
             missing = "hub" if self.hub is None else "web"
             refuse(missing, None, "given: hub and web go together; a rim alone is a disc or ring")
+
+    def _check_damping(self) -> None:
+        beta = self.stiffness_damping_s
+        if beta is None:
+            return
+        if self.damping_ratio is not None:
+            allowed = f"left out where damping_ratio = {self.damping_ratio:g} is given"
+            refuse("stiffness_damping_s", beta, allowed)
+        largest = MOST_DAMPED / (pi * self.max_frequency_hz)
+        if beta > largest:
+            allowed = f"at most {largest:.3g}: a mode of max_frequency_hz then has {MOST_DAMPED:g} of the critical damping"
+            refuse("stiffness_damping_s", beta, allowed)
 
     def _check_edges(self) -> None:
         if self.held_edges and not self.corners_mm:
