@@ -529,6 +529,38 @@ class Gearbox:
         """
         return self._whole_case(on_stage).write(folder)
 
+    def figures(
+        self,
+        folder: str | Path,
+        names: Sequence[str] = (),
+        suffix: str = ".png",
+        on_stage: Callable[[str, str], None] | None = None,
+    ) -> list[Path]:
+        """Draw the figures of the report, from stored results where they are current.
+
+        Parameters
+        ----------
+        folder
+            Where the files go, as `<name><suffix>`.
+        names
+            Names of the figures, such as ``mesh_sweep``; all if empty.
+        suffix
+            Format of the files, one that matplotlib writes (``.png``, ``.svg``, ``.pdf``).
+        on_stage
+            Called with the name of each stage that is computed or read, and its summary.
+
+        Returns
+        -------
+        list of Path
+            The files, in the order of computation.
+
+        Raises
+        ------
+        FacegearError
+            If the case has no figure of such a name.
+        """
+        return self._whole_case(on_stage).write_figures(folder, names, suffix)
+
     def export(self, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
         """Write a model for another program, by the path's ending; returns the path.
 
