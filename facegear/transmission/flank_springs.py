@@ -1,8 +1,8 @@
 """Stiffness of the flanks that carry load, about the place where the torques hold the machine.
 
 Behind the teeth of a mesh lies a body, of which only some modes are kept. What they leave out is a static
-compliance R (2, 2) between the two flanks of the mesh (MacNeal's residual without mass). With the slopes D of
-the teeth of both flanks and the deflections d,
+compliance R (2, 2) between the two flanks of the mesh, the residual of MacNeal 1971 without mass. With the
+slopes D of the teeth of both flanks and the deflections d,
 
     F = S d,   S = (D^-1 + R)^-1 = (1 + D R)^-1 D
 

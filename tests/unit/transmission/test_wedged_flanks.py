@@ -48,7 +48,7 @@ TWO = ("one", Role.INPUT, 0.0), ("two", Role.INPUT, 41.5)
 def wedged_pinions(seed, stiffness=SWUNG, places=TWO):
     """Pinions between two gears that bend, which forces along their axis press on them: all are wedged.
 
-    Modes are random. What they leave out is as soft as the teeth, and not the same along the axis as round it.
+    Modes are random. What they leave out is as soft as the teeth, along the axis other than round it.
     """
     random = np.random.default_rng(seed)
     layout = make_layout(places, kinematics=GEOMETRIC)
