@@ -583,7 +583,8 @@ class Gearbox:
         """Write a model for another program, by the path's ending; returns the path.
 
         STEP or STL (mm): the exact teeth of a body, modifications included; `body`: pinion or face_gear;
-        `teeth`: a sector of so many, the whole gear unless given. FMU: the dynamic model as C sources for
+        `teeth`: a sector of so many, the whole gear unless given; a STEP product has the name of case and
+        body. FMU: the dynamic model as C sources for
         co-simulation (FMI 3.0), at the config's speed. GLB: a glTF scene of all gears in mesh, or of one
         pinion and its gear without a transmission. REXS: pinions, shafts, bearings and material as REXS 2.0,
         which has no face gear; the file names what is lost. CSV: nominal points and normals of all flanks
@@ -606,7 +607,7 @@ class Gearbox:
         with extras_named():
             from facegear.stages.cad import export
 
-            return export(path, body, teeth, self.config.tooth_pair)
+            return export(path, body, teeth, self.config.tooth_pair, self.config.case)
 
     def tolerances(self, samples: int | None = None) -> "TolerancesResult":
         """Percentiles, fractions and Sobol indices of the machine with its tolerances, in one process.

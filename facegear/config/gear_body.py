@@ -63,7 +63,7 @@ class BodySection(Section):
     step: str | None = Field(
         None,
         description="the corners as a STEP file: a solid of revolution about its z axis, or its half section "
-        "at y = 0, x > 0; z is the height",
+        "in any half plane through that axis; z is the height",
     )
     held_edges: tuple[int, ...] = Field(
         (),
