@@ -165,9 +165,8 @@ def _motions(
     design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
 ) -> tuple[RigidMotion, RigidMotion]:
     """Return the motions of both bodies in the mesh frame, from where they were assembled."""
-    return tuple(  # type: ignore[return-value]
-        in_mesh_frame(body_motion(*given), mesh.sign) for given in _turns(design, mesh, pinion, gear)
-    )
+    own, other = _turns(design, mesh, pinion, gear)
+    return in_mesh_frame(body_motion(*own), mesh.sign), in_mesh_frame(body_motion(*other), mesh.sign)
 
 
 def _turns(

@@ -1,9 +1,9 @@
 """Exact pose of a pair: the assembly errors that it meets when both of its bodies have moved."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.geometry.design import AssemblyErrors
@@ -71,7 +71,7 @@ def to_mesh_frame(sign: float) -> Array:
     return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
 
 
-def body_motion(shift: Sequence[float], turn: Sequence[float], pivot: Sequence[float]) -> RigidMotion:
+def body_motion(shift: ArrayLike, turn: ArrayLike, pivot: ArrayLike) -> RigidMotion:
     """A turn about a point by a rotation vector (rad), followed by a shift (m), all (3,) in one frame."""
     vector, point = np.asarray(turn, float), np.asarray(pivot, float)
     angle = float(np.linalg.norm(vector))

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from facegear.arrays import Array, Mask
+from facegear.arrays import Array, Integers, Mask
 from facegear.transmission.flanks import flank_law
 from facegear.transmission.loaded_contacts import LoadedContacts
 from facegear.transmission.machine import Machine
@@ -42,7 +42,7 @@ def flank_springs(machine: Machine, contacts: LoadedContacts, closed: Mask) -> A
     return springs
 
 
-def coupled_meshes(machine: Machine, closed: Mask) -> Array:
+def coupled_meshes(machine: Machine, closed: Mask) -> Integers:
     """Return the numbers of the wedged meshes (n,) whose flanks are coupled by what the modes leave out."""
     if machine.softening is None:
         return np.zeros(0, np.int64)
