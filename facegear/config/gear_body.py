@@ -14,7 +14,7 @@ MAX_CORNERS = 200
 Corner = Annotated[float, Field(ge=-1e5, le=1e5)]
 DAMPING_RATIO = 0.002
 """Damping ratio of a body's modes without a value: that of solid steel without joints."""
-MOST_DAMPED = 0.5
+LARGEST_DAMPING_RATIO = 0.5
 """Largest damping ratio of a mode."""
 
 
@@ -64,7 +64,7 @@ class BodySection(Section):
     step: str | None = Field(
         None,
         description="the corners as a STEP file: a solid of revolution about its z axis, or its half section "
-        "at y = 0, x > 0; z is the height",
+        "in any half plane through that axis; z is the height",
     )
     held_edges: tuple[Annotated[int, Field(ge=1, le=MAX_CORNERS)], ...] = Field(
         (),
@@ -84,7 +84,7 @@ class BodySection(Section):
     damping_ratio: float | None = Field(
         None,
         ge=0,
-        le=MOST_DAMPED,
+        le=LARGEST_DAMPING_RATIO,
         description=f"of every mode, in the steel that turns; null: {DAMPING_RATIO}, or none beside "
         "stiffness_damping_s",
     )
@@ -151,9 +151,10 @@ class BodySection(Section):
         if self.damping_ratio is not None:
             allowed = f"left out where damping_ratio = {self.damping_ratio:g} is given"
             refuse("stiffness_damping_s", beta, allowed)
-        largest = MOST_DAMPED / (pi * self.max_frequency_hz)
+        largest = LARGEST_DAMPING_RATIO / (pi * self.max_frequency_hz)
         if beta > largest:
-            allowed = f"at most {largest:.3g}: a mode of max_frequency_hz then has {MOST_DAMPED:g} of the critical damping"
+            reached = f"a mode of max_frequency_hz then has {LARGEST_DAMPING_RATIO:g} of the critical damping"
+            allowed = f"at most {largest:.3g}: {reached}"
             refuse("stiffness_damping_s", beta, allowed)
 
     def _check_edges(self) -> None:

@@ -269,6 +269,11 @@ def both_bodies(case: Case) -> list[Wildcards]:
     return [{"body": body} for body in BODIES]
 
 
+def config_name(case: Case) -> str:
+    """Return the name of the config, which the points of its studies share."""
+    return str(case.values["case"]).partition("/")[0]
+
+
 def without_gaps(case: Case) -> Any:
     """Section tooth_pair without what moves no node: cases that differ in gaps share their compliance."""
     section: Any = case.values["tooth_pair"]

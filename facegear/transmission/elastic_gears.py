@@ -190,7 +190,7 @@ class ElasticGears:
         """Return the compliance of each mesh that the modes leave out, (meshes, 2, 2), m/N.
 
         Entry [m, i, j] is the motion of flank i against its own force by a unit force on flank j; 0 is the
-        drive flank, 1 the back flank. This residual is MacNeal's: static, without mass.
+        drive flank, 1 the back flank. It is the residual of MacNeal 1971, without mass.
         """
         sine, cosine = np.sin(self.layout.pressure_angle), np.cos(self.layout.pressure_angle)
         directions = np.array([[-sine, cosine], [-sine, -cosine]])

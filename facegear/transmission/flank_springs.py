@@ -1,8 +1,8 @@
 """Stiffness of the flanks that carry load, about the place where the torques hold the machine.
 
 Behind the teeth of a mesh lies a body, of which only some modes are kept. What they leave out is a static
-compliance R (2, 2) between the two flanks of the mesh (MacNeal's residual without mass). With the slopes D of
-the teeth of both flanks and the deflections d,
+compliance R (2, 2) between the two flanks of the mesh, the residual of MacNeal 1971 without mass. With the
+slopes D of the teeth of both flanks and the deflections d,
 
     F = S d,   S = (D^-1 + R)^-1 = (1 + D R)^-1 D
 
@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from facegear.arrays import Array, Mask
+from facegear.arrays import Array, Integers, Mask
 from facegear.transmission.flanks import flank_law
 from facegear.transmission.loaded_contacts import LoadedContacts
 from facegear.transmission.machine import Machine
@@ -42,7 +42,7 @@ def flank_springs(machine: Machine, contacts: LoadedContacts, closed: Mask) -> A
     return springs
 
 
-def coupled_meshes(machine: Machine, closed: Mask) -> Array:
+def coupled_meshes(machine: Machine, closed: Mask) -> Integers:
     """Return the numbers of the wedged meshes (n,) whose flanks are coupled by what the modes leave out."""
     if machine.softening is None:
         return np.zeros(0, np.int64)

@@ -54,7 +54,7 @@ ROWS = (
     Stage(
         name="cad",
         title="Exact teeth for CAD",
-        needs=MESH,
+        needs={**MESH, "case": Computed(asked.config_name, ("case",))},
         files={"step": File("cad/{body}.step"), "stl": File("cad/{body}.stl")},
         wildcards=BODY,
     ),

@@ -12,8 +12,10 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from test_elastic_gears_at_rest import below
 
+import facegear
 from facegear.gear_body.compliance import flank_direction, influence
 from facegear.harmonics.series import Harmonics
+from facegear.stages import dynamics_response
 from facegear.stages.gear_waves import _left_out
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.flanks import constant_errors, flank_law
@@ -48,7 +50,7 @@ TWO = ("one", Role.INPUT, 0.0), ("two", Role.INPUT, 41.5)
 def wedged_pinions(seed, stiffness=SWUNG, places=TWO):
     """Pinions between two gears that bend, which forces along their axis press on them: all are wedged.
 
-    Modes are random. What they leave out is as soft as the teeth, and not the same along the axis as round it.
+    Modes are random. What they leave out is as soft as the teeth, along the axis other than round it.
     """
     random = np.random.default_rng(seed)
     layout = make_layout(places, kinematics=GEOMETRIC)
@@ -192,3 +194,11 @@ def test_summary_names_wedged_meshes_and_how_far_motion_is_off():
     assert said.startswith(f"both flanks press in {names}; motion leaves out the compliance between them")
     assert said in _left_out(machine)
     assert wedged_motion_text(gearbox(body)) == wedged_motion_text(gearbox()) == ""
+
+
+def test_summary_of_a_response_says_what_the_motion_of_wedged_meshes_leaves_out(monkeypatch):
+    machine = wedged_pinions(0, Harmonics(np.zeros(1), np.array([K])))
+    monkeypatch.setattr(dynamics_response, "wired_machine", lambda *given, **named: machine)
+    accuracy = facegear.example().config.dynamics.accuracy
+    outcome = dynamics_response.dynamics_response(None, None, None, accuracy, 3000.0)
+    assert outcome.summary.endswith(wedged_motion_text(machine)) and wedged_motion_text(machine)

@@ -1,9 +1,9 @@
-"""The assembly errors that a pair meets when both of its bodies have moved."""
+"""Exact pose of a pair: the assembly errors that it meets when both of its bodies have moved."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.geometry.design import AssemblyErrors
@@ -34,10 +34,14 @@ class Pose:
 
 
 def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
-    """Pose of a pinion and a gear that have moved in the mesh frame from where they were nominally, exactly.
+    """Return the pose of a pinion and a gear that have moved in the mesh frame from their nominal places.
 
-    mean_radius: where the middle of the pinion's face is on its axis (m). Motions of any size, of one pair
-    of bodies; the shaft angle's error within a quarter turn.
+    Parameters
+    ----------
+    pinion, gear
+        Rigid motions of any size, m; the error of the shaft angle stays within a quarter turn.
+    mean_radius
+        Where the middle of the pinion's face is on its axis, m.
     """
     back = gear.inverse()
     turn = back.matrix @ pinion.matrix
@@ -67,12 +71,18 @@ def to_mesh_frame(sign: float) -> Array:
     return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
 
 
-def body_motion(shift: Sequence[float], turn: Sequence[float], pivot: Sequence[float]) -> RigidMotion:
+def body_motion(shift: ArrayLike, turn: ArrayLike, pivot: ArrayLike) -> RigidMotion:
     """A turn about a point by a rotation vector (rad), followed by a shift (m), all (3,) in one frame."""
     vector, point = np.asarray(turn, float), np.asarray(pivot, float)
     angle = float(np.linalg.norm(vector))
     matrix = rotation(vector / angle, angle) if angle else np.eye(3)
     return RigidMotion(matrix, np.asarray(shift, float) + point - matrix @ point)
+
+
+def assembled_motion(errors: AssemblyErrors, mean_radius: float) -> RigidMotion:
+    """Return the motion of a pinion in the mesh frame, from its nominal place, that assembly errors are."""
+    motion = body_motion((0.0, 0.0, 0.0), (errors.shaft_angle_error, 0.0, 0.0), (0.0, mean_radius, 0.0))
+    return RigidMotion(motion.matrix, motion.shift + np.array([errors.offset, 0.0, errors.axial_shift]))
 
 
 def in_mesh_frame(motion: RigidMotion, sign: float) -> RigidMotion:
