@@ -10,14 +10,19 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch, BranchEnd, ContinuationSettings, follow
+from facegear.dynamics.branches.locate import locate, locate_grazes
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint, at_parameter, solve_point
+from facegear.dynamics.branches.segment import Segment
 from facegear.dynamics.branches.special import Special
 from facegear.dynamics.motion import State
 from facegear.errors import NotConverged
 
 ASIDE = (0.02, 0.005, 0.06, 0.15, 0.4, 1e-3)
 """Distances from a special point, in length scales, at which another branch is sought."""
+NEAR_ROOT = 0.1
+"""Part of the way to that orbit from which special points are looked for by multipliers: at the special point
+itself one of them lies on the unit circle."""
 LEFT = 0.3
 """Smallest fraction of the distance that must remain along the new direction."""
 
@@ -50,9 +55,18 @@ def _from(
     origin = special.point
     away = start.x - origin.x
     linear = period_map.linear(origin.z, origin.u)
-    root = replace(origin, tangent=away / np.linalg.norm(away), linear=linear)
-    specials = [replace(special_point, after=special_point.after + 1.0) for special_point in child.specials]
-    return replace(child, points=[root, *child.points], specials=specials, ends=(end, child.ends[1]))
+    extrema = period_map.extrema(origin.z, origin.u)
+    root = replace(origin, tangent=away / np.linalg.norm(away), linear=linear, extrema=extrema)
+    near = Segment(period_map, root, start).at(NEAR_ROOT)
+    grazes = locate_grazes(period_map, root, near)
+    located = locate(period_map, near, start)
+    first = [root, near, *located.inner]
+    specials = [
+        *grazes,
+        *(replace(special_point, after=special_point.after + 1.0) for special_point in located.specials),
+        *(replace(special_point, after=special_point.after + len(first)) for special_point in child.specials),
+    ]
+    return replace(child, points=[*first, *child.points], specials=specials, ends=(end, child.ends[1]))
 
 
 def through(period_map: PeriodMap, state: State, value: float, run: ContinuationSettings) -> Branch:
