@@ -1,10 +1,10 @@
 """Where the stability of a branch may change and change back between two neighbouring points.
 
-Two multipliers that meet on the unit circle may leave it and come back within one step, and the more they turn
-in it the narrower such a band is beside the step. The matrix of the map itself changes smoothly along a branch,
-also where multipliers meet. It is interpolated by cubics through the matrices and their slopes at both ends,
-on stretches over which no multiplier near the circle turns far. What the multipliers of the interpolated
-matrices suggest is then looked at on the branch itself.
+Two multipliers that meet on the unit circle may leave it and come back within one step, and the more they
+turn in it the narrower such a band is beside the step. The matrix of the map itself changes smoothly along a
+branch, also where multipliers meet. It is interpolated by cubics through the matrices and their slopes at
+both ends, on stretches over which no multiplier near the circle turns far. What the multipliers of the
+interpolated matrices suggest is then looked at on the branch itself.
 """
 
 import numpy as np
@@ -17,6 +17,9 @@ NEAR_CIRCLE = 0.4
 """Multipliers farther from the unit circle at both ends of a stretch are left out."""
 WIDEST_TURN, NARROWEST_TURN = 0.6, 0.1
 """Angles in rad over which the matrix is interpolated: a cubic errs there by 3e-4 and 3e-7."""
+UNDAMPED = 1e-6
+"""Multipliers nearer to the circle lie on it, as far as they are known: without damping all of them do, and
+closer looks tell no more."""
 CUBIC_ERROR = 1.0 / 384.0
 """Error of a Hermite cubic over a stretch, in the fourth power of the angle that a multiplier turns."""
 FEWEST, MOST = 4, 32
@@ -30,7 +33,7 @@ STEEP = 3.0
 
 
 def hidden_change(segment: Segment, low: float, high: float) -> float | None:
-    """Fraction at which to look for a change of stability that both ends of a stretch do not show, or None."""
+    """Fraction at which to look for changes of stability that the ends of a stretch do not show, or None."""
     ends = segment.at(low), segment.at(high)
     stretch = high - low
     length = segment.length * stretch
@@ -41,8 +44,7 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
         return None
     start, end = (segment.matrix_slope(fraction, stretch) for fraction in (low, high))
     turn = min(_turn(point, rate, neutral) for point, rate in zip(ends, (start, end), strict=True))
-    widest = (max(distances) / (2.0 * CUBIC_ERROR)) ** 0.25
-    if turn > np.clip(widest, NARROWEST_TURN, WIDEST_TURN):
+    if turn > _widest_turn(max(distances)):
         return 0.5 * (low + high)
     # A band in which multipliers reach the circle is at least as wide, in their angle, as they were off it.
     count = int(np.clip(np.ceil(turn / max(max(distances), 1e-3)), FEWEST, MOST))
@@ -58,6 +60,13 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
     if look is None:
         look = _approaching(values, distances, looks, error)
     return None if look is None else float(low + looks[look] * stretch)
+
+
+def _widest_turn(distance: float) -> float:
+    """Angle over which a cubic errs by half the distance of the multipliers from the circle."""
+    if distance < UNDAMPED:
+        return WIDEST_TURN
+    return float(np.clip((distance / (2.0 * CUBIC_ERROR)) ** 0.25, NARROWEST_TURN, WIDEST_TURN))
 
 
 def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
@@ -115,7 +124,9 @@ def _returning(surely: Integers, perhaps: Integers) -> int | None:
 
 
 def _approaching(values: ComplexArray, ends: list[float], looks: Array, error: float) -> int | None:
-    """The look at which multipliers come so near to the circle, from as far as `ends`, that they may pass it."""
+    """The look at which multipliers come so near to the circle, from as far as `ends`, that they may pass
+    it, or None.
+    """
     nearest = np.abs(np.abs(values) - 1.0).min(axis=1)
     before = ends[0] + looks * (ends[1] - ends[0])
     gain = before - nearest

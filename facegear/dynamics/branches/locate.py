@@ -66,7 +66,7 @@ def locate(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> Loca
 
 
 def locate_grazes(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> list[Special]:
-    """Grazes between two neighbours of which one is a junction, where multipliers lie on the circle itself."""
+    """Grazes between two neighbours of which one is a junction: multipliers lie on the circle there."""
     segment = Segment(period_map, here, there)
     return sorted(_grazes_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
