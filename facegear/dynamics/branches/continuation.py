@@ -85,6 +85,9 @@ class Branch:
         Why it ends before the first and behind the last point.
     tried
         What was tried where steps became too short.
+    image_of
+        Number of the branch, in the list that holds both, of which this one is the image under a symmetry of
+        the system; None of a branch that was followed.
     """
 
     period_map: PeriodMap
@@ -92,6 +95,7 @@ class Branch:
     specials: list[Special]
     ends: tuple[BranchEnd, BranchEnd]
     tried: str = ""
+    image_of: int | None = None
 
     @property
     def arc(self) -> Array:

@@ -99,10 +99,15 @@ def _edge(special: Special, meshes: int) -> str:
 
 
 def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
-    """Columns branch, period, points, from_rpm, to_rpm, first_end, last_end, tried: one row a branch."""
+    """Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried.
+
+    One row a branch. image_of: the branch of which it is the image under a symmetry of the machine, or
+    nothing.
+    """
     rows = [
         {
             "branch": number,
+            "image_of": "" if branch.image_of is None else str(branch.image_of),
             "period": branch.period_map.period,
             "points": len(branch.points),
             "from_rpm": branch.values.min(),
