@@ -22,6 +22,8 @@ DEEPEST = 7
 """How often a stretch is halved on the mere chance that stability or contact changes twice in it."""
 APART = 1e-6
 """Special points that lie closer on a step share the stretch between two points of the branch."""
+TOUCHING = 1e-4
+"""An extreme this near an edge, in length scales, may touch it there; grazes are located to far less."""
 STABILITY = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 """Special points at which multipliers pass the unit circle."""
 
@@ -91,8 +93,27 @@ def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[
     elif depth < DEEPEST:
         between = _hidden(segment, low, high)
     if between is None:
-        return [_refined(segment, low, high, event) for event in events]
+        specials = [_refined(segment, low, high, event) for event in events]
+        between = _leap(segment.period_map, specials, low, high)
+    if between is None:
+        return specials
     return _between(segment, low, between, depth + 1) + _between(segment, between, high, depth + 1)
+
+
+def _leap(period_map: PeriodMap, specials: list[Special], low: float, high: float) -> float | None:
+    """Fraction of a graze at which no extreme lies at the edge: one of the extremes that are counted there is
+    born or vanishes, and the graze itself lies elsewhere.
+    """
+    for special in specials:
+        if special.kind is not Kind.GRAZE or high - low <= SHORTEST:
+            continue
+        levels = np.array(period_map.edges(special.point.u))[:, special.meshes[0]]
+        level = levels[int(special.edge > 0)]
+        off = np.abs(special.point.extrema[special.meshes[0]] - level).min()
+        if off > TOUCHING:
+            inside = low < special.after < high
+            return special.after if inside else 0.5 * (low + high)
+    return None
 
 
 def _hidden(segment: Segment, low: float, high: float) -> float | None:
@@ -111,7 +132,10 @@ def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -
     elif depth < DEEPEST:
         between = hidden_graze(segment, low, high)
     if between is None:
-        return [_refined(segment, low, high, event) for event in events]
+        specials = [_refined(segment, low, high, event) for event in events]
+        between = _leap(segment.period_map, specials, low, high)
+    if between is None:
+        return specials
     return _grazes_between(segment, low, between, depth + 1) + _grazes_between(
         segment, between, high, depth + 1
     )

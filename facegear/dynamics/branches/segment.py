@@ -68,8 +68,9 @@ class Segment:
         step = SMALL / float(np.linalg.norm(along))
         x = point.x + step * along
         ahead = self.period_map.extrema(x[:-1], x[-1])
-        count = min(ahead.shape[2], point.extrema.shape[2])
-        now, then = point.extrema[:, :, :count], ahead[:, :, :count]
+        now, then = point.extrema, np.full(point.extrema.shape, -np.inf)
+        count = min(ahead.shape[2], now.shape[2])
+        then[:, :, :count] = ahead[:, :, :count]
         known = np.isfinite(now) & np.isfinite(then)
         return np.divide(np.subtract(then, now, where=known, out=np.zeros(now.shape)), step)
 
