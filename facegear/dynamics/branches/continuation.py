@@ -268,9 +268,8 @@ def _between_points(
     located = locate(period_map, here, meeting[0])
     count = len(located.inner) + 1
     specials = [special for special in located.specials if not _at(special, meeting[1])]
-    specials += [
-        replace(special, after=count + special.after) for special in locate_grazes(period_map, *meeting)
-    ]
+    grazes = locate_grazes(period_map, *meeting, meeting[0].linear)
+    specials += [replace(special, after=count + special.after) for special in grazes]
     return Located(specials, located.inner), list(meeting), BranchEnd.DOUBLING
 
 

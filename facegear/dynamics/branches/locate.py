@@ -9,7 +9,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.branches.between import hidden_change
 from facegear.dynamics.branches.grazes import grazes, hidden_graze
-from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.segment import Segment, zero
 from facegear.dynamics.branches.special import Kind, Special, evidence
@@ -67,9 +67,14 @@ def locate(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> Loca
     return Located(placed, [segment.at(cut) for cut in cuts])
 
 
-def locate_grazes(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> list[Special]:
-    """Grazes between two neighbours of which one is a junction: multipliers lie on the circle there."""
-    segment = Segment(period_map, here, there)
+def locate_grazes(
+    period_map: PeriodMap, here: BranchPoint, there: BranchPoint, linear: Linear
+) -> list[Special]:
+    """Grazes between two neighbours of which one is a junction: multipliers lie on the circle there.
+
+    linear: the map at the other one, with which orbits are corrected: at a junction its matrix is singular.
+    """
+    segment = Segment(period_map, replace(here, linear=linear), replace(there, linear=linear))
     return sorted(_grazes_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.branches.columns import BRANCH_COLUMNS, SPECIAL_COLUMNS
-from facegear.dynamics.branches.continuation import Branch, BranchEnd
+from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.loci import Locus
 from facegear.dynamics.branches.measures import measures
 from facegear.dynamics.branches.special import Special
@@ -114,7 +114,7 @@ def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
             "to_rpm": branch.values.max(),
             "first_end": branch.ends[0].value,
             "last_end": branch.ends[1].value,
-            "tried": branch.tried if BranchEnd.STEP in branch.ends else "",
+            "tried": branch.tried,
         }
         for number, branch in enumerate(branches)
     ]
