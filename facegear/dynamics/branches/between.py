@@ -32,16 +32,24 @@ STEEP = 3.0
 """A slope of the matrix this many times that of the chord and the other end is a graze's, and left out."""
 
 
+def may_change(segment: Segment, low: float, high: float) -> bool:
+    """Whether a stretch is long enough, and a multiplier at its ends near enough, to pass the circle."""
+    closest = min(_distance(segment.at(fraction)) for fraction in (low, high))
+    return segment.length * (high - low) >= SHORTEST_LENGTH and closest <= NEAR_CIRCLE
+
+
+def _distance(point: BranchPoint) -> float:
+    """Distance from the unit circle of the multiplier nearest to it."""
+    return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
+
+
 def hidden_change(segment: Segment, low: float, high: float) -> float | None:
     """Fraction at which to look for changes of stability that the ends of a stretch do not show, or None."""
-    ends = segment.at(low), segment.at(high)
-    stretch = high - low
-    length = segment.length * stretch
-    neutral = ends[0].linear.neutral.shape[1]
-    sizes = [np.abs(point.multipliers) for point in ends]
-    distances = [float(np.abs(size - 1.0).min(initial=np.inf)) for size in sizes]
-    if length < SHORTEST_LENGTH or min(distances) > NEAR_CIRCLE:
+    if not may_change(segment, low, high):
         return None
+    ends, stretch = (segment.at(low), segment.at(high)), high - low
+    neutral = ends[0].linear.neutral.shape[1]
+    distances = [_distance(point) for point in ends]
     start, end = (segment.matrix_slope(fraction, stretch) for fraction in (low, high))
     turn = min(_turn(point, rate, neutral) for point, rate in zip(ends, (start, end), strict=True))
     if turn > _widest_turn(max(distances)):

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.between import hidden_change
+from facegear.dynamics.branches.between import hidden_change, may_change
 from facegear.dynamics.branches.grazes import grazes, hidden_graze
 from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
@@ -22,6 +22,8 @@ DEEPEST = 7
 """How often a stretch is halved on the mere chance that stability or contact changes twice in it."""
 APART = 1e-6
 """Special points that lie closer on a step share the stretch between two points of the branch."""
+ASIDE = 1e-6
+"""Part of a stretch by which a graze has to lie off its ends to divide it."""
 TOUCHING = 1e-4
 """An extreme this near an edge, in length scales, may touch it there; grazes are located to far less."""
 STABILITY = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
@@ -100,9 +102,18 @@ def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[
     if between is None:
         specials = [_refined(segment, low, high, event) for event in events]
         between = _leap(segment.period_map, specials, low, high)
+        if between is None and depth < DEEPEST and may_change(segment, low, high):
+            between = _kink(specials, low, high)
     if between is None:
         return specials
     return _between(segment, low, between, depth + 1) + _between(segment, between, high, depth + 1)
+
+
+def _kink(specials: list[Special], low: float, high: float) -> float | None:
+    """Fraction of a graze in a stretch: multipliers bend sharply there, so each side is looked at alone."""
+    margin = ASIDE * (high - low)
+    inside = (special.after for special in specials if special.kind is Kind.GRAZE)
+    return next((fraction for fraction in inside if low + margin < fraction < high - margin), None)
 
 
 def _leap(period_map: PeriodMap, specials: list[Special], low: float, high: float) -> float | None:

@@ -52,8 +52,9 @@ def test_period_two_branches_have_the_same_points_from_both_doublings(damping, m
 
 
 def test_a_graze_beside_the_doubling_that_a_branch_begins_at_is_found():
-    run = ContinuationSettings(0.6, 0.85)
-    ((first, second),) = doubled_from_both_ends(oscillator_branch(0.037, 0.171, 1.48, run), run)
+    parent = oscillator_branch(0.037, 0.171, 1.48, WIDE)
+    beside = [special for special in parent.specials if special.point.value < 0.7]
+    ((first, second),) = doubled_from_both_ends(replace(parent, specials=beside), WIDE)
     assert first.of(Kind.GRAZE)
     assert_same_points(first, second)
 
