@@ -33,7 +33,7 @@ ROWS = (
         },
         files={
             "branches": File("branches/branches.csv", "facegear.dynamics.branches.columns:BRANCH_FINITE"),
-            "ends": File("branches/ends.csv", ("branch", "period", "points"), text=("tried",)),
+            "ends": File("branches/ends.csv", ("branch", "period", "points"), text=("image_of", "tried")),
             "unfollowed": File("branches/unfollowed.csv", ("period", "origin"), may_be_empty=True),
             "multipliers": File("branches/multipliers.csv", ("branch", "speed_rpm", "real", "imaginary")),
             "special": File(
