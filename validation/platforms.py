@@ -81,9 +81,15 @@ TESTS = (
     "tests/stage/test_example_notebook.py",
     "tests/unit/test_front_door.py",
     "tests/unit/compare",
-    "tests/unit/dynamics",
-    "tests/unit/load_sharing",
-    "tests/unit/contact",
+    "tests/unit/contact/test_contact_solver.py",
+    "tests/unit/contact/test_interfering_teeth.py",
+    "tests/unit/dynamics/branches",
+    "tests/unit/dynamics/test_clean_folds.py",
+    "tests/unit/dynamics/test_dynamics_labels.py",
+    "tests/unit/dynamics/test_dynamics_settling.py",
+    "tests/unit/dynamics/test_dynamics_sweep.py",
+    "tests/unit/dynamics/test_dynamics_symmetries.py",
+    "tests/unit/load_sharing/test_load_sharing_run.py",
     "tests/workflow/test_stored_answers.py",
 )
 """Tests whose labels, notebooks and stored answers a processor might decide."""
