@@ -83,7 +83,7 @@ TESTS = (
     "tests/unit/compare",
     "tests/unit/contact/test_contact_solver.py",
     "tests/unit/contact/test_interfering_teeth.py",
-    "tests/unit/dynamics/branches",
+    "tests/unit/dynamics/branches/test_dynamics_survey.py",
     "tests/unit/dynamics/test_clean_folds.py",
     "tests/unit/dynamics/test_dynamics_labels.py",
     "tests/unit/dynamics/test_dynamics_settling.py",
