@@ -14,6 +14,7 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.dynamics.courses import Course
 from facegear.dynamics.motion import Motion, State
+from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower
 from facegear.dynamics.sweeps.sweep import Piece
@@ -53,6 +54,7 @@ class JumpSide:
     """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), m, its class and state.
 
     period: 0 where the motion is not periodic. multiplier: the leading one, NaN where there is none.
+    symmetry_broken: whether the motion has mirror images that are other motions.
     """
 
     speed: float
@@ -60,6 +62,7 @@ class JumpSide:
     label: str
     period: int
     multiplier: float
+    symmetry_broken: bool
     state: State
 
 
@@ -200,6 +203,7 @@ def _stored_side(piece: Piece, position: int) -> JumpSide:
         label=piece.labels[position],
         period=int(piece.period[position]),
         multiplier=float(piece.leading_multiplier[position]),
+        symmetry_broken=bool(piece.symmetry_broken[position]),
         state=piece.state(position),
     )
 
@@ -237,6 +241,7 @@ def side(speed: float, response: SteadyState) -> JumpSide:
         label=response.label,
         period=response.period,
         multiplier=multiplier,
+        symmetry_broken=symmetry_broken(response),
         state=response.state,
     )
 
