@@ -7,7 +7,15 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from facegear.compare.quantities import AFTER_IRREGULAR, OPEN_CLASSES, REGULAR, TABLES, Table, declared
+from facegear.compare.quantities import (
+    AFTER_IRREGULAR,
+    OPEN_CLASSES,
+    REGULAR,
+    SYMMETRY_BROKEN,
+    TABLES,
+    Table,
+    declared,
+)
 from facegear.errors import FacegearError
 from facegear.io import documents, tables
 
@@ -31,6 +39,7 @@ class Verdict(StrEnum):
     NO_ERROR = "moved, its error is not stated"
     IRREGULAR = "irregular motion, a statistic"
     ROUNDING = "after irregular motion, decided by rounding"
+    MIRROR = "mirror image of the same motion"
     LABEL = "label changed"
     GONE = "gone"
     ADDED = "added"
@@ -98,16 +107,29 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
         return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
     table = declared(TABLES, name) or Table()
+    if table.bracket is not None:
+        after = _with_brackets_of(before, after, table.bracket)
+    groups = pd.concat([_without_item(frame, table) for frame in (before, after)])
     before, after = (_by_row(frame, table) for frame in (before, after))
+    groups = dict(zip([*before.index, *after.index], groups, strict=True))
     shared = before.index.intersection(after.index, sort=False)
     columns = [column for column in before.columns if column in after.columns]
-    parts = [_judge_column(name, table, before.loc[shared], after.loc[shared], column) for column in columns]
+    group = pd.Series([groups[row] for row in shared], index=shared, dtype=object)
+    parts = [
+        _judge_column(name, table, before.loc[shared], after.loc[shared], column, group) for column in columns
+    ]
     for this, other, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
         lost = [f"column {column}" for column in this.columns if column not in other.columns]
         rows = this.loc[this.index.difference(other.index, sort=False)]
         frame = _one_sided(name, [*rows.index.astype(str), *lost], verdict)
-        open_rows = np.concatenate([_after_irregular(rows), np.zeros(len(lost), dtype=bool)])
-        parts.append(frame.assign(verdict=frame["verdict"].mask(open_rows, Verdict.ROUNDING)))
+        elsewhere = other.loc[other.index.difference(this.index, sort=False)]
+        exchanged = {groups[row] for row in elsewhere.index[_flagged(elsewhere, SYMMETRY_BROKEN)]}
+        in_both = np.fromiter((groups[row] in exchanged for row in rows.index), dtype=bool, count=len(rows))
+        not_rows = np.zeros(len(lost), dtype=bool)
+        open_rows = np.concatenate([_flagged(rows, AFTER_IRREGULAR), not_rows])
+        images = np.concatenate([_flagged(rows, SYMMETRY_BROKEN) & in_both, not_rows])
+        judged = frame["verdict"].mask(open_rows, Verdict.ROUNDING).mask(images, Verdict.MIRROR)
+        parts.append(frame.assign(verdict=judged))
     return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
 
 
@@ -128,38 +150,103 @@ def _written(value: object) -> str:
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
+def _with_brackets_of(
+    before: pd.DataFrame, after: pd.DataFrame, bracket: tuple[str, str, str]
+) -> pd.DataFrame:
+    """The table with the first end of a bracket replaced by that of the other table's nearest bracket of the
+    same direction, where it is within both errors, so that the rows of one jump have one name.
+    """
+    start, _, error = bracket
+    if error not in before.columns or error not in after.columns:
+        return after
+    left = before.copy()
+    renamed = after.copy()
+    for row in after.index:
+        apart = (left[start] - after.at[row, start]).abs()
+        near = (left["direction"] == after.at[row, "direction"]) & (
+            apart <= left[error] + after.at[row, error]
+        )
+        if near.any():
+            nearest = apart[near].idxmin()
+            renamed.at[row, start] = left.at[nearest, start]
+            left = left.drop(index=nearest)
+    return renamed
+
+
+def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
+    """What names a row but for the mesh or body, shape (rows,)."""
+    keys = [key for key in table.keys if key in frame.columns and key != table.item]
+    if not keys or table.item is None:
+        return pd.Series(np.arange(len(frame)).astype(str), index=frame.index)
+    parts = [frame[key].map(_written) for key in keys]
+    return parts[0].str.cat(parts[1:], sep=", ") if len(parts) > 1 else parts[0]
+
+
 def _judge_column(
-    name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str
+    name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, group: pd.Series
 ) -> pd.DataFrame:
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     shown = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
-    open_rows = _after_irregular(before) & _after_irregular(after)
+    open_rows = _flagged(before, AFTER_IRREGULAR) & _flagged(after, AFTER_IRREGULAR)
+    broken = _flagged(before, SYMMETRY_BROKEN) & _flagged(after, SYMMETRY_BROKEN)
     if not numeric:
         same = (old.fillna("").astype(str) == new.fillna("").astype(str)).to_numpy()
         return shown.assign(
             relative_change=np.nan,
             numerical_error=np.nan,
             verdict=np.select(
-                [same, open_rows, _both_irregular(old, new, table)],
-                [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR],
+                [same, open_rows, _both_irregular(old, new, table), broken & (column not in table.motion)],
+                [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR, Verdict.MIRROR],
                 Verdict.LABEL,
             ),
         )
     error = table.error(column)
+    moved_bracket = _moved_bracket(before, after, table)
     zero = table.zero.get(column, 0.0)
     before_zero, after_zero = (side.mask(side.abs() <= zero, 0.0) for side in (old, new))
     change = _relative_change(before_zero, after_zero, before.get(table.quantity))
     irregular = _irregular(before, table) | _irregular(after, table)
     beyond = Verdict.NO_ERROR if error is None else Verdict.MOVED
+    errors = np.full(len(before), np.nan if error is None else error)
+    if table.bracket is not None and column in table.bracket:
+        errors[moved_bracket] = np.inf
+    else:
+        errors[moved_bracket] = table.bracket_error
+    images = broken & _same_but_for_items(before_zero, after_zero, before.get(table.quantity), group, errors)
     verdict = np.select(
-        [change <= REPEATABLE, irregular, change <= (error or 0.0), open_rows],
-        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING],
+        [change <= REPEATABLE, irregular, change <= np.nan_to_num(errors, posinf=np.inf), open_rows, images],
+        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
         beyond,
     )
-    return shown.assign(
-        relative_change=change, numerical_error=np.nan if error is None else error, verdict=verdict
+    return shown.assign(relative_change=change, numerical_error=errors, verdict=verdict)
+
+
+def _moved_bracket(before: pd.DataFrame, after: pd.DataFrame, table: Table) -> np.ndarray:
+    """Rows of one name whose brackets have another end, within the error that made them one row, (rows,)."""
+    if table.bracket is None or table.bracket[1] not in before.columns:
+        return np.zeros(len(before), dtype=bool)
+    ends = [frame[table.bracket[1]].to_numpy(float) for frame in (before, after)]
+    return np.abs(ends[1] - ends[0]) > REPEATABLE * np.abs(ends[0])
+
+
+def _same_but_for_items(
+    old: pd.Series, new: pd.Series, quantity: pd.Series | None, group: pd.Series, errors: np.ndarray
+) -> np.ndarray:
+    """Rows in whose group meshes or bodies have exchanged their numbers, and no more, shape (rows,)."""
+    sizes = pd.DataFrame(
+        {"old": old.abs().to_numpy(), "new": new.abs().to_numpy(), "group": group.to_numpy()}
     )
+    ordered = [sizes.sort_values(["group", side], kind="stable") for side in ("old", "new")]
+    pair = [pd.Series(part[side].to_numpy()) for part, side in zip(ordered, ("old", "new"), strict=True)]
+    change = _relative_change(pair[0], pair[1], None if quantity is None else _by_group(ordered[0], quantity))
+    allowed = np.nan_to_num(np.maximum(errors[ordered[0].index], REPEATABLE), nan=REPEATABLE)
+    fits = pd.Series(change <= allowed).groupby(ordered[0]["group"].to_numpy()).all()
+    return group.map(fits).to_numpy(dtype=bool)
+
+
+def _by_group(ordered: pd.DataFrame, quantity: pd.Series) -> pd.Series:
+    return pd.Series(quantity.to_numpy()[ordered.index])
 
 
 def _relative_change(old: pd.Series, new: pd.Series, quantity: pd.Series | None) -> np.ndarray:
@@ -193,11 +280,11 @@ def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
     return np.logical_or(*(side.isin(OPEN_CLASSES).to_numpy() for side in sides)) & ~regular
 
 
-def _after_irregular(frame: pd.DataFrame) -> np.ndarray:
-    """Rows whose motion rounding can decide, shape (rows,); none where the table does not say so."""
-    if AFTER_IRREGULAR not in frame.columns:
+def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
+    """Rows for which a column of yes and no says yes, shape (rows,); none where there is no such column."""
+    if column not in frame.columns:
         return np.zeros(len(frame), dtype=bool)
-    return frame[AFTER_IRREGULAR].fillna(False).astype(bool).to_numpy()
+    return frame[column].fillna(False).astype(bool).to_numpy()
 
 
 def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:

@@ -19,6 +19,8 @@ OPEN_CLASSES = ("not settled", "undecided")
 """Classes that leave open which irregular motion it is: they contradict none of the others."""
 AFTER_IRREGULAR = "after_irregular"
 """Column of rows whose motion, numbers, class and all, rounding can decide."""
+SYMMETRY_BROKEN = "symmetry_broken"
+"""Column of rows whose motion has mirror images under the machine's symmetries, which are one motion."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,13 @@ class Table:
         solved to rounding.
     motion
         Columns, where present, that name the class of motion of a row.
+    item
+        The key that names a mesh or body; mirror images exchange these.
+    bracket
+        Columns with both ends of a bracket and its error, absolute: rows of which the first ends differ by
+        no more than both errors are one row.
+    bracket_error
+        Numerical error, relative, of numbers on both sides of brackets that differ.
     """
 
     keys: tuple[str, ...] = ()
@@ -46,6 +55,9 @@ class Table:
     errors: Mapping[str, float] = field(default_factory=dict)
     zero: Mapping[str, float] = field(default_factory=dict)
     motion: tuple[str, ...] = MOTION_COLUMNS
+    item: str | None = None
+    bracket: tuple[str, str, str] | None = None
+    bracket_error: float = 0.0
 
     def error(self, column: str) -> float | None:
         """Relative numerical error of a column, or None where none is stated."""
@@ -86,17 +98,24 @@ TABLES: Mapping[str, Table] = {
         ("order",), errors={"a_n": 3e-3, "b_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
     ),
     "stiffness/tvms.csv": Table(("position",), errors={"k_": 3e-3}),
-    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION),
+    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"),
     "dynamics/response.csv": Table(
         ("mesh", "mesh_cycle"), errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4}
     ),
     "dynamics/spectrum.csv": Table(("mesh", "order"), errors={"amplitude": 8.6e-4}),
     "dynamics/bearings.csv": Table(("body", "direction"), errors={"static": ROUNDED, "": 8.6e-4}),
-    "dynamics/sweep.csv": Table(("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION),
-    "dynamics/resonances.csv": Table(
-        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION
+    "dynamics/sweep.csv": Table(
+        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"
     ),
-    "dynamics/jumps.csv": Table(("direction", "speed_before_rpm", "mesh"), errors={"deflection": 8.6e-4}),
+    "dynamics/resonances.csv": Table(
+        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"
+    ),
+    "dynamics/jumps.csv": Table(
+        ("direction", "speed_before_rpm"),
+        errors={"deflection": 8.6e-4},
+        bracket=("speed_before_rpm", "speed_after_rpm", "error_rpm"),
+        bracket_error=0.02,
+    ),
     "load_sharing/summary.csv": Table(("study", "point", "group"), errors=SHARING),
     "load_sharing/nominal_summary.csv": Table(("group",), errors=SHARING),
     "load_sharing/forces.csv": Table(("mesh",), errors=FORCES),

@@ -13,6 +13,7 @@ from facegear.arrays import Array
 from facegear.dynamics.courses import Course
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import State
+from facegear.dynamics.steady_state.averages import Moments
 from facegear.dynamics.steady_state.orbits import Orbit
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.watching import Begun, begin
@@ -134,25 +135,42 @@ def with_chosen_image(begun: Begun, system: System, held: Sequence[Symmetry]) ->
         the image with the largest AC RMS in the first mesh in which images differ, or the largest mean.
     """
     cycle = _cycle_of_first_watch(begun, system)
-    if cycle is None or begun.seen is None or all(map(cycle.holds, held)):
+    if cycle is None or begun.seen is None:
         return begun
-    moments = begun.seen.window.averages.meshes(True)
+    symmetry = _preferred(cycle, begun.seen.window.averages.meshes(True), held)
+    if symmetry is None:
+        return begun
+    settled = begun.settled
+    again = yield from begin(begun.integrator, cycle.image_state(symmetry, settled.state), begun.settings)
+    if again.seen is None or again.settled.period != settled.period:
+        return begun
+    ends, run = settled.ends @ symmetry.matrix.T, settled.periods_run + again.settled.periods_run
+    image = replace(again.settled, ends=ends, periods_run=run)
+    seen = replace(again.seen, settled=image, periods_run=run)
+    return replace(begun, start=begun.start @ symmetry.matrix.T, settled=image, seen=seen)
+
+
+def start_on_image(response: SteadyState, held: Sequence[Symmetry]) -> State | None:
+    """Return a state of the image that with_chosen_image() would take of a response; None for the same one."""
+    symmetry = _preferred(_cycle_of(response), response.moments, held) if response.period else None
+    if symmetry is None:
+        return None
+    here = np.array([response.state.displacement, response.state.velocity / response.frequency])
+    displacement, rate = _cycle_of(response).image_state(symmetry, here)
+    return State(displacement, rate * response.frequency)
+
+
+def _preferred(cycle: Cycle, moments: Moments, held: Sequence[Symmetry]) -> Symmetry | None:
+    """The symmetry that leads to the image which the rule prefers; None where it prefers the motion itself."""
+    if all(map(cycle.holds, held)):
+        return None
     best, best_numbers = None, np.concatenate([moments.ac_rms, moments.mean])
     for symmetry in held:
         mean = symmetry.mesh_signs * moments.mean[symmetry.meshes]
         numbers = np.concatenate([moments.ac_rms[symmetry.meshes], mean])
         if _comes_first(numbers, best_numbers):
             best, best_numbers = symmetry, numbers
-    if best is None:
-        return begun
-    settled = begun.settled
-    again = yield from begin(begun.integrator, cycle.image_state(best, settled.state), begun.settings)
-    if again.seen is None or again.settled.period != settled.period:
-        return begun
-    ends, run = settled.ends @ best.matrix.T, settled.periods_run + again.settled.periods_run
-    image = replace(again.settled, ends=ends, periods_run=run)
-    seen = replace(again.seen, settled=image, periods_run=run)
-    return replace(begun, start=begun.start @ best.matrix.T, settled=image, seen=seen)
+    return best
 
 
 def _comes_first(numbers: Array, others: Array) -> bool:

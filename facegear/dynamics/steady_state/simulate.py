@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -18,6 +18,7 @@ from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.mirror_images import (
     held_after,
+    start_on_image,
     symmetries_of_start,
     with_chosen_image,
 )
@@ -90,11 +91,12 @@ def simulating(
 
 @dataclass(frozen=True, eq=False)
 class Started:
-    """A motion at a pinion speed that was watched for the first time."""
+    """A motion at a pinion speed that was watched for the first time; start_held: symmetries of its start."""
 
     system: System
     begun: Begun
     speed_rpm: float
+    start_held: tuple[Symmetry, ...] = ()
 
     @property
     def known(self) -> bool:
@@ -113,10 +115,19 @@ class Started:
 
     def followed(self) -> Course[SteadyState]:
         """The steady state that is left of it when it is watched until its class is known, and looked at
-        again.
+        again. Of a motion that has settled only after its first watch the image is chosen here.
         """
         with _naming(self.speed_rpm):
-            return (yield from _steady(self.system, self.begun))
+            response = yield from _steady(self.system, self.begun)
+            late = self.begun.seen is None and self.start_held
+            image = start_on_image(response, self.start_held) if late else None
+            if image is None:
+                return response
+            integrator = self.begun.integrator
+            begun = yield from begin(integrator, integrator.by_phase(image), self.begun.settings)
+            again = yield from _steady(self.system, begun)
+        run = response.periods_run + again.periods_run
+        return replace(again, periods_run=run) if again.label == response.label else response
 
 
 def started(
@@ -141,7 +152,7 @@ def started(
         if guide is None and not begun.settled.known:
             held = symmetries_of_start(model.system, start) if held is None else held
             begun = yield from with_chosen_image(begun, model.system, held)
-    return Started(model.system, begun, speed_rpm)
+    return Started(model.system, begun, speed_rpm, tuple(held or ()))
 
 
 @contextmanager
