@@ -19,6 +19,8 @@ OPEN_CLASSES = ("not settled", "undecided")
 """Classes that leave open which irregular motion it is: they contradict none of the others."""
 AFTER_IRREGULAR = "after_irregular"
 """Column of rows whose motion, numbers, class and all, rounding can decide."""
+SYMMETRY_BROKEN = "symmetry_broken"
+"""Column of rows whose motion has mirror images under the machine's symmetries, which are one motion."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,8 @@ class Table:
         solved to rounding.
     motion
         Columns, where present, that name the class of motion of a row.
+    item
+        The key that names a mesh or body; mirror images exchange these.
     bracket
         Speeds that name a row, beside `keys`, up to their error.
     """
@@ -70,6 +74,7 @@ class Table:
     errors: Mapping[str, float] = field(default_factory=dict)
     zero: Mapping[str, float] = field(default_factory=dict)
     motion: tuple[str, ...] = MOTION_COLUMNS
+    item: str | None = None
     bracket: Bracket | None = None
 
     def error(self, column: str, elsewhere: bool = False) -> float | None:
@@ -121,7 +126,7 @@ TABLES: Mapping[str, Table] = {
         ("order",), errors={"a_n": 3e-3, "b_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
     ),
     "stiffness/tvms.csv": Table(("position",), errors={"k_": 3e-3}),
-    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION),
+    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"),
     "dynamics/response.csv": Table(
         ("mesh", "mesh_cycle"), errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4, "time_s": ROUNDED}
     ),
@@ -129,9 +134,11 @@ TABLES: Mapping[str, Table] = {
     "dynamics/multipliers.csv": Table(errors={"": MULTIPLIERS}),
     "dynamics/seams.csv": Table(("direction", "speed_rpm")),
     "dynamics/bearings.csv": Table(("body", "direction"), errors={"static": ROUNDED, "": 8.6e-4}),
-    "dynamics/sweep.csv": Table(("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION),
+    "dynamics/sweep.csv": Table(
+        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"
+    ),
     "dynamics/resonances.csv": Table(
-        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION
+        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"
     ),
     "dynamics/jumps.csv": Table(
         ("direction",),

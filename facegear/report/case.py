@@ -95,7 +95,10 @@ MODE_CONTACTS = (
 NEAR_RESONANCE = 0.3
 """Largest relative distance of a jump from the linear resonance that it may belong to."""
 JUMPS = (
-    "Jumps of the motion. moves most: the linear mode with the largest fraction of the energy just "
+    "Abrupt changes of the motion. kind: a jump from one periodic motion, which ends or loses its "
+    "stability, to another; a step of the sweep that left a stable motion because it was too large; or "
+    "irregular motion that begins or ends. error: how far the speed may lie from that of the change. "
+    "moves most: the linear mode with the largest fraction of the energy just "
     "beside the "
     "jump, and the multiple of the mesh frequency at which it moves most. linear resonance: the "
     "speed at which "
@@ -286,7 +289,8 @@ def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     jumps = tables["jumps"]
     linear = jumps["resonance_rpm"].astype(float)
     away = (jumps["speed_before_rpm"].astype(float) / linear - 1.0).abs()
-    shown = jumps[["direction", "speed_before_rpm", "mesh", "class_before", "class_after"]].assign(
+    columns = ["direction", "kind", "speed_before_rpm", "error_rpm", "mesh", "class_before", "class_after"]
+    shown = jumps[columns].assign(
         moves_most=jumps["resonance"],
         energy_fraction=jumps["energy_fraction"],
         linear_resonance_rpm=linear.where(away <= NEAR_RESONANCE),

@@ -264,3 +264,69 @@ def test_what_is_no_folder_of_results_is_refused_in_one_line(name, capsys):
 def test_a_folder_without_tables_is_refused(tmp_path):
     with pytest.raises(FacegearError, match="must be a folder of results"):
         compare(tmp_path, tmp_path)
+
+
+MESHES = ("left/upper", "right/upper", "input/upper")
+
+
+def write_sweep(folder, values, broken=True):
+    """A sweep at one speed: the RMS of three meshes, of which symmetry exchanges two."""
+    (folder / "dynamics").mkdir(parents=True)
+    table = pd.DataFrame({"body_or_mesh": MESHES, "value": values}).assign(
+        direction="up", speed_rpm=9600.0, quantity="deflection_ac_rms_um", symmetry_broken=broken
+    )
+    table.assign(**{"class": "period-1"}).to_csv(folder / "dynamics/sweep.csv", index=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("values", "broken", "verdict"),
+    [
+        ((70.0, 17.0, 27.0), True, Verdict.MIRROR),
+        ((70.0, 17.0, 27.0), False, Verdict.MOVED),
+        ((70.0, 18.0, 27.0), True, Verdict.MOVED),
+    ],
+    ids=["image", "symmetric motion", "another motion"],
+)
+def test_mirror_images_count_as_one_motion_where_symmetry_is_broken(values, broken, verdict, tmp_path):
+    old = write_sweep(tmp_path / "old", (17.0, 70.0, 27.0), broken)
+    found = compare(old, write_sweep(tmp_path / "new", values, broken))
+    assert found.equal == (verdict is Verdict.MIRROR)
+    assert found.counts[verdict] == 2
+
+
+def write_jump(folder, before, after, error=0.8, **columns):
+    (folder / "dynamics").mkdir(parents=True)
+    row = {"direction": "up", "kind": "jump", "speed_before_rpm": before, "speed_after_rpm": after}
+    row |= {"error_rpm": error, "mesh": "a", "deflection_ac_rms_before_um": 69.0} | columns
+    pd.DataFrame([row]).to_csv(folder / "dynamics/jumps.csv", index=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("bracket", "columns", "equal"),
+    [
+        ((9505.0, 9505.8), {}, True),
+        ((9505.8, 9506.6), {}, True),
+        ((9505.8, 9506.6), {"deflection_ac_rms_before_um": 69.5}, True),
+        ((9505.0, 9505.8), {"deflection_ac_rms_before_um": 69.5}, False),
+        ((9505.8, 9506.6), {"deflection_ac_rms_before_um": 75.0}, False),
+        ((9508.2, 9509.0), {}, False),
+    ],
+)
+def test_the_speed_of_a_jump_is_compared_within_its_own_error(bracket, columns, equal, tmp_path):
+    old = write_jump(tmp_path / "old", 9505.0, 9505.8)
+    found = compare(old, write_jump(tmp_path / "new", *bracket, **columns))
+    assert found.equal == equal
+    assert not found.counts[Verdict.NO_ERROR]
+
+
+def test_two_jumps_of_a_table_are_each_compared_with_the_nearest_one(tmp_path):
+    folders = [write_jump(tmp_path / name, 9505.0, 9505.8) for name in ("old", "new")]
+    for folder, second in zip(folders, (9507.0, 9506.9), strict=True):
+        table = pd.read_csv(folder / "dynamics/jumps.csv")
+        other = table.assign(speed_before_rpm=second, speed_after_rpm=second + 0.8)
+        pd.concat([other, table]).to_csv(folder / "dynamics/jumps.csv", index=False)
+    found = compare(*folders)
+    assert found.equal
+    assert set(found.rows["verdict"]) <= {Verdict.WITHIN_ERROR}
