@@ -11,6 +11,7 @@ from facegear.report.glance import glance_chapter
 from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
 from facegear.report.poses import pose_tables, pose_text
+from facegear.ties import first_largest_rows
 
 BY_TORQUE = (
     "One row for each torque on the pinion, over a pitch. ste peak to peak: the largest transmission error "
@@ -243,7 +244,7 @@ def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     listed = [Table(SAFETY, shown, 4), Table(RATING, tables["rating"], 4, folded=True)]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
-        hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]
+        hardest = first_largest_rows(loads, "largest_force_n", ["bin"], sort=True)
         listed += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
     return listed
 
@@ -277,7 +278,7 @@ def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Ta
         return []
     table = tables["stress_over_speed"]
     nearest = table["speed_rpm"].iloc[(table["speed_rpm"] - speed_rpm).abs().argmin()]
-    hardest = table.loc[table.groupby("motion", sort=False)["largest_force_n"].idxmax()]
+    hardest = first_largest_rows(table, "largest_force_n", ["motion"])
     shown = pd.concat([table[table["speed_rpm"] == nearest], hardest]).drop_duplicates()
     return [Table(OVER_SPEED, shown, 4)]
 

@@ -18,6 +18,7 @@ from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.dynamics.sweeps.sweep import Piece
+from facegear.ties import first_largest
 
 MIN_CHANGE = 0.1
 """Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
@@ -175,7 +176,7 @@ def _jump(
     after = replace(after, ac_rms=after.ac_rms[_preferred(before.ac_rms, after.ac_rms, images)])
     floor = np.full_like(before.ac_rms, 1e-300)
     ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
-    mesh = int(np.argmax(np.abs(ratio)))
+    mesh = first_largest(np.abs(ratio))
     return Jump(before, after, mesh, position + int(ratio[mesh] > 0.0), error, followed)
 
 
