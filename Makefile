@@ -124,7 +124,7 @@ peers: check tools
 verification: check tools
 	$(PYTEST) -m reference --references=validation/references.csv
 
-# How far these references move without MKL, on two threads and with old kernels.
+# What moves on two threads and with lower levels of instructions: references, notebooks, stored answers, labels.
 platforms: check tools
 	$(BIN)/python -m validation.platforms
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
+from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.errors import FacegearError, chosen
 from facegear.results.base import Result
 
@@ -12,9 +13,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from facegear.plots.style import Figure
-
-IRREGULAR = "irregular"
-"""Kind of a change that begins or ends in irregular motion."""
 
 
 class SweepResult(Result):
@@ -41,7 +39,7 @@ class SweepResult(Result):
         in the bracket or at most `error_rpm` beside it.
         """
         jumps = self.content["jumps"]
-        return jumps[jumps["kind"] != IRREGULAR].reset_index(drop=True)
+        return jumps[jumps["kind"] != JumpKind.IRREGULAR].reset_index(drop=True)
 
     def irregular_ends(self) -> pd.DataFrame:
         """One row for each abrupt change at which irregular motion begins or ends; columns as of `jumps`.
@@ -49,7 +47,7 @@ class SweepResult(Result):
         Where irregular motion ends is a matter of chance: there `error_rpm` is the step of the sweep.
         """
         jumps = self.content["jumps"]
-        return jumps[jumps["kind"] == IRREGULAR].reset_index(drop=True)
+        return jumps[jumps["kind"] == JumpKind.IRREGULAR].reset_index(drop=True)
 
     def resonances(self) -> pd.DataFrame:
         """One row a peak of the RMS without mean, with the mode it belongs to."""

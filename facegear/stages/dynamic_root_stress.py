@@ -14,6 +14,7 @@ from facegear.stages.outcome import Outcome
 from facegear.strength.dynamic_stress import dynamic_stress_table
 from facegear.strength.flank_contacts import flank_contacts
 from facegear.strength.posed_contacts import mesh_contacts, posed_of
+from facegear.ties import first_largest_row
 from facegear.transmission.flanks import flank_places
 
 
@@ -45,6 +46,6 @@ def dynamic_root_stress(
     at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
     own = mesh_contacts(forces, contacts, gears, at_pose)
     table = dynamic_stress_table(forces, places, pair(tooth_pair).design.pinion_base_radius, own)
-    worst = table.loc[table["face_gear_running_mpa"].idxmax()]
+    worst = first_largest_row(table, "face_gear_running_mpa")
     summary = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
     return Outcome({"dynamic_stress": table}, f"{summary}, pinion {worst['pinion_running_mpa']:.0f} MPa")

@@ -7,16 +7,18 @@ far a run is from the edge of its basin. Motions that are not periodic are brack
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.dynamics.courses import Course
 from facegear.dynamics.motion import Motion, State
+from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower
+from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.dynamics.sweeps.sweep import Piece
+from facegear.ties import first_largest
 
 MIN_CHANGE = 0.1
 """Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
@@ -31,21 +33,10 @@ MAX_CHANGES = 8
 KICKS = (0.01, 0.05, 0.2)
 """Disturbances of an orbit that has just lost its stability, in length scales; the first after which a run
 settles counts. Without any it takes some 10,000 periods to leave an orbit with a multiplier of 1.0005."""
+RUNS = 2
+"""Runs, each from the end of the one before, in which a motion may settle."""
 
 Respond = Callable[[float, State], Course[SteadyState]]
-
-
-class JumpKind(StrEnum):
-    """What an abrupt change of the response between two speeds is.
-
-    JUMP: the periodic motion before it ends or loses its stability there, and another periodic one follows.
-    STEP: the sweep left a periodic motion that is stable at both speeds, because its step was too large.
-    IRREGULAR: the motion on one side is not periodic.
-    """
-
-    JUMP = "jump"
-    STEP = "step"
-    IRREGULAR = "irregular"
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +44,7 @@ class JumpSide:
     """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), m, its class and state.
 
     period: 0 where the motion is not periodic. multiplier: the leading one, NaN where there is none.
+    symmetry_broken: whether the motion has mirror images that are other motions.
     """
 
     speed: float
@@ -60,6 +52,7 @@ class JumpSide:
     label: str
     period: int
     multiplier: float
+    symmetry_broken: bool
     state: State
 
 
@@ -153,13 +146,18 @@ def _seen(speed: float, orbit: HeldOrbit, respond: Respond) -> Course[JumpSide]:
 
 
 def _beyond(last: HeldOrbit, speed: float, follower: OrbitFollower, respond: Respond) -> Course[JumpSide]:
-    """What follows an orbit at a speed at which it is lost: it may be left so slowly that the run does not
-    settle, so that larger disturbances are tried.
+    """What follows an orbit at a speed at which it is lost.
+
+    It may be left, and the next motion approached, so slowly that no run settles: then a run goes on once,
+    and larger disturbances are tried. A class that other starts have taken back stays undecided.
     """
     for kick in KICKS:
-        response = yield from respond(speed, follower.aside(last, speed, kick))
-        if response.motion is not Motion.NOT_SETTLED:
-            break
+        state = follower.aside(last, speed, kick)
+        for _ in range(RUNS):
+            response = yield from respond(speed, state)
+            if response.motion is not Motion.NOT_SETTLED or response.looks is not None:
+                return side(speed, response)
+            state = response.state
     return side(speed, response)
 
 
@@ -178,7 +176,7 @@ def _jump(
     after = replace(after, ac_rms=after.ac_rms[_preferred(before.ac_rms, after.ac_rms, images)])
     floor = np.full_like(before.ac_rms, 1e-300)
     ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
-    mesh = int(np.argmax(np.abs(ratio)))
+    mesh = first_largest(np.abs(ratio))
     return Jump(before, after, mesh, position + int(ratio[mesh] > 0.0), error, followed)
 
 
@@ -200,6 +198,7 @@ def _stored_side(piece: Piece, position: int) -> JumpSide:
         label=piece.labels[position],
         period=int(piece.period[position]),
         multiplier=float(piece.leading_multiplier[position]),
+        symmetry_broken=bool(piece.symmetry_broken[position]),
         state=piece.state(position),
     )
 
@@ -237,6 +236,7 @@ def side(speed: float, response: SteadyState) -> JumpSide:
         label=response.label,
         period=response.period,
         multiplier=multiplier,
+        symmetry_broken=symmetry_broken(response),
         state=response.state,
     )
 

@@ -36,7 +36,8 @@ PER_SPEED = (
 
 
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
-    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular.
+    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
+    symmetry_broken.
 
     The unit stands in the quantity. Directions in which a body moves by rounding alone are left out.
     `past_law_fraction` is there where a mesh is past its law at some speed.
@@ -70,6 +71,7 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
         "class": np.tile(labels[order], len(curves)),
         "periodic": np.tile(piece.periodic[order], len(curves)),
         "after_irregular": np.tile(piece.after_irregular[order], len(curves)),
+        "symmetry_broken": np.tile(piece.symmetry_broken[order], len(curves)),
     }
     return pd.DataFrame(table).dropna(subset="value")
 
@@ -94,6 +96,7 @@ JUMP_COLUMNS = (
     "periodic_before",
     "periodic_after",
     "after_irregular",
+    "symmetry_broken",
 )
 RESONANCE_COLUMNS = (
     "direction",
@@ -109,6 +112,7 @@ RESONANCE_COLUMNS = (
     "order",
     "periodic",
     "after_irregular",
+    "symmetry_broken",
 )
 
 
@@ -116,7 +120,7 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
     """One row for each jump: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance.
 
     order: multiple of the mesh frequency at which the mode moves most. after_irregular: of the speed after
-    the one with the larger response.
+    the one with the larger response. symmetry_broken: whether the motion on one side has mirror images.
     """
     rows = []
     for jump in direction.jumps:
@@ -138,6 +142,7 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
                 "periodic_before": before.period > 0,
                 "periodic_after": after.period > 0,
                 "after_irregular": _after_irregular(direction.piece, jump.largest),
+                "symmetry_broken": before.symmetry_broken or after.symmetry_broken,
             }
         )
     return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
@@ -162,6 +167,7 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
                 **_belongs(resonance(piece, position, modes, layout.pinion_teeth)),
                 "periodic": piece.periodic[position],
                 "after_irregular": _after_irregular(piece, position),
+                "symmetry_broken": piece.symmetry_broken[position],
             }
         )
     return pd.DataFrame(rows, columns=list(RESONANCE_COLUMNS))

@@ -1,22 +1,17 @@
 """Jumps of a symmetric machine lie where its motion is lost, on any grid, with any chunks and threads."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from references import against, agrees
+from symmetric_machine import build_symmetric_model, load_gearbox, make_plan
 
-import facegear
-from facegear.config.dynamics import sweep_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
 from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.family import speed_family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.switching import through
-from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.sweep import collect, joined, run_chunk, run_speeds
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 
@@ -30,33 +25,6 @@ GRIDS = [
 ]
 FROM_ABOVE = [9700.0, 9600.0, 9500.0, 9400.0]
 """Speeds (rpm) that lead to one of the mirrored motions, which are stable beside the symmetric one."""
-
-
-@cache
-def load_gearbox():
-    return facegear.load("config/harmonics_only.yaml")
-
-
-@cache
-def build_symmetric_model():
-    config, values = load_gearbox().config, load_gearbox().values
-    teeth = ToothNumbers.of_config(values["tooth_pair"])
-    harmonics = load_gearbox().stiffness().content["harmonics"]
-    return build_model(wired_machine(config.transmission, teeth, harmonics))
-
-
-def make_plan(direction, grid, chunks=1):
-    first, last, points = grid
-    plan = sweep_plan(load_gearbox().config.dynamics.sweep)
-    return replace(
-        plan,
-        first_rpm=first,
-        last_rpm=last,
-        points=points,
-        directions=(direction,),
-        chunks=chunks,
-        overlap=1 if chunks > 1 else 0,
-    )
 
 
 @cache

@@ -250,7 +250,9 @@ def test_a_jump_far_from_a_linear_resonance_is_not_given_its_speed():
     jumps = pd.DataFrame(
         {
             "direction": "up",
+            "kind": "jump",
             "speed_before_rpm": [2953.0, 10475.0],
+            "error_rpm": 0.8,
             "mesh": "a",
             "class_before": "period-1",
             "class_after": "period-1",

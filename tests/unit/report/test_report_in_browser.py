@@ -73,7 +73,7 @@ def report(tmp_path_factory):
     ]
     columns = ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class", "periodic"]
     sweep = pd.DataFrame(rows, columns=columns)
-    jumps = pd.DataFrame({"direction": ["up"], "speed_after_rpm": [4000.0]})
+    jumps = pd.DataFrame({"direction": ["up"], "kind": "jump", "speed_after_rpm": [4000.0]})
     drawn = {
         "mesh_sweep": mesh_sweeps(sweep, jumps, ["input", "tail"], ["upper"]),
         "pinion_sweep": translations(sweep, ["input"], "xy"),

@@ -180,6 +180,6 @@ def test_a_bin_outside_the_range_of_speeds_is_reported_before_any_work():
     fast = {**SMOOTH, "strength.duty": [{**BIN, "torque_n_m": 600, "speed_rpm": 25000}]}
     with pytest.raises(
         ConfigErrors,
-        match=r"strength\.duty\[0\]\.speed_rpm = 25000.*: must be within dynamics\.sweep, 200",
+        match=r"strength\.duty\[0\]\.speed_rpm = 25000.*: must be within dynamics\.sweep, 5000 to 9200",
     ):
         facegear.example().with_values(fast)
