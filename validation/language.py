@@ -11,7 +11,6 @@ may only shrink:
 
 import argparse
 import ast
-import inspect
 import re
 import sys
 from collections import Counter
@@ -311,8 +310,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         Exit code: number 0 where the code agrees with the list.
     """
-    parser = argparse.ArgumentParser("validation.language", description=inspect.cleandoc(__doc__ or ""))
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(
+        "validation.language",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     action = parser.add_mutually_exclusive_group()
     action.add_argument("--shrink", action="store_true", help="remove keys that no longer offend")
     action.add_argument("--create", action="store_true", help="write the list where there is none")

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -128,6 +129,15 @@ def test_bare_names_are_seen_in_any_case_and_number(name):
 )
 def test_plain_words_are_allowed(name):
     assert not language.is_bare(name)
+
+
+def test_the_code_that_contributing_shows_keeps_the_rules():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    blocks = [dedent(block) for block in re.findall(r"(?s)```\w+\n(.*?) *```", text) if "def " in block]
+    assert len(blocks) >= 4
+    for block in blocks:
+        folder = "tests" if "def test_" in block else "facegear"
+        assert not language.offenders_of(Path(folder) / "gear_ratio.py", block)
 
 
 def test_create_writes_a_list_once_and_shrink_never_adds(listed, capsys):
