@@ -1,45 +1,13 @@
-"""Roots in a bracket against functions whose root is known; limits beside a fold."""
+"""Limits of the radii beside a fold of the flank, and rotations."""
 
-from math import radians, tan
+from math import radians
 
 import numpy as np
-import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.placement import rotation
-from facegear.geometry.roots import root
-
-
-@example(-2.225073858507e-311, 1.0, 1.0, 1, False)  # values halved come to zero
-@given(
-    st.floats(-1.5, 1.5),
-    st.floats(0.01, 30.0),
-    st.floats(0.01, 30.0),
-    st.sampled_from([1, 3, 5]),
-    st.booleans(),
-)
-def test_a_root_is_found_to_rounding_in_few_steps(at, below, above, power, falls):
-    asked = []
-
-    def function(x):
-        asked.append(x)
-        return (-1.0 if falls else 1.0) * ((x - at) ** power + 0.1 * (x - at))
-
-    assert root(function, at - below, at + above) == pytest.approx(at, abs=4e-14)
-    assert len(asked) <= 170  # three for every halving of the bracket
-
-
-def test_a_tolerance_saves_steps_and_is_kept():
-    assert root(lambda x: tan(x) - 1.0, 0.0, 1.5, 1e-3) == pytest.approx(np.pi / 4, abs=1e-3)
-
-
-def test_a_bracket_without_a_root_is_refused():
-    with pytest.raises(ValueError, match="no change of sign"):
-        root(lambda x: x * x + 1.0, -1.0, 1.0)
 
 
 def test_rotations_are_scipys():
