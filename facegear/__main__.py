@@ -1,4 +1,4 @@
-"""The command line: `facegear new`, `check`, `run`, `report`, `limits` and `compare`."""
+"""The command line: `facegear new`, `check`, `run`, `report`, `figures`, `limits` and `compare`."""
 
 import argparse
 import os
@@ -58,6 +58,13 @@ def parser() -> argparse.ArgumentParser:
     report.add_argument("--output", type=Path, help="file to write (<case>.html in this folder)")
     report.add_argument("--results", default="results", help="folder of stored results to read (results)")
     report.set_defaults(command=_report)
+    figures = commands.add_parser("figures", help="draw the figures of a config, from stored results")
+    figures.add_argument("config", type=Path, help=CONFIG)
+    figures.add_argument("names", nargs="*", help="figures to draw, such as mesh_sweep (all of them)")
+    figures.add_argument("--png", action="store_true", help="write pictures (png), not drawings (svg)")
+    figures.add_argument("--results", default="results", help="folder of stored results to read (results)")
+    figures.add_argument("--output", type=Path, help="folder to write to (figures/ of the case's results)")
+    figures.set_defaults(command=_figures)
     check = commands.add_parser("check", help="read and check a config, and compute nothing")
     check.add_argument("config", type=Path, help=CONFIG)
     check.set_defaults(command=_check)
@@ -159,6 +166,20 @@ def _report(given: argparse.Namespace) -> int:
     gearbox = facegear.load(given.config, given.results)
     path = given.output or Path(f"{gearbox.config.case}.html")
     print(gearbox.report(path, _printed))
+    return 0
+
+
+def _figures(given: argparse.Namespace) -> int:
+    import facegear
+
+    gearbox = facegear.load(given.config, given.results)
+    folder, suffix = given.output, ".png" if given.png else ".svg"
+    if folder is None:
+        folder = (gearbox.store.folder or Path(given.results) / gearbox.config.case) / "figures"
+        if not given.png:
+            raise FacegearError(f"figures: the svg in {folder} are those of the run: add --png or --output")
+    for path in gearbox.figures(folder, given.names, suffix, _printed):
+        print(path)
     return 0
 
 

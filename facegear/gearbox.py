@@ -258,7 +258,7 @@ class Gearbox:
         Raises ConfigError for a load outside those of the contact analysis.
 
         >>> import facegear
-        >>> facegear.example().stiffness().table()["b_n_per_m"].round(-3).to_list()[0]
+        >>> facegear.example().stiffness().table()["cos_n_per_m"].round(-3).to_list()[0]
         410000000.0
         """
         from facegear.results.stiffness import StiffnessResult
@@ -528,6 +528,38 @@ class Gearbox:
         arguments and errors as of `report`.
         """
         return self._whole_case(on_stage).write(folder)
+
+    def figures(
+        self,
+        folder: str | Path,
+        names: Sequence[str] = (),
+        suffix: str = ".png",
+        on_stage: Callable[[str, str], None] | None = None,
+    ) -> list[Path]:
+        """Draw the figures of the report, from stored results where they are current.
+
+        Parameters
+        ----------
+        folder
+            Where the files go, as `<name><suffix>`.
+        names
+            Names of the figures, such as ``mesh_sweep``; all if empty.
+        suffix
+            Format of the files, one that matplotlib writes (``.png``, ``.svg``, ``.pdf``).
+        on_stage
+            Called with the name of each stage that is computed or read, and its summary.
+
+        Returns
+        -------
+        list of Path
+            The files, in the order of computation.
+
+        Raises
+        ------
+        FacegearError
+            If the case has no figure of such a name.
+        """
+        return self._whole_case(on_stage).write_figures(folder, names, suffix)
 
     def export(self, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
         """Write a model for another program, by the path's ending; returns the path.

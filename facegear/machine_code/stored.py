@@ -58,8 +58,10 @@ class SourcesCache(_Cache):
 
     @property
     def cache_path(self) -> str:
-        """The folder of all machine code."""
-        return str(kept.folder())
+        """The folder of all machine code; empty for a user without a home."""
+        with suppress(OSError):
+            return str(kept.folder())
+        return ""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for a signature; None if the caller is to compile it, for others too."""

@@ -106,8 +106,6 @@ DRAWINGS = ("layout", "machine", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LONG_TABLE = 40
 """Rows of natural frequencies above which their table is folded."""
-LARGEST_SVG = 1_500_000
-"""Bytes; a larger drawing is shown as its png."""
 
 
 def case_report(
@@ -134,12 +132,12 @@ def case_report(
     studied = [name for name in others if name.startswith("contact_")]
     added = {STUDIED_CONTACT: studied, "Load sharing": [name for name in others if name not in studied]}
     drawing = next((name for name in DRAWINGS if name in pictures), None)
-    drawn = () if drawing is None else (_picture(pictures[drawing], caption_of(drawing, values)),)
+    drawn = () if drawing is None else (Picture(pictures[drawing], caption_of(drawing, values)),)
     chapters = [glance_chapter(values, tables, drawn, pair, notes), machine_chapter(values, tables, base)]
     for title, text, names in CHAPTERS:
         shown = [*names, *added.get(title, ())]
         shown_pictures = [
-            _picture(pictures[name], caption_of(name, values))
+            Picture(pictures[name], caption_of(name, values))
             for name in shown
             if name in pictures and name not in (drawing, "machine")
         ]
@@ -157,12 +155,6 @@ def case_report(
         "Every table can be saved as csv."
     )
     return render(f"facegear: {values['case']}", lead, chapters)
-
-
-def _picture(path: Path, caption: str) -> Picture:
-    smaller = path.with_suffix(".png")
-    shown = smaller if path.stat().st_size > LARGEST_SVG and smaller.exists() else path
-    return Picture(shown, caption)
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:

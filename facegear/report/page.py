@@ -26,8 +26,6 @@ PLAIN = (1e-3, 1e6)
 """Numbers between these are written without a power of ten."""
 NAMED = 5
 """Words of a caption that name its file."""
-SCREEN_DPI, PNG_DPI = 96, 160
-"""Points an inch of a page, and of a stored png."""
 PAPER_PT, COLUMN_GAP_PT, LETTER_WIDTH = 532.0, 8.0, 0.64
 """On A4: width of a table, room beside a column (pt), and the mean width of a letter in its height."""
 PRINTED = (4.0, 8.0)
@@ -40,7 +38,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Picture:
-    """A stored svg or png with its caption."""
+    """A stored svg with its caption."""
 
     path: Path
     caption: str
@@ -48,12 +46,9 @@ class Picture:
     @property
     def width_px(self) -> int:
         """Width at which the text has the size it was drawn with."""
-        if self.path.suffix == ".svg":
-            match = re.search(
-                r'<svg[^>]* width="([\d.]+)(pt|px)?"', self.path.read_text(encoding="utf-8")[:4000]
-            )
-            return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
-        return round(int.from_bytes(self.path.read_bytes()[16:20], "big") * SCREEN_DPI / PNG_DPI)
+        start = self.path.read_text(encoding="utf-8")[:4000]
+        match = re.search(r'<svg[^>]* width="([\d.]+)(pt|px)?"', start)
+        return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
 
     @property
     def anchor(self) -> str:

@@ -44,10 +44,10 @@ def shaft_orders(
     orders, loaded = turn_orders(machine), loaded_machine(machine)
 
     def amplitudes(some: TurnOrders, speed: float) -> np.ndarray:
-        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.springs)
+        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.closed)
 
-    running, still = amplitudes(orders, speed_rpm), mesh_amplitudes(loaded.at_rest(orders), loaded.springs)
-    error = 1e6 * mesh_amplitudes(orders.error, loaded.springs)
+    running, still = amplitudes(orders, speed_rpm), mesh_amplitudes(loaded.at_rest(orders), loaded.closed)
+    error = 1e6 * mesh_amplitudes(orders.error, loaded.closed)
     nominal = mesh_frequency(layout, speed_rpm)
     rows = [
         (*_key(orders, row, nominal), name, error[row, mesh], running[row, mesh], still[row, mesh])

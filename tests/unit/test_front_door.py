@@ -346,7 +346,7 @@ def test_stiffness_over_the_pinions_angle_is_the_series_over_one_pitch(gearbox):
     orders = found.table()
     np.testing.assert_allclose(curve["pinion_angle_deg"], np.arange(32) * 360 / (23 * 32))
     spectrum = np.fft.rfft(curve["k_n_per_m"]) / 32
-    np.testing.assert_allclose(spectrum[0].real, orders["b_n_per_m"][0], rtol=1e-12)
+    np.testing.assert_allclose(spectrum[0].real, orders["cos_n_per_m"][0], rtol=1e-12)
     own = spectrum[1 : len(orders)]
-    np.testing.assert_allclose(2 * own.real, orders["b_n_per_m"][1:], atol=1e-6 * 4e8)
-    np.testing.assert_allclose(-2 * own.imag, orders["a_n_per_m"][1:], atol=1e-6 * 4e8)
+    np.testing.assert_allclose(2 * own.real, orders["cos_n_per_m"][1:], atol=1e-6 * 4e8)
+    np.testing.assert_allclose(-2 * own.imag, orders["sin_n_per_m"][1:], atol=1e-6 * 4e8)

@@ -14,7 +14,7 @@ pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("newcomers")]
 PLAINEST = """
 case: plain
 tooth_pair: {pinion_teeth: 23, face_gear_teeth: 143, module_mm: 3.75, pressure_angle_deg: 25}
-mesh_stiffness: {source: harmonics, table: [{order: 0, b_n_per_m: 4.1e8}, {order: 1, a_n_per_m: 2.0e7}]}
+mesh_stiffness: {source: harmonics, table: [{order: 0, cos_n_per_m: 4.1e8}, {order: 1, sin_n_per_m: 2.0e7}]}
 transmission:
   pinions: [{name: input, role: input, angle_deg: 0}]
   face_gears: [upper]

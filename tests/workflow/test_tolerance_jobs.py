@@ -22,7 +22,7 @@ mesh_stiffness:
   mesh_law: constant_load
   mean_n_per_m: 4.1e8
   torque_n_m: null
-  table: [{order: 1, a_n_per_m: 2.0e7, b_n_per_m: 0}]
+  table: [{order: 1, sin_n_per_m: 2.0e7, cos_n_per_m: 0}]
 transmission: {transmission_error: {amplitude_um: 3}, pinion: {runout: null}, face_gear: {runout: null}}
 strength: null
 tolerances: {samples: SAMPLES, chunk_samples: CHUNK, index_blocks: 0}

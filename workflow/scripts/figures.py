@@ -5,7 +5,6 @@ from importlib import import_module
 from facegear.config.arguments import typed_arguments
 from facegear.pipeline.run import read_all
 from facegear.pipeline.stage import FIGURES, load
-from facegear.plots.once import TEXTS, found_once
 from facegear.plots.style import save
 from facegear.provenance.stage import stage
 
@@ -17,6 +16,5 @@ with stage(snakemake) as run:
     given = read_all(drawn.upstream, snakemake.input, stages)
     draw = load(drawn.draw)
     figures = draw(**given, **typed_arguments(draw, snakemake.params.needs))
-    with found_once(TEXTS):
-        for figure, *paths in zip(figures, *(getattr(snakemake.output, kind) for kind in KINDS), strict=True):
-            save(figure, *paths)
+    for figure, *paths in zip(figures, *(getattr(snakemake.output, kind) for kind in KINDS), strict=True):
+        save(figure, *paths)

@@ -76,8 +76,10 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
 
 JUMP_COLUMNS = (
     "direction",
+    "kind",
     "speed_before_rpm",
     "speed_after_rpm",
+    "error_rpm",
     "mesh",
     "deflection_ac_rms_before_um",
     "deflection_ac_rms_after_um",
@@ -122,8 +124,10 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
         rows.append(
             {
                 "direction": name,
+                "kind": jump.kind.value,
                 "speed_before_rpm": before.speed,
                 "speed_after_rpm": after.speed,
+                "error_rpm": jump.error,
                 "mesh": layout.mesh_names[jump.mesh],
                 "deflection_ac_rms_before_um": UM * before.ac_rms[jump.mesh],
                 "deflection_ac_rms_after_um": UM * after.ac_rms[jump.mesh],

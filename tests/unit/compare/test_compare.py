@@ -74,7 +74,7 @@ def test_a_mesh_a_thousandth_stiffer_is_found(nominal, tmp_path):
 def test_a_number_is_judged_by_its_own_numerical_error(factor, verdict, nominal, tmp_path):
     shutil.copytree(nominal, tmp_path, dirs_exist_ok=True)
     table = pd.read_csv(tmp_path / "stiffness/harmonics.csv")
-    table.loc[0, "b_n_per_m"] *= factor
+    table.loc[0, "cos_n_per_m"] *= factor
     table.to_csv(tmp_path / "stiffness/harmonics.csv", index=False)
     assert compare(nominal, tmp_path).rows["verdict"].to_list() == [verdict] * (verdict is not None)
 

@@ -40,7 +40,7 @@ def test_what_a_user_knows_is_enough_for_a_config_without_mistakes(known, tmp_pa
 
 def test_idlers_lead_what_the_lower_gear_takes_to_the_upper_one(tmp_path):
     values = written(MACHINES[4], tmp_path)
-    values["mesh_stiffness"] = {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4.1e8}]}
+    values["mesh_stiffness"] = {"source": "harmonics", "table": [{"order": 0, "cos_n_per_m": 4.1e8}]}
     values["transmission"]["transmission_error"] = {"amplitude_um": 0}
     statics = facegear.load(values).statics()
     power = statics.table().set_index("mesh")["power_kw"]

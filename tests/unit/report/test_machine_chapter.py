@@ -18,7 +18,7 @@ from facegear.report.warnings import warnings
 @pytest.fixture(scope="module")
 def example():
     values = facegear.example().values
-    harmonics = pd.DataFrame({"order": [0, 1], "a_n_per_m": [0.0, 0.0], "b_n_per_m": [4.1e8, 1e7]})
+    harmonics = pd.DataFrame({"order": [0, 1], "sin_n_per_m": [0.0, 0.0], "cos_n_per_m": [4.1e8, 1e7]})
     return values, call(STAGES["ratings"], {"harmonics": harmonics, **stage_needs("ratings", values)}).content
 
 
@@ -193,7 +193,7 @@ def test_a_machine_whose_output_is_a_pinion_shows_its_torque_and_ratio(example):
         "face_gears": ["upper"],
         "torque": {"per_input_n_m": 0.0, "tail_share": 0.0},
     }
-    harmonics = pd.DataFrame({"order": [0], "a_n_per_m": [0.0], "b_n_per_m": [4.1e8]})
+    harmonics = pd.DataFrame({"order": [0], "sin_n_per_m": [0.0], "cos_n_per_m": [4.1e8]})
     needs = {**stage_needs("ratings", example[0]), "transmission": section}
     numbers = key_numbers(call(STAGES["ratings"], {"harmonics": harmonics, **needs}).content, None).set_index(
         "quantity"

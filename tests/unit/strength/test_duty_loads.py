@@ -25,7 +25,7 @@ pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is co
 
 BIN = {"speed_rpm": 7500, "hours": 10}
 SMOOTH = {
-    "mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4e8}]},
+    "mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "cos_n_per_m": 4e8}]},
     "transmission.transmission_error.amplitude_um": 0,
     "strength.load_factors": "machine",
     "dynamics.accuracy.periodic_residual": 1e-9,  # a transient that is left may be some twenty times as large
