@@ -108,7 +108,7 @@ def installed_version() -> str:
 
 def _new(given: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
-    from facegear.config.starting import Known, starting_config
+    from facegear.variants.first_machine import Known, first_machine
     from facegear.variants.gear_unit import known_of_rexs
 
     if given.config.exists():

@@ -55,7 +55,7 @@ class SplitMachine:
             Force of the upper mesh over half of `input_force`; 2 where the lower mesh carries nothing.
         """
         loop = self._loop(idler_bearing)
-        gap = 2.0 * self.backlash * self.mesh_stiffness / self.input_force
+        gap = self.backlash * self.mesh_stiffness / self.input_force
         return float(min(1.0 + (loop + gap) / (self._softness(input_bearing) + loop), 2.0))
 
     def input_bearing_for(self, k_gamma: float, idler_bearing: float) -> float:
@@ -64,7 +64,7 @@ class SplitMachine:
         Infinite where even a rigid bearing shares better, 0 where no bearing is soft enough.
         """
         loop = self._loop(idler_bearing)
-        gap = 2.0 * self.backlash * self.mesh_stiffness / self.input_force
+        gap = self.backlash * self.mesh_stiffness / self.input_force
         softness = (loop + gap) / (k_gamma - 1.0) - loop
         if softness <= 1.0:
             return float("inf")

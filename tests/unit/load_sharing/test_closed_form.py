@@ -69,7 +69,7 @@ def config_of(idlers, input_bearing, idler_bearing, backlash_um):
             "module_mm": 3.75,
             "pressure_angle_deg": 25,
         },
-        "mesh_stiffness": {"source": "harmonics", "mean_n_per_m": STIFFNESS},
+        "mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "cos_n_per_m": STIFFNESS}]},
         "transmission": {
             "pinions": pinions,
             "face_gears": ["lower", "upper"],
