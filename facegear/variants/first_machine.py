@@ -1,9 +1,11 @@
 """A machine to start from: what a user knows of a gearbox, and a choice with its reason for all the rest."""
 
 from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import dataclass, fields
+from functools import cached_property
 from importlib.resources import files
-from math import cos, pi, radians, sin, sqrt
+from math import cbrt, ceil, cos, pi, radians, sin, sqrt
 from pathlib import Path
 from string import Template
 from tempfile import TemporaryDirectory
@@ -14,10 +16,13 @@ import numpy as np
 from facegear.config.base import parse
 from facegear.config.load import config_of
 from facegear.config.machines import case_machine
+from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.model import resolved
 from facegear.config.strength import Strength, rating_request
 from facegear.config.yaml_file import read_yaml
-from facegear.errors import ConfigError
+from facegear.contact.resolution import COARSEST, half_width
+from facegear.errors import ConfigError, FacegearError
+from facegear.geometry.design import Material
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.closed_form import SplitMachine
 from facegear.strength.rating import hertz_stress, permissible_bending, pinion_form, standard_bending
@@ -47,8 +52,6 @@ BORE = 0.65
 """Bore of a pinion over its root radius."""
 LEFT_ABOVE_BORE = 0.8
 """Least thickness, in modules, between bore and root of a pinion."""
-POSITION_UM = 8.0
-"""Distance of each bearing from where it should be, um: inside a bore tolerance of 20 um."""
 GOLDEN_DEG = 137.508
 """Angle between the directions of the errors of one pinion and the next, so that no two are alike."""
 TORQUE_MARGINS = (0.7, 1.5)
@@ -57,6 +60,14 @@ LEAST_LOADED = 0.05
 """Part of the largest mesh load below which the contact analysis does not follow a mesh."""
 SPEEDS = (0.2, 1.5)
 """First and last speed of the sweep over the nominal one."""
+TORQUES = 4
+"""Torques of the contact analysis."""
+PROFILE_CUTS = 3
+"""Cuts across the profile where the lightest torque asks for no more: the default of contact.refinement."""
+MOST_CUTS = 32
+"""Largest number of cuts that contact.refinement takes."""
+MATERIAL = Material(206e9, 0.3)
+"""Steel."""
 RESONANCES = 3
 """Number of resonances that are named."""
 
@@ -215,35 +226,48 @@ class Draft:
 
     def machine(self, bearings: Bearings) -> Machine:
         """The machine with these bearings and one constant mesh stiffness, an estimate."""
-        return case_machine(self.config_values(bearings), Harmonics(np.zeros(1), np.array([self.stiffness])))
+        values = deepcopy(self.values_of_config)
+        transmission = values["transmission"]
+        transmission["pinion"]["bearing_stiffness_n_per_m"] |= self._spring_values(bearings.inputs)
+        transmission["face_gear"]["bearing_stiffness_n_per_m"] |= dict.fromkeys("xyz", bearings.gears)
+        for single in transmission["single_pinions"].values():
+            if single["bearing_stiffness_n_per_m"] is not None:
+                single["bearing_stiffness_n_per_m"] |= self._spring_values(bearings.idlers)
+        return case_machine(values, Harmonics(np.zeros(1), np.array([self.stiffness])))
 
-    def config_values(self, bearings: Bearings) -> dict[str, Any]:
-        """Plain values of the config with these bearings, checked."""
+    @cached_property
+    def values_of_config(self) -> dict[str, Any]:
+        """Plain values of the config with stiff bearings, checked."""
         torque = self.known.torque_n_m
         with TemporaryDirectory() as folder:
             path = Path(folder) / "draft.yaml"
-            path.write_text(self.text(bearings, (0.5 * torque, torque)), encoding="utf-8")
+            path.write_text(self.text(self.stiff_bearings(), (0.5 * torque, torque)), encoding="utf-8")
             values = read_yaml(path)
         # Conjugate flanks have no e(t) without load, and no contact analysis is made for an estimate.
         values["transmission"]["transmission_error"] = {"amplitude_um": 0}
         return resolved(config_of(values))
+
+    def _spring_values(self, radial: float) -> dict[str, float]:
+        axial = self.known.axial_bearing_n_per_m
+        return {"x": radial, "y": radial, "z": radial if axial is None else axial}
 
     def text(self, bearings: Bearings, loads: tuple[float, float]) -> str:
         """The config as YAML; `loads`: smallest and largest torque of a mesh at rest, N m."""
         known = self.known
         positions, kept, points, cycles = (8, 3, 12, 50) if known.coarse else (32, 8, 200, 200)
         low, high = TORQUE_MARGINS[0] * loads[0], TORQUE_MARGINS[1] * loads[1]
-        torques = np.geomspace(low, high, 4)
+        torques = [float(f"{torque:.4g}") for torque in np.geomspace(low, high, TORQUES)]
         template = Template((files("facegear.variants") / "starting.yaml").read_text(encoding="utf-8"))
         return template.substitute(
             {name: f"{value:.10g}" for name, value in self.values.items()}
-            | {f"why_{name}": reason for name, reason in self._reasons(bearings).items()},
+            | {f"why_{name}": reason for name, reason in self._reasons().items()},
             case=known.case,
             pinion_teeth=known.pinion_teeth,
             face_gear_teeth=known.face_gear_teeth,
             module_mm=f"{known.module_mm:.10g}",
             pressure_angle_deg=f"{known.pressure_angle_deg:.10g}",
-            torques=", ".join(f"{torque:.4g}" for torque in torques),
+            torques=", ".join(f"{torque:g}" for torque in torques),
+            refinement=self._refinement(torques[0]),
             positions=positions,
             kept=kept,
             points=points,
@@ -255,7 +279,7 @@ class Draft:
             pinion_inertia=_text(self.pinion_inertia),
             gear_inertia=_text(self.gear_inertia),
             input_bearing=self._bearing(bearings.inputs),
-            gear_bearing=_springs(bearings.gears, bearings.gears),
+            gear_bearing="{" + ", ".join(f"{axis}: {bearings.gears:.3g}" for axis in "xyz") + "}",
             gear_runout=self._runout(2e3 * self._gear_pitch_radius(), 0.0),
             single_pinions=self._single_pinions(bearings),
             input_torque=f"{known.torque_n_m:.10g}",
@@ -264,12 +288,29 @@ class Draft:
             fast=f"{SPEEDS[1] * known.speed_rpm:.6g}",
         )
 
+    def _refinement(self, torque: float) -> int:
+        """Cuts across the profile that resolve the contact at a torque, N m.
+
+        Raises FacegearError for a load too light to resolve.
+        """
+        design = self.teeth.design
+        strip = half_width(design, (MATERIAL, MATERIAL), 0.99 * torque)
+        profile = mesh_sizes(Mesh(), design.module).profile
+        cuts = max(PROFILE_CUTS, ceil(profile / (2.0 * COARSEST * strip)))
+        if cuts > MOST_CUTS:
+            least = self.known.torque_n_m * (cuts / MOST_CUTS) ** 2
+            raise FacegearError(
+                f"torque_n_m = {self.known.torque_n_m:g}: a load this light cannot be resolved by the contact "
+                f"analysis; nearest: {least:.3g}"
+            )
+        return cuts
+
     def _gear_pitch_radius(self) -> float:
         return 0.5e-3 * self.known.module_mm * self.known.face_gear_teeth
 
     def _bearing(self, radial: float) -> str:
-        axial = self.known.axial_bearing_n_per_m
-        return _springs(radial, radial if axial is None else axial)
+        springs = self._spring_values(radial)
+        return "{" + ", ".join(f"{axis}: {stiffness:.3g}" for axis, stiffness in springs.items()) + "}"
 
     def _runout(self, diameter_mm: float, phase_deg: float) -> str:
         """Runout of a body of a split-torque machine as a further key; nothing for other machines."""
@@ -282,11 +323,12 @@ class Draft:
         """Bearings and errors of the pinions of a split-torque machine; nothing for other machines."""
         if not self.known.idlers:
             return ""
-        lines = ["  single_pinions: # chosen: bores within 20 um, runouts of ISO 1328-1 grade 5\n"]
+        away = position_um(self._gear_pitch_radius())
+        lines = ["  single_pinions: # chosen: bores inside grade IT5, runouts of ISO 1328-1 grade 5\n"]
         diameter = self.known.module_mm * self.known.pinion_teeth
         for number, (name, role) in enumerate(_named(self.known)):
             angle = GOLDEN_DEG * number % 360.0
-            x, y = POSITION_UM * cos(radians(angle)), POSITION_UM * sin(radians(angle))
+            x, y = away * cos(radians(angle)), away * sin(radians(angle))
             bearing = (
                 "" if role == "input" else f"bearing_stiffness_n_per_m: {self._bearing(bearings.idlers)}, "
             )
@@ -296,7 +338,7 @@ class Draft:
             )
         return "".join(lines)
 
-    def _reasons(self, bearings: Bearings) -> dict[str, str]:
+    def _reasons(self) -> dict[str, str]:
         """Reason of each value, or that it was given."""
         low, high = (1e3 * radius for radius in self.teeth.allowed)
         face = f"chosen within {low:.4g} to {high:.4g} mm, between undercut and pointed tips"
@@ -367,7 +409,7 @@ class Draft:
 
     def _safeties(self, mesh_torque: float) -> tuple[float, float]:
         design, ratio = self.teeth.design, self.teeth.analysis.contact_ratio
-        values = self.config_values(self.stiff_bearings())["strength"]
+        values = self.values_of_config["strength"]
         request = rating_request(parse(Strength, values), design)
         form = pinion_form(design, ratio)
         allowed = permissible_bending(design, request.bodies["pinion"], form.notch_parameter, 0.0)
@@ -394,6 +436,12 @@ def cumulative_pitch_um(diameter_mm: float, module_mm: float) -> float:
     return 0.002 * diameter_mm + 0.55 * sqrt(diameter_mm) + 0.7 * module_mm + 12.0
 
 
+def position_um(radius: float) -> float:
+    """Distance, um, of a bearing from its place at a radius (m): half of the tolerance IT5 of ISO 286-1."""
+    size = 1e3 * radius
+    return 0.5 * 7.0 * (0.45 * cbrt(size) + 0.001 * size)
+
+
 def _ring(outer_mm: float, inner_mm: float, width_mm: float) -> tuple[float, float]:
     """Mass (kg) and inertia (kg m2) of a steel ring."""
     outer, inner, width = 1e-3 * outer_mm, 1e-3 * inner_mm, 1e-3 * width_mm
@@ -407,10 +455,6 @@ def _short(value: float) -> float:
 
 def _text(value: float) -> str:
     return f"{value:.4g}"
-
-
-def _springs(radial: float, axial: float) -> str:
-    return f"{{x: {radial:.3g}, y: {radial:.3g}, z: {axial:.3g}}}"
 
 
 def _plural(count: int, noun: str) -> str:

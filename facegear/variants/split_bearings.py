@@ -14,15 +14,15 @@ from facegear.transmission.machine import Machine
 
 STIFF = 5.0
 """Radial stiffness of a bearing over that of a mesh, where load sharing does not depend on it."""
-IDLERS = (5.0, 3.0, 2.0, 1.2)
+IDLERS = (5.0, 3.0, 2.0, 1.2, 0.7, 0.4, 0.2, 0.1, 0.06, 0.03)
 """Radial stiffness of the idlers' bearings over that of a mesh, the stiffest tried first.
 
 Stiff idlers even out the inputs, soft ones even out the idlers among each other.
 """
 AIMS = (1.20, 1.15, 1.10, 1.05)
 """K_gamma of the inputs without errors, tried in this order; errors add to it."""
-SOFTEST = 0.02
-"""Softest radial bearing of an input over a mesh's stiffness: 7e6 N/m at 25 mm of face, a quill shaft."""
+SOFTEST = 0.005
+"""Softest radial bearing of an input over a mesh: some 2e6 N/m, a pinion on a quill shaft."""
 LARGEST_K_GAMMA, LEAST_K_GAMMA = 1.3, 0.7
 """K_gamma up to which a split counts as right, and down to which that of idlers does."""
 POSITIONS, CYCLES = 2, 120

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from itertools import product
 from math import ceil, radians, sin
 from typing import Any
@@ -94,6 +95,7 @@ class _Refusals:
         return max(self.counts, key=lambda reason: self.counts[reason])
 
 
+@lru_cache(maxsize=64)
 def choose_teeth(wishes: ToothWishes) -> ChosenTeeth:
     """Return the highest teeth without undercut and interference that meet all wishes.
 
@@ -137,7 +139,6 @@ def choose_teeth(wishes: ToothWishes) -> ChosenTeeth:
 
 def _no_teeth(wishes: ToothWishes, refusals: _Refusals) -> FacegearError:
     """Name the geometric reason why no candidate is left."""
-    numbers = f"{wishes.pinion_teeth}/{wishes.face_gear_teeth}"
     if "gap" in refusals.counts:
         reason = "the teeth of every candidate interfere; a larger pressure angle or more pinion teeth help"
     elif "contact ratio" in refusals.counts:
@@ -147,7 +148,10 @@ def _no_teeth(wishes: ToothWishes, refusals: _Refusals) -> FacegearError:
         )
     else:
         reason = refusals.most_frequent
-    return ConfigError("teeth", numbers, f"others: {reason}")
+    return FacegearError(
+        f"no teeth for {wishes.pinion_teeth}/{wishes.face_gear_teeth} at {wishes.pressure_angle_deg:g} deg "
+        f"with these wishes: {reason}"
+    )
 
 
 def _require_numbers(wishes: ToothWishes) -> None:
