@@ -300,8 +300,8 @@ class Draft:
         if cuts > MOST_CUTS:
             least = self.known.torque_n_m * (cuts / MOST_CUTS) ** 2
             raise FacegearError(
-                f"torque_n_m = {self.known.torque_n_m:g}: the contact analysis cannot resolve so light a load; "
-                f"nearest: {least:.3g}"
+                f"torque_n_m = {self.known.torque_n_m:g}: the contact analysis cannot resolve so light "
+                f"a load; nearest: {least:.3g}"
             )
         return cuts
 
