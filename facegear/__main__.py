@@ -12,7 +12,7 @@ from typing import NoReturn
 from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
 from facegear.io.atomic import atomic_path
-from facegear.questions import QUESTIONS, answered, flag
+from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
 CONFIG = "config file (yaml)"
@@ -36,6 +36,9 @@ def parser() -> argparse.ArgumentParser:
     new.add_argument("config", type=Path, help="file to write, such as own.yaml")
     for name, (kind, default, text) in QUESTIONS.items():
         new.add_argument(flag(name), type=kind, help=text + ("" if default is None else f" ({default})"))
+    chosen = new.add_argument_group("values that are chosen unless they are given")
+    for name, (kind, text) in OPTIONS.items():
+        chosen.add_argument(flag(name), type=kind, help=text)
     new.add_argument(
         "--from", dest="rexs", type=Path, metavar="REXS", help="REXS file whose equal pinions are taken over"
     )
@@ -108,7 +111,7 @@ def installed_version() -> str:
 
 def _new(given: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
-    from facegear.config.starting import Known, starting_config
+    from facegear.variants.first_machine import Known, first_machine
     from facegear.variants.gear_unit import known_of_rexs
 
     if given.config.exists():
@@ -119,13 +122,18 @@ def _new(given: argparse.Namespace) -> int:
     if given.idlers and given.pinions is None and "pinions" in read:
         read["pinions"] = max(read["pinions"] - given.idlers, 0)
     own = {name: value for name, value in vars(given).items() if value is not None}
-    known = Known(case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own})))
+    given_values = {name: own[name] for name in OPTIONS if name in own}
+    known = Known(
+        case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own}) | given_values)
+    )
+    machine = first_machine(known)
     with atomic_path(given.config) as temporary:
-        temporary.write_text(starting_config(known), encoding="utf-8")
+        temporary.write_text(machine.text, encoding="utf-8")
         try:
             load_config(temporary)
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
+    print(*machine.expected, sep="\n")
     print(f"{given.config}: written; `facegear report {given.config}` computes it")
     return 0
 
