@@ -11,7 +11,7 @@ from typing import NoReturn
 
 from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
-from facegear.io.atomic import atomic_path
+from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
@@ -19,13 +19,22 @@ CONFIG = "config file (yaml)"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; a mistake of the user's ends it with one line each and exit code 1."""
+    """Run a command; a mistake of the user's ends it with one line each and exit code 1.
+
+    So does a file or folder that the system refuses.
+    """
     given = parser().parse_args(arguments)
     try:
         return given.command(given)
     except FacegearError as error:
         print(error, file=sys.stderr)
-        return 1
+    except OSError as error:
+        if error.filename is None:
+            raise
+        print(
+            f"{os.fsdecode(error.filename)}: {(error.strerror or 'cannot be used').lower()}", file=sys.stderr
+        )
+    return 1
 
 
 def parser() -> argparse.ArgumentParser:
@@ -153,7 +162,24 @@ def _with_snakemake(given: argparse.Namespace) -> NoReturn:
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
-    os.execv(sys.executable, [*command, "--", *given.targets])
+    folder = Path(given.directory)
+    for inside in ("", ".snakemake", "results"):
+        require_writable(folder / inside)
+    os.execve(sys.executable, [*command, "--", *given.targets], _with_cache(folder.resolve()))
+
+
+def _with_cache(folder: Path) -> dict[str, str]:
+    """This process's environment, with a cache in a folder of results where the home folder allows none.
+
+    Snakemake ends with a traceback where it cannot make its own folder there.
+    """
+    from platformdirs import user_cache_path
+
+    try:
+        require_writable(user_cache_path("snakemake"))
+    except (FacegearError, RuntimeError):
+        return {**os.environ, "XDG_CACHE_HOME": str(folder / ".snakemake" / "cache")}
+    return dict(os.environ)
 
 
 def _run_here(given: argparse.Namespace) -> int:
@@ -216,6 +242,8 @@ def _compare(given: argparse.Namespace) -> int:
     from facegear.compare.judge import compare
     from facegear.compare.page import by_table, causes_table, verdict, write_page
 
+    if given.page:
+        require_writable_file(given.page)
     with opened(given.old) as old, opened(given.new) as new:
         comparison = compare(old, new)
         reasons = causes_table(comparison, old, new)

@@ -71,7 +71,7 @@ def load(config: str | Path | Mapping[str, Any], results: str | Path | None = "r
     if isinstance(config, Mapping):
         read, folders = config_of(config), [Path()]
     else:
-        read, folders = load_config(config), [Path(), Path(config).resolve().parents[1]]
+        read, folders = load_config(config), [Path(), Path(config).resolve().parent.parent]
     return Gearbox(read, Store(None if results is None else case_folder(folders, results, read.case)))
 
 
@@ -526,6 +526,11 @@ class Gearbox:
         """
         from facegear.results.tooth_errors import ToothErrorsResult
 
+        bodies = filter(None, (self.config.tooth_pair.pinion, self.config.tooth_pair.face_gear))
+        grids = [body.flanks.grids for body in bodies]
+        if grids and all(grid.tooth is None for given in grids for grid in given):
+            allowed = "given for single teeth of pinion or face_gear: all are alike"
+            raise ConfigError("tooth_pair.pinion.flanks.grids", [], allowed)
         return self._chain.result(ToothErrorsResult)
 
     def sensitivity(self, positions: int | None = None) -> "SensitivityResult":

@@ -47,6 +47,12 @@ def running_mesh_table(moving: Running) -> pd.DataFrame:
     return table
 
 
+RUNNING_COLUMNS = (
+    *("group", "kind", "speed_rpm", "mesh_cycles", "mean", "torque_n_m", "k_gamma", "k_v"),
+    *("k_gamma_static", "k_gamma_static_whole", "cut", "sampling", "lead_cycles", "memory"),
+)
+
+
 def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
     """One row a group: K_gamma while running, quasi-static over the same cycles and over all; K_v.
 
@@ -84,7 +90,7 @@ def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
                 "memory": moving.memory,
             }
         )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=list(RUNNING_COLUMNS))
 
 
 def _dynamic_factor(moving: LoadHistory, group: LoadGroup) -> float:

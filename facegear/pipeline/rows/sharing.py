@@ -112,7 +112,9 @@ ROWS = (
                 ("mean_n", "drive_fraction", "back_fraction"),
                 text=("mesh", "group"),
             ),
-            "groups": File("load_sharing/hunting_groups.csv", ("torque_n_m",), text=("group", "kind")),
+            "groups": File(
+                "load_sharing/hunting_groups.csv", ("torque_n_m",), may_be_empty=True, text=("group", "kind")
+            ),
             "bearings": File(
                 "load_sharing/bearings.csv", ("body", "mean_x_n", "mean_y_n", "mean_z_n"), text=("body",)
             ),
@@ -120,9 +122,12 @@ ROWS = (
             "scan": File(
                 "load_sharing/bearing_stiffness.csv",
                 ("stiffness_n_per_m", "k_gamma"),
+                may_be_empty=True,
                 text=("kinematics", "varied", "kind"),
             ),
-            "sensitivity": File("load_sharing/sensitivity.csv", ("per_um",), text=("error", "group")),
+            "sensitivity": File(
+                "load_sharing/sensitivity.csv", ("per_um",), may_be_empty=True, text=("error", "group")
+            ),
         },
         figures=Figures(
             draw="facegear.plots.hunting:figures",
@@ -146,7 +151,7 @@ ROWS = (
         },
         upstream={**MOVING, **TOOTH_ERRORS},
         files={
-            "groups": File("load_sharing/following_groups.csv"),
+            "groups": File("load_sharing/following_groups.csv", may_be_empty=True),
             "meshes": File("load_sharing/following_meshes.csv"),
         },
         asked=asked.following,
