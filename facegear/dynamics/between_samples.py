@@ -7,10 +7,10 @@ from facegear.arrays import Array, Integers, Mask
 
 REACH = 3
 """Samples on each side of the largest one through which a polynomial is laid."""
-HIGHEST = 64
-"""Samples of each column, the highest ones, among which peaks are looked for."""
+COMPARED = 64
+"""Samples of each column, those with the largest values, among which peaks are looked for."""
 CANDIDATES = 2
-"""Samples of each column that are looked at: those with the highest parabolas."""
+"""Samples of each column that are looked at: those with the largest parabolas."""
 LOOKS = 16
 """Parts of the time between two samples at whose ends the polynomial is evaluated."""
 FINE_STEPS = np.linspace(-1.0, 1.0, 2 * LOOKS + 1)
@@ -21,7 +21,7 @@ def located_extremes(values: Array, wraps: bool) -> tuple[Array, Array]:
     """Locate the smallest and the largest value of each column of even samples.
 
     A polynomial of sixth degree goes through a sample and three neighbours on each side. The parabola through
-    the highest three of its points gives the extreme. No extreme is less far out than the samples.
+    the largest three of its points gives the extreme. No extreme is less far out than the samples.
 
     Parameters
     ----------
@@ -44,8 +44,8 @@ def located_largest(values: Array, wraps: bool) -> Array:
     return np.maximum(np.abs(minimum), np.abs(maximum))
 
 
-def highest_peaks(values: Array, wraps: bool) -> tuple[Integers, Mask]:
-    """Find the samples whose neighbours' parabolas rise highest.
+def max_peaks(values: Array, wraps: bool) -> tuple[Integers, Mask]:
+    """Find the samples whose neighbours' parabolas rise most.
 
     Parameters
     ----------
@@ -58,11 +58,11 @@ def highest_peaks(values: Array, wraps: bool) -> tuple[Integers, Mask]:
     -------
     rows : (CANDIDATES, columns)
         Numbers of samples.
-    found : (CANDIDATES, columns)
+    is_peak : (CANDIDATES, columns)
         Whether that sample is a peak: a column may have fewer.
     """
     count = len(values)
-    kept = min(HIGHEST, count)
+    kept = min(COMPARED, count)
     at = np.argpartition(values, count - kept, axis=0)[-kept:]
     heights, peak = _parabolas(values, at, wraps)
     best = np.argsort(np.where(peak, heights, -np.inf), axis=0)[-CANDIDATES:]
@@ -78,7 +78,7 @@ def values_around(values: Array, rows: Integers) -> Array:
 
 
 def top_of(fine: Array) -> Array:
-    """Largest (...) of fine even samples (n, ...), by the parabola through the highest three."""
+    """Largest (...) of fine even samples (n, ...), by the parabola through the largest three."""
     best = np.clip(fine.argmax(axis=0), 1, len(fine) - 2)
     low, middle, high = (np.take_along_axis(fine, (best + step)[None], axis=0)[0] for step in (-1, 0, 1))
     bend, slope = 2.0 * middle - low - high, 0.5 * (high - low)
@@ -134,8 +134,8 @@ def _located_maxima(values: Array, wraps: bool) -> Array:
     largest = np.asarray(values.max(axis=0))
     if len(values) <= 2 * REACH:
         return largest
-    rows, found = highest_peaks(values, wraps)
-    return np.where(found, np.maximum(largest, _tops(values, rows)), largest).max(axis=0)
+    rows, is_peak = max_peaks(values, wraps)
+    return np.where(is_peak, np.maximum(largest, _tops(values, rows)), largest).max(axis=0)
 
 
 def _parabolas(values: Array, rows: Integers, wraps: bool) -> tuple[Array, Mask]:

@@ -4,7 +4,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.by_content import kept_by_content
-from facegear.dynamics.between_samples import FINE_STEPS, REACH, highest_peaks, top_of, values_around
+from facegear.dynamics.between_samples import FINE_STEPS, REACH, max_peaks, top_of, values_around
 from facegear.dynamics.integrator.system import System
 from facegear.harmonics.series import stacked_values
 from facegear.mesh_law.law import beyond_edges, past_levels
@@ -78,12 +78,12 @@ def largest_mesh_forces(system: System, each: Array, per_period: int, wraps: boo
     largest = np.asarray(sizes.max(axis=0))
     if len(each) <= 2 * REACH:
         return largest
-    rows, found = highest_peaks(sizes, wraps)
+    rows, is_peak = max_peaks(sizes, wraps)
     fine = values_around(each, rows.ravel())
     fine = fine.reshape(-1, fine.shape[2])
     instants = (rows.ravel() + FINE_STEPS[:, None]).ravel() / per_period
     forces = np.abs(_transmitted(system, fine, instants)).reshape(FINE_STEPS.size, *rows.shape, -1)
-    for candidate, peak in enumerate(found):
+    for candidate, peak in enumerate(is_peak):
         own = np.diagonal(forces[:, candidate], axis1=1, axis2=2)
         largest = np.where(peak, np.maximum(largest, top_of(own)), largest)
     return largest
