@@ -1,10 +1,13 @@
 """Load sharing of the running machine while its runouts turn, beside the quasi-static one."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
 
+from facegear.arrays import Array
+from facegear.dynamics.between_samples import located_extremes
 from facegear.dynamics.following import Followed, follow
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model
@@ -22,6 +25,11 @@ class Running(LoadHistory):
     speed_rpm: float
     lead: int
     memory: float
+
+    @cached_property
+    def largest_loads(self) -> Array:
+        """Largest load of each mesh (meshes,), N, located between the positions."""
+        return located_extremes(self.loads, False)[1]
 
 
 def running(

@@ -55,7 +55,7 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
                 group[mesh],
                 load.mean(),
                 load.min(),
-                load.max(),
+                run.largest_loads[mesh],
                 even[mesh],
                 even[mesh] * layout.pinion_arm,
                 run.mesh_load_factors[mesh],

@@ -15,9 +15,9 @@ BATCHES = 16
 CONFIDENCE = 0.95
 LARGEST_CORRELATION = 0.95
 """Correlation of successive batches above which so few of them cannot tell it from 1."""
-LEAST_INDEPENDENT = 3.0
+MIN_INDEPENDENT = 3.0
 """Least number of independent batches that a run counts for."""
-LEAST_SHOWN = 0.1
+MIN_SHOWN = 0.1
 """Least part of the variance that batches are taken to show about their own mean."""
 SLOW_WAVES = 4
 """Slowest waves over a run whose amplitudes give the variance of its mean."""
@@ -218,8 +218,8 @@ def _autoregressive_interval(batches: Array, confidence: float) -> Array:
     # In a sample the correlation is too low by (1 + 4 r) / B, and the variance by its 1 / `worth`.
     correlation = np.clip(sample + (1.0 + 4.0 * sample) / count, 0.0, LARGEST_CORRELATION)
     worth = count * (1.0 - correlation) / (1.0 + correlation)
-    variance = batches.var(axis=0) / np.maximum(1.0 - 1.0 / worth, LEAST_SHOWN)
-    worth = np.maximum(worth, LEAST_INDEPENDENT)
+    variance = batches.var(axis=0) / np.maximum(1.0 - 1.0 / worth, MIN_SHOWN)
+    worth = np.maximum(worth, MIN_INDEPENDENT)
     quantile = scipy.special.stdtrit(worth - 1.0, 0.5 + 0.5 * confidence)
     return np.asarray(quantile * np.sqrt(variance / worth))
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.between_samples import located_extremes
 from facegear.dynamics.steady_state.averages import (
     BATCHES,
     Averages,
@@ -15,7 +16,7 @@ SMOOTH = 0.02
 
 
 def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
-    """Moments of evenly spaced samples (K, columns) over whole periods.
+    """Moments of evenly spaced samples (K, columns) over whole periods; extremes are located between them.
 
     Right where the samples show all that moves; the moments of a response come from its step polynomials.
     """
@@ -29,12 +30,13 @@ def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
         from_mean, from_squared = (batch_means(values, per_period) for values in (centred, squared))
         spread = mean_interval(from_squared + 2.0 * mean * from_mean) / (2.0 * np.where(rms > 0.0, rms, 1.0))
         ac_spread = mean_interval(from_squared) / (2.0 * np.where(ac_rms > 0.0, ac_rms, 1.0))
+    minimum, maximum = located_extremes(samples, periodic)
     return Moments(
         mean=mean,
         rms=rms,
         ac_rms=ac_rms,
-        minimum=samples.min(axis=0),
-        maximum=samples.max(axis=0),
+        minimum=minimum,
+        maximum=maximum,
         rms_interval=spread,
         ac_rms_interval=ac_spread,
     )

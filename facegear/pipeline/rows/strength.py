@@ -133,7 +133,12 @@ ROWS = (
         name="dynamic_root_stress",
         title="Root stress of the running machine",
         needs={**MACHINE, **PAIR, **GEARS},
-        upstream={"response": From("dynamics_response", "response"), **STRESS, **POSED, **POSES},
+        upstream={
+            **from_stage("dynamics_response", "response", "summary"),
+            **STRESS,
+            **POSED,
+            **POSES,
+        },
         files={
             "dynamic_stress": File(
                 "strength/dynamic_stress.csv", "facegear.strength.columns:DYNAMIC_STRESS_FINITE"

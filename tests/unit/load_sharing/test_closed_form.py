@@ -39,7 +39,7 @@ def test_shares_of_idlers_are_those_of_the_closed_form_for_epicyclic_gears(float
 
 @st.composite
 def split_machines(draw):
-    """Bearings (N/m) and backlash (um) of a split-torque machine whose inputs keep both drive flanks closed."""
+    """Idlers, bearings (N/m) and backlash (um) of a machine whose inputs keep both drive flanks closed."""
     return (
         draw(st.sampled_from([2, 3])),
         10 ** draw(st.floats(7.5, 8.5)),
