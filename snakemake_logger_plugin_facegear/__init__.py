@@ -40,6 +40,8 @@ ROUTINE = (
 )
 """Openings of messages without an event that every run prints. A message that is reworded is shown."""
 
+FAILED = "At least one job did not complete successfully"
+"""Part of the last message of a run that has failed; the workflow's own last line says so, too."""
 EXPLAINED = "error in "
 """Opening of the line with which a stage says why it failed."""
 
@@ -78,6 +80,8 @@ class LogHandler(LogHandlerBase):
         elif event == LogEvent.ERROR and getattr(record, "exception", "") == "RuleException":
             return ""  # the exit code of a script, whose own line follows as the error of its job
         message = record.getMessage()
+        if FAILED in message:
+            return ""
         self.stopped |= message.startswith("Terminating processes on user request")
         routine = event in HIDDEN or (record.levelno < logging.WARNING and message.startswith(ROUTINE))
         return "" if routine else self.format(record)

@@ -80,7 +80,7 @@ def parts_of(snakemake: Any) -> list[Part]:
     params, rebuild = snakemake.params, snakemake.config["rebuild_command"]
     given, made = dict(snakemake.input.items()), dict(snakemake.output.items())
     own = {"needs": params.needs, "code": params.code}
-    if "cases" not in params.keys():
+    if params.get("cases") is None:
         place = tuple(dict(snakemake.wildcards.items()).values())
         return [Part(params.stage, place, given, made, own, rebuild)]
     return [

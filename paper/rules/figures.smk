@@ -27,7 +27,7 @@ rule paper_figures_page:
         "results/{case}/benchmarks/rules/paper_figures_page.tsv"
     localrule: True
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness"),
         inputs=[one.model_dump() for one in REPRODUCTION.inputs] if REPRODUCTION else [],

@@ -29,7 +29,7 @@ rule scorecard:
         "results/{case}/benchmarks/rules/scorecard.tsv"
     priority: 10
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     resources:
         mem_mb=1300,
     params:

@@ -6,10 +6,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-
-from facegear.config.yaml_file import read_yaml
 from workflow.process.imports import modules
 from workflow.process.job_server import COMMON
+
+from facegear.config.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[2]
 

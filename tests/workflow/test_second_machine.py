@@ -22,7 +22,7 @@ def results(tmp_path_factory):
     coarser.write_text(COARSER)
     files = [f"results/two_pinion/{name}" for name in READ]
     configs = (str(ROOT / "config" / "two_pinion.yaml"), str(coarser))
-    project.run("--configfile", *configs, "--", *files, warm=True)
+    project.run("--configfile", *configs, "--", *files)
     return project.folder / "results" / "two_pinion"
 
 

@@ -50,11 +50,11 @@ def whole(tmp_path_factory):
 
 def test_samples_are_equal_to_the_bit_in_other_chunks_and_added_ones_run_alone(whole, tmp_path):
     found, target = project(tmp_path, 32, 32)
-    found.run(*target, warm=True)
+    found.run(*target)
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / FILE), whole.iloc[:32], check_exact=True)
     before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("samples_*.parquet")}
     found, target = project(tmp_path, 64, 32)
-    found.run(*target, warm=True)
+    found.run(*target)
     assert {path: path.stat().st_mtime_ns for path in before} == before
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / FILE), whole, check_exact=True)
 

@@ -11,7 +11,7 @@ rule contact_level:
     benchmark:
         "results/{case}/benchmarks/rules/contact_level_{level}.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=9000,
@@ -33,7 +33,7 @@ rule contact_growth:
     benchmark:
         "results/{case}/benchmarks/rules/contact_growth.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=3000,
@@ -59,7 +59,7 @@ rule contact_benchmark:
     benchmark:
         "results/{case}/benchmarks/rules/contact_benchmark.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     params:
         code=code("validation/scripts/contact_benchmark.py"),
     script:
@@ -76,7 +76,7 @@ rule contact_shortcuts:
     benchmark:
         "results/{case}/benchmarks/rules/contact_shortcuts.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=4000,
@@ -98,7 +98,7 @@ rule twin_benchmark:
     benchmark:
         "results/{case}/benchmarks/rules/twin_benchmark.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=4000,
@@ -120,7 +120,7 @@ rule calculix_peer:
     benchmark:
         "results/{case}/benchmarks/rules/calculix_peer.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=12000,
@@ -142,7 +142,7 @@ rule calculix_stress_peer:
     benchmark:
         "results/{case}/benchmarks/rules/calculix_stress_peer.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     params:
         **values_of("tooth_pair"),
@@ -161,7 +161,7 @@ rule body_peer:
     benchmark:
         "results/{case}/benchmarks/rules/body_peer.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     params:
         code=code("validation/scripts/body_peer.py"),
@@ -179,7 +179,7 @@ rule tooth_layer_peer:
     benchmark:
         "results/{case}/benchmarks/rules/tooth_layer_peer.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     params:
         code=code("validation/scripts/tooth_layer_peer.py"),
@@ -197,7 +197,7 @@ rule kratos_peer:
     benchmark:
         "results/{case}/benchmarks/rules/kratos_peer.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     params:
         code=code("validation/scripts/kratos_peer.py"),
@@ -215,7 +215,7 @@ rule pair_peer:
     benchmark:
         "results/{case}/benchmarks/rules/pair_peer.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     params:
         **values_of("tooth_pair"),
         code=code("validation/scripts/pair_peer.py"),

@@ -12,7 +12,7 @@ rule dynamics_work_precision:
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_work_precision.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=1300,
@@ -37,7 +37,7 @@ rule dynamics_costs:
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_costs.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=1300,
@@ -62,7 +62,7 @@ rule load_sharing_costs:
     benchmark:
         "results/{case}/benchmarks/rules/load_sharing_costs.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     params:
         **values_of(accuracy="dynamics.accuracy", options="load_sharing"),
         machine=needed(MACHINE),
@@ -84,7 +84,7 @@ rule branches_benchmark:
     benchmark:
         "results/{case}/benchmarks/rules/branches_benchmark.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     params:
         **values_of(speed_rpm="dynamics.speed_rpm"),
         machine=needed(MACHINE),
@@ -106,7 +106,7 @@ rule dynamics_convergence:
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_convergence.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     resources:
         runtime=60,
     params:
@@ -127,7 +127,7 @@ rule dynamics_labels:
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_labels.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     params:
         code=code("validation/scripts/dynamics_labels.py"),
     script:
@@ -144,7 +144,7 @@ rule shaft_peer:
     benchmark:
         "results/{case}/benchmarks/rules/shaft_peer.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     params:
         code=code("validation/scripts/shaft_peer.py"),
     script:

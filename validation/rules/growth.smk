@@ -11,7 +11,7 @@ rule growth:
     benchmark:
         "results/{case}/benchmarks/rules/growth.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=3000,

@@ -8,7 +8,7 @@ rule mesh_growth:
     benchmark:
         "results/{case}/benchmarks/rules/mesh_growth.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     resources:
         mem_mb=2000,
     params:

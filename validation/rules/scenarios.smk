@@ -12,7 +12,7 @@ rule scenarios_benchmark:
     benchmark:
         "results/{case}/benchmarks/rules/scenarios_benchmark.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     resources:
         runtime=30,
     params:

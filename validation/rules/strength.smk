@@ -11,7 +11,7 @@ rule strength_level:
     benchmark:
         "results/{case}/benchmarks/rules/strength_level_{level}.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=12000,
@@ -36,7 +36,7 @@ rule strength_benchmark:
     benchmark:
         "results/{case}/benchmarks/rules/strength_benchmark.tsv"
     conda:
-        "../../workflow/envs/facegear.yaml"
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=4000,

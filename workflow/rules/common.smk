@@ -54,6 +54,9 @@ include: "functions/cases.smk"
 include: "functions/runs.smk"
 
 
+require_folder()
+
+
 # Only a run that has work to do comes here, no dry run, listing or report.
 onstart:
     hold_folder()

@@ -19,7 +19,7 @@ for chapter, stages in CHAPTERS.items():
             f"results/{{case}}/benchmarks/rules/{chapter}{FIGURES}.tsv"
         localrule: True
         conda:
-            "../envs/facegear.yaml"
+            ENVIRONMENT
         resources:
             **most_memory(stages),
         params:

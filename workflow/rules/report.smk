@@ -21,7 +21,7 @@ rule report:
         "results/{case}/benchmarks/rules/report.tsv"
     localrule: True
     conda:
-        "../envs/facegear.yaml"
+        ENVIRONMENT
     params:
         values=report_values,
         base=report_base,

@@ -20,7 +20,7 @@ for stage in STAGES.values():
         priority: stage.priority
         localrule: stage.local
         conda:
-            "../envs/facegear.yaml"
+            ENVIRONMENT
         resources:
             **resources(stage.memory_mb, stage.minutes),
         params:
@@ -50,7 +50,7 @@ for stage, number, cases in STUDIED:
         priority: stage.priority
         localrule: stage.local
         conda:
-            "../envs/facegear.yaml"
+            ENVIRONMENT
         resources:
             **resources(stage.memory_mb, stage.minutes),
         params:

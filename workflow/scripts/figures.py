@@ -1,7 +1,10 @@
 """The figures of one chapter, from stored files alone."""
 
+import signal
 from importlib import import_module
 from pathlib import Path
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
 
 from facegear.provenance.stage import stage
 

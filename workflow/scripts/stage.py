@@ -1,7 +1,10 @@
 """One stage, for a case or for several cases of studies: read, call, write."""
 
+import signal
 from importlib import import_module
 from pathlib import Path
+
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
 
 from facegear.provenance.stage import job, parts_of, recorded
 

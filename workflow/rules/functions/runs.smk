@@ -1,5 +1,17 @@
+ENVIRONMENT = str(ROOT / "workflow" / "envs" / "facegear.yaml").replace("{", "{{").replace("}", "}}")
+"""Environment of all rules; Snakemake takes single braces, which a folder's name may have, for wildcards."""
 RUN_LOCK = FileLock(".snakemake/facegear.lock")
 """Lock of the kernel's, which releases it when this process ends, however it ends."""
+
+
+def require_folder():
+    """End the run in one line where nothing can be written."""
+    results = Path("results")
+    if results.exists() and not results.is_dir():
+        sys.exit(f"{results.absolute()} is a file; move it away, as results go there")
+    for folder in (Path(), results):
+        if folder.exists() and not os.access(folder, os.W_OK):
+            sys.exit(f"{folder.absolute()} cannot be written; choose another folder with --directory")
 
 
 def hold_folder():
