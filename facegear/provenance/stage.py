@@ -7,10 +7,9 @@ import sys
 import time
 import traceback
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, BinaryIO
 
 from filelock import FileLock, Timeout
@@ -43,12 +42,12 @@ class Part:
     """What one manifest covers: a whole job, or one case of a job that makes several.
 
     - rule: what the manifest calls it
-    - place: its wildcards, behind its name on the terminal
+    - wildcards: values of its wildcards, behind its name on the terminal
     - rebuild: command that makes a target again
     """
 
     rule: str
-    place: tuple[str, ...]
+    wildcards: tuple[str, ...]
     input: Paths
     output: Paths
     params: Mapping[str, Any]
@@ -81,8 +80,8 @@ def parts_of(snakemake: Any) -> list[Part]:
     given, made = dict(snakemake.input.items()), dict(snakemake.output.items())
     own = {"needs": params.needs, "code": params.code}
     if params.get("cases") is None:
-        place = tuple(dict(snakemake.wildcards.items()).values())
-        return [Part(params.stage, place, given, made, own, rebuild)]
+        wildcards = tuple(dict(snakemake.wildcards.items()).values())
+        return [Part(params.stage, wildcards, given, made, own, rebuild)]
     return [
         Part(
             params.stage,
@@ -125,7 +124,7 @@ def job(snakemake: Any) -> Iterator[None]:
         held.callback(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.SIG_DFL))
         log.parent.mkdir(parents=True, exist_ok=True)
         _hold(held, log.with_suffix(".lock"), snakemake.rule)
-        with open(log, "wb", buffering=0) as stream, _Copied(stream), _one_line_errors(snakemake, log):
+        with open(log, "wb", buffering=0) as stream, _copied(stream), _one_line_errors(snakemake, log):
             yield
 
 
@@ -146,7 +145,7 @@ def _hold(held: ExitStack, path: Path, rule: str) -> None:
 @contextmanager
 def recorded(part: Part) -> Iterator[StageRun]:
     """Check the inputs of a part, have it made, and write its manifest."""
-    run, start = StageRun(" ".join([part.rule, *part.place])), time.perf_counter()
+    run, start = StageRun(" ".join([part.rule, *part.wildcards])), time.perf_counter()
     if part.manifest:
         part.manifest.unlink(missing_ok=True)
     for path in part.files:
@@ -193,28 +192,27 @@ def _rebuilt(error: FacegearError, snakemake: Any) -> FacegearError:
 
 
 class _Copied:
-    """Standard error also goes to a log."""
+    """Standard error that also goes to a log."""
 
     def __init__(self, log: BinaryIO) -> None:
         self.log, self.terminal = log, sys.stderr
 
-    def __enter__(self) -> None:
-        sys.stderr = self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        sys.stderr = self.terminal
-        if kind is not None and kind is not SystemExit:
-            self._keep("".join(traceback.format_exception(kind, error, trace)))
-
     def write(self, text: str) -> int:
-        self._keep(text)
+        with suppress(OSError):  # a full disk must not keep the message from the terminal
+            self.log.write(text.encode())
         return self.terminal.write(text)
 
     def flush(self) -> None:
         self.terminal.flush()
 
-    def _keep(self, text: str) -> None:
-        with suppress(OSError):  # a full disk must not keep the message from the terminal
-            self.log.write(text.encode())
+
+@contextmanager
+def _copied(log: BinaryIO) -> Iterator[None]:
+    """Copy standard error to a log, and a traceback to the log alone: Python prints it to the terminal."""
+    try:
+        with redirect_stderr(_Copied(log)):  # type: ignore[type-var]
+            yield
+    except Exception:
+        with suppress(OSError):
+            log.write(traceback.format_exc().encode())
+        raise

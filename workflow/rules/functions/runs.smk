@@ -33,7 +33,8 @@ def code_of(script, modules):
 def code(script, *modules):
     """Function of the wildcards giving the fingerprint of a script, by its path from the repository's folder.
 
-    As a parameter of a rule it makes jobs run again where code that they reach has changed. `modules`: those that
-    the script calls without importing them by name.
+    As a parameter it makes jobs run again where code that they reach has changed.
+
+    - modules: those that the script calls without importing them by name
     """
     return lambda wildcards: code_of(script, modules)
