@@ -153,13 +153,13 @@ def _run(given: argparse.Namespace) -> int:
     Where the workflow is not at hand, as it is no part of the wheel, this process computes the same files.
     """
     read_layers(given.config)
-    return _with_snakemake(given) if (ROOT / "Snakefile").is_file() else _run_here(given)
+    return _with_snakemake(given) if (ROOT / "workflow" / "Snakefile").is_file() else _run_here(given)
 
 
 def _with_snakemake(given: argparse.Namespace) -> NoReturn:
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
-    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "workflow" / "Snakefile")]
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
     folder = Path(given.directory)

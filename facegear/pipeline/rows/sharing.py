@@ -5,7 +5,6 @@ from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
     HARMONICS,
-    INTEGRATION,
     MACHINE,
     MOVING,
     SHARING,
@@ -20,7 +19,6 @@ ROWS = (
     Stage(
         name="load_sharing",
         title="Load sharing at the nominal speed",
-        runs=INTEGRATION,
         needs=SHARING,
         upstream=MOVING,
         files={
@@ -29,6 +27,7 @@ ROWS = (
             "forces": File("load_sharing/forces.csv", ("mean_n", "largest_n"), text=("mesh", "group")),
         },
         asked=asked.grouped,
+        together=8,
     ),
     Stage(
         name="load_sharing_summary",
@@ -85,7 +84,6 @@ ROWS = (
     Stage(
         name="load_sharing_reference",
         title="Load sharing at rest, running slowly and over a range of speeds",
-        runs=INTEGRATION,
         needs={
             **MACHINE,
             **ACCURACY,
@@ -141,7 +139,6 @@ ROWS = (
     Stage(
         name="following",
         title="Load sharing of the running machine while its runouts turn",
-        runs=INTEGRATION,
         needs={
             **MACHINE,
             **ACCURACY,
