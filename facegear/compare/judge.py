@@ -218,7 +218,7 @@ def _judge_column(
                 Verdict.LABEL,
             ),
         )
-    zero = table.zero.get(column, 0.0)
+    zero = _zero(table, before, column)
     before_zero, after_zero = (side.mask(side.abs() <= zero, 0.0) for side in (old, new))
     change, scale = _relative_change(before_zero, after_zero, before.get(table.quantity))
     errors = _errors(table, before, after, column, scale)
@@ -232,6 +232,14 @@ def _judge_column(
         np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.MOVED),
     )
     return shown.assign(relative_change=change, numerical_error=errors, verdict=verdict)
+
+
+def _zero(table: Table, rows: pd.DataFrame, column: str) -> pd.Series:
+    """Magnitude up to which a number of a column counts as zero, shape (rows,)."""
+    of_column = table.zero.get(column, 0.0)
+    if table.quantity is None or column == table.quantity:
+        return pd.Series(of_column, index=rows.index)
+    return rows[table.quantity].map(table.zero).fillna(of_column)
 
 
 def _errors(
