@@ -16,17 +16,9 @@ ALLOWED = (
     "Mozilla Public",
     "Zlib",
 )
-INTEL = "Intel's own licence, which allows redistribution; installed from its own wheel, not part of ours"
 MIT_FILE = "MIT by its licence file; the metadata name none"
 LOOKED_AT = {
     "gmsh": "GPL 2 or later with an exception for linking; meshes the teeth, not part of our wheel",
-    "mkl": INTEL,
-    "intel-openmp": INTEL,
-    "intel-cmplr-lib-ur": INTEL,
-    "onemkl-license": INTEL,
-    "tbb": INTEL,
-    "tcmlib": INTEL,
-    "umf": "Apache 2.0 with LLVM's exception",
     "conda-inject": MIT_FILE,
     "snakemake-interface-common": MIT_FILE,
     "snakemake-interface-logger-plugins": MIT_FILE,

@@ -13,6 +13,7 @@ from facegear.compare.quantities import (
     REGULAR,
     SYMMETRY_BROKEN,
     TABLES,
+    Bracket,
     Table,
     declared,
 )
@@ -107,10 +108,11 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
         return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
     table = declared(TABLES, name) or Table()
-    if table.bracket is not None:
-        after = _with_brackets_of(before, after, table.bracket)
+    speeds = _bracket_names(before, after, table)
     groups = pd.concat([_without_item(frame, table) for frame in (before, after)])
-    before, after = (_by_row(frame, table) for frame in (before, after))
+    before, after = (
+        _by_row(frame, table, known) for frame, known in zip((before, after), speeds, strict=True)
+    )
     groups = dict(zip([*before.index, *after.index], groups, strict=True))
     shared = before.index.intersection(after.index, sort=False)
     columns = [column for column in before.columns if column in after.columns]
@@ -133,12 +135,17 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
     return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
 
 
-def _by_row(frame: pd.DataFrame, table: Table) -> pd.DataFrame:
-    """The table with a text index that names its rows; rows of one name are counted."""
+def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.DataFrame:
+    """The table with a text index that names its rows; rows of one name are counted.
+
+    speeds: of rows that are named by a bracket, beside the keys.
+    """
     keys = [key for key in table.keys if key in frame.columns]
     if not keys:
         return frame.set_axis([f"row {number + 1}" for number in range(len(frame))])
     parts = [frame[key].map(_written) for key in keys]
+    if speeds is not None:
+        parts.append(speeds.map(_written))
     names = parts[0].str.cat(parts[1:], sep=", ") if len(parts) > 1 else parts[0]
     again = names.groupby(names).cumcount()
     names = names.where(again == 0, names + " #" + (again + 1).astype(str))
@@ -150,27 +157,37 @@ def _written(value: object) -> str:
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
-def _with_brackets_of(
-    before: pd.DataFrame, after: pd.DataFrame, bracket: tuple[str, str, str]
-) -> pd.DataFrame:
-    """The table with the first end of a bracket replaced by that of the other table's nearest bracket of the
-    same direction, where it is within both errors, so that the rows of one jump have one name.
+def _bracket_names(
+    before: pd.DataFrame, after: pd.DataFrame, table: Table
+) -> tuple[pd.Series | None, pd.Series | None]:
+    """Speeds that name the rows of two tables with brackets; None for other tables.
+
+    A row of `after` takes the name of the nearest row of `before` with the same keys, where the errors of
+    both allow that they are the same.
     """
-    start, _, error = bracket
-    if error not in before.columns or error not in after.columns:
-        return after
-    left = before.copy()
-    renamed = after.copy()
-    for row in after.index:
-        apart = (left[start] - after.at[row, start]).abs()
-        near = (left["direction"] == after.at[row, "direction"]) & (
-            apart <= left[error] + after.at[row, error]
-        )
-        if near.any():
-            nearest = apart[near].idxmin()
-            renamed.at[row, start] = left.at[nearest, start]
-            left = left.drop(index=nearest)
-    return renamed
+    if table.bracket is None:
+        return None, None
+    names = after[table.bracket.before].astype(float)
+    middles, errors = zip(*(_located(frame, table.bracket) for frame in (before, after)), strict=True)
+    taken: set[int] = set()
+    for old in range(len(before)):
+        apart = np.abs(middles[1] - middles[0][old])
+        like = (after[list(table.keys)] == before[list(table.keys)].iloc[old]).all(axis=1).to_numpy()
+        near = [int(new) for new in np.flatnonzero(like & (apart <= errors[0][old] + errors[1]))]
+        free = [new for new in near if new not in taken]
+        if free:
+            new = min(free, key=apart.__getitem__)
+            taken.add(new)
+            names.iloc[new] = before[table.bracket.before].iloc[old]
+    return before[table.bracket.before], names
+
+
+def _located(frame: pd.DataFrame, bracket: Bracket) -> tuple[np.ndarray, np.ndarray]:
+    """Middle of the bracket of each row, and how far its true speed may lie from it, both (rows,)."""
+    first, last = (frame[column].to_numpy(float) for column in (bracket.before, bracket.after))
+    width = np.abs(last - first)
+    stated = frame[bracket.error].to_numpy(float) if bracket.error in frame.columns else width
+    return 0.5 * (first + last), np.maximum(stated, width)
 
 
 def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
@@ -201,33 +218,41 @@ def _judge_column(
                 Verdict.LABEL,
             ),
         )
-    error = table.error(column)
-    moved_bracket = _moved_bracket(before, after, table)
     zero = table.zero.get(column, 0.0)
     before_zero, after_zero = (side.mask(side.abs() <= zero, 0.0) for side in (old, new))
-    change = _relative_change(before_zero, after_zero, before.get(table.quantity))
+    change, scale = _relative_change(before_zero, after_zero, before.get(table.quantity))
+    errors = _errors(table, before, after, column, scale)
     irregular = _irregular(before, table) | _irregular(after, table)
-    beyond = Verdict.NO_ERROR if error is None else Verdict.MOVED
-    errors = np.full(len(before), np.nan if error is None else error)
-    if table.bracket is not None and column in table.bracket:
-        errors[moved_bracket] = np.inf
-    else:
-        errors[moved_bracket] = table.bracket_error
     images = broken & _same_but_for_items(before_zero, after_zero, before.get(table.quantity), group, errors)
+    with np.errstate(invalid="ignore"):
+        within = change <= errors
     verdict = np.select(
-        [change <= REPEATABLE, irregular, change <= np.nan_to_num(errors, posinf=np.inf), open_rows, images],
+        [change <= REPEATABLE, irregular, within, open_rows, images],
         [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
-        beyond,
+        np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.MOVED),
     )
     return shown.assign(relative_change=change, numerical_error=errors, verdict=verdict)
 
 
-def _moved_bracket(before: pd.DataFrame, after: pd.DataFrame, table: Table) -> np.ndarray:
-    """Rows of one name whose brackets have another end, within the error that made them one row, (rows,)."""
-    if table.bracket is None or table.bracket[1] not in before.columns:
-        return np.zeros(len(before), dtype=bool)
-    ends = [frame[table.bracket[1]].to_numpy(float) for frame in (before, after)]
-    return np.abs(ends[1] - ends[0]) > REPEATABLE * np.abs(ends[0])
+def _errors(
+    table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, scale: np.ndarray
+) -> np.ndarray:
+    """Relative numerical error of a column (rows,), NaN where none is stated.
+
+    A bracket's speeds are known up to the errors of both tables, and what changes over a bracket is known no
+    better where the bracket lies elsewhere.
+    """
+    plain, elsewhere = (table.error(column, other) for other in (False, True))
+    errors = np.full(len(before), np.nan if plain is None else plain)
+    bracket = table.bracket
+    if bracket is None:
+        return errors
+    moved = (before[bracket.before] != after[bracket.before]).to_numpy()
+    errors[moved] = np.nan if elsewhere is None else elsewhere
+    if column in (bracket.before, bracket.after, bracket.error):
+        allowed = sum(_located(frame, bracket)[1] for frame in (before, after))
+        return np.divide(allowed, scale, out=np.zeros(len(before)), where=scale > 0.0)
+    return errors
 
 
 def _same_but_for_items(
@@ -239,7 +264,9 @@ def _same_but_for_items(
     )
     ordered = [sizes.sort_values(["group", side], kind="stable") for side in ("old", "new")]
     pair = [pd.Series(part[side].to_numpy()) for part, side in zip(ordered, ("old", "new"), strict=True)]
-    change = _relative_change(pair[0], pair[1], None if quantity is None else _by_group(ordered[0], quantity))
+    change, _ = _relative_change(
+        pair[0], pair[1], None if quantity is None else _by_group(ordered[0], quantity)
+    )
     allowed = np.nan_to_num(np.maximum(errors[ordered[0].index], REPEATABLE), nan=REPEATABLE)
     fits = pd.Series(change <= allowed).groupby(ordered[0]["group"].to_numpy()).all()
     return group.map(fits).to_numpy(dtype=bool)
@@ -249,8 +276,10 @@ def _by_group(ordered: pd.DataFrame, quantity: pd.Series) -> pd.Series:
     return pd.Series(quantity.to_numpy()[ordered.index])
 
 
-def _relative_change(old: pd.Series, new: pd.Series, quantity: pd.Series | None) -> np.ndarray:
-    """Change over the largest magnitude of the column or of the row's quantity, shape (rows,)."""
+def _relative_change(
+    old: pd.Series, new: pd.Series, quantity: pd.Series | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Change over the largest magnitude of the column or of the row's quantity, and that, both (rows,)."""
     pair = np.stack([old.to_numpy(float), new.to_numpy(float)])
     with np.errstate(invalid="ignore"):
         change = np.where((pair[0] == pair[1]) | np.isnan(pair).all(axis=0), 0.0, np.abs(pair[1] - pair[0]))
@@ -258,7 +287,7 @@ def _relative_change(old: pd.Series, new: pd.Series, quantity: pd.Series | None)
     finite = np.where(np.isfinite(pair), np.abs(pair), 0.0).max(axis=0)
     groups = np.zeros(len(finite)) if quantity is None else quantity.to_numpy()
     scale = pd.Series(finite).groupby(groups).transform("max").to_numpy() if len(finite) else finite
-    return np.divide(change, scale, out=change.copy(), where=scale > 0.0)
+    return np.divide(change, scale, out=change.copy(), where=scale > 0.0), scale
 
 
 def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:

@@ -104,7 +104,7 @@ def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Ite
         curve = declared(CURVES, name)
         if curve and (old / name).exists() and (new / name).exists():
             before, after, title = _worst_series(name, curve, old, new)
-            path = folder / f"{name.replace('/', '_')}.png"
+            path = folder / f"{name.replace('/', '_')}.svg"
             save(
                 curves_compared(before, after, curve.x, curve.y, (words(curve.x), words(curve.y)), title),
                 path,

@@ -72,14 +72,20 @@ def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "co
     Raises ConfigErrors with one line for every mistake.
     """
     try:
-        text = json.dumps(values, allow_nan=True)
-    except (TypeError, ValueError, RecursionError):
-        raise ConfigErrors(source, ["holds something that is not a number, text, list or mapping"]) from None
+        text = json.dumps(values, allow_nan=True, default=_refuse_value)
+    except (TypeError, ValueError, RecursionError) as error:
+        problem = f"holds something that is not a number, text, list or mapping ({error})"
+        raise ConfigErrors(source, [problem]) from None
     try:
         return model.model_validate_json(text)
     except ValidationError as error:
         lines = _lines(model, values, error.errors(include_url=False))
         raise ConfigErrors(source, list(dict.fromkeys(lines))) from None
+
+
+def _refuse_value(value: object) -> NoReturn:
+    """Refuse a value that YAML reads as something else, such as a date."""
+    raise TypeError(f"{value}: put text in quotes")
 
 
 def _lines(model: type[Section], values: Mapping[str, Any], mistakes: list[ErrorDetails]) -> list[str]:
@@ -119,12 +125,14 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
 
 
 RENAMED = {
+    "a_n_per_m": "sin_n_per_m",
+    "b_n_per_m": "cos_n_per_m",
     "least_bending_safety": "min_bending_safety",
     "least_pitting_safety": "min_pitting_safety",
     "longest_found": "longest_start_period",
     "most_branches": "max_branches",
 }
-"""Keys of earlier versions and what they are called today."""
+"""Keys and columns of earlier versions and what they are called today."""
 
 
 def suggestion(key: str, allowed: Collection[str]) -> str:

@@ -1,21 +1,21 @@
-"""Safe reading of YAML config files by the core schema of YAML 1.2, with bounds on size and nesting."""
+"""Safe reading of YAML config files, with bounds on size and nesting."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.events import (
     AliasEvent,
+    DocumentStartEvent,
     Event,
     MappingEndEvent,
     MappingStartEvent,
     ScalarEvent,
     SequenceEndEvent,
     SequenceStartEvent,
-    StreamEndEvent,
 )
 
 from facegear.errors import ConfigErrors
@@ -27,36 +27,43 @@ DEEPEST = 32
 MAX_VALUES = 50_000
 """Values of a file, what its aliases (`*name`) stand for counted as often as they are used."""
 
-_INTEGER = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
-_WORDS = {
-    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
-    **dict.fromkeys(("true", "True", "TRUE"), True),
-    **dict.fromkeys(("false", "False", "FALSE"), False),
-    **dict.fromkeys((".inf", ".Inf", ".INF", "+.inf", "+.Inf", "+.INF"), float("inf")),
-    **dict.fromkeys(("-.inf", "-.Inf", "-.INF"), float("-inf")),
-    **dict.fromkeys((".nan", ".NaN", ".NAN"), float("nan")),
-}
-_TAGS = {f"tag:yaml.org,2002:{name}" for name in ("map", "seq", "str", "int", "float", "bool", "null")}
 
 
 def read_yaml(path: str | Path) -> dict[str, Any]:
     """Read a YAML mapping.
 
-    Numbers follow YAML 1.2: 1e-8 is a number, 025 is 25 and 1:20 is text. A key given twice, tags other
-    than the core schema's, and files beyond the bounds above are refused. Raises ConfigErrors naming file
-    and line.
+    Numbers follow YAML 1.2: 1e-8 is a number, 025 is 25 and 1:20 is text. A key given twice, tags that stand
+    for program objects, and files beyond the bounds above are refused.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    dict
+        The values by their keys.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line that names the file and, where known, the line.
     """
     text = _text(Path(path))
     try:
-        value = _Builder(YAML(typ="safe", pure=True).parse(text)).document()
+        _require_bounded(YAML(typ="safe", pure=True).parse(text))
+        value = YAML(typ="safe", pure=True).load(text)
     except _Refused as error:
-        raise ConfigErrors(f"{path}:{error.line}", [error.problem]) from None
-    except YAMLError as error:
-        mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
+        raise ConfigErrors(f"{path}:{error.line}", [str(error)]) from None
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        said = ", ".join(part for part in (error.context, error.problem) if part)
         where = f"{path}:{mark.line + 1}" if mark else str(path)
-        problem = getattr(error, "problem", None) or str(error).splitlines()[0]
-        raise ConfigErrors(where, [f"not valid YAML: {problem}"]) from None
+        raise ConfigErrors(where, [f"not valid YAML: {' '.join(said.split())}"]) from None
+    except (YAMLError, ValueError) as error:
+        raise ConfigErrors(str(path), [f"not valid YAML: {str(error).splitlines()[0]}"]) from None
     if not isinstance(value, dict):
         raise ConfigErrors(str(path), ["a config is a mapping of keys to values"])
     return value
@@ -97,104 +104,39 @@ def _text(path: Path) -> str:
 
 
 class _Refused(Exception):
-    """A fault of the document, with the line (from 1) where it stands."""
+    """A fault of the document at an event of the parser, with the line (from 1) where it stands."""
 
     def __init__(self, event: Event, problem: str) -> None:
         super().__init__(problem)
-        self.line, self.problem = event.start_mark.line + 1, problem
+        self.line = event.start_mark.line + 1
 
 
-class _Builder:
-    """Builds plain values from the parser's events; `size` counts a value with all that is inside it."""
-
-    def __init__(self, events: Iterator[Event]) -> None:
-        self.events = events
-        self.anchored: dict[str, tuple[Any, int]] = {}
-
-    def document(self) -> Any:
-        """The value of the only document of the stream; None if there is none."""
-        next(self.events)
-        if isinstance(next(self.events), StreamEndEvent):
-            return None
-        value, _ = self._value(next(self.events), 0)
-        next(self.events)
-        if not isinstance(event := next(self.events), StreamEndEvent):
-            raise _Refused(event, "a second document starts here; a config is one")
-        return value
-
-    def _value(self, event: Event, depth: int) -> tuple[Any, int]:
-        if isinstance(event, AliasEvent):
-            if event.anchor not in self.anchored:
-                raise _Refused(event, f"alias *{event.anchor} stands for nothing that came before it")
-            return self.anchored[event.anchor]
-        if depth > DEEPEST:
-            raise _Refused(event, f"nested more than {DEEPEST} levels deep")
-        tag = getattr(event, "tag", None)
-        if tag is not None and str(tag) not in _TAGS and str(tag) != "!":
-            raise _Refused(event, f"tag {tag} is not allowed in a config")
-        value: tuple[Any, int]
-        if isinstance(event, MappingStartEvent):
-            value = self._mapping(depth)
-        elif isinstance(event, SequenceStartEvent):
-            value = self._sequence(depth)
-        else:
-            assert isinstance(event, ScalarEvent)
-            value = _scalar(event), 1
-        if value[1] > MAX_VALUES:
-            raise _Refused(event, f"more than {MAX_VALUES} values, aliases written out")
-        if event.anchor is not None:
-            self.anchored[event.anchor] = value
-        return value
-
-    def _sequence(self, depth: int) -> tuple[list[Any], int]:
-        items, size = [], 1
-        while not isinstance(event := next(self.events), SequenceEndEvent):
-            item, inside = self._value(event, depth + 1)
-            items.append(item)
-            size = _bounded(event, size + inside)
-        return items, size
-
-    def _mapping(self, depth: int) -> tuple[dict[str, Any], int]:
-        items: dict[str, Any] = {}
-        below: dict[str, Any] = {}
+def _require_bounded(events: Iterable[Event]) -> None:
+    """Refuse a document that is too deep or too large before any of its values is built."""
+    sizes = [0]  # values so far of the document and of each list or mapping that is open
+    names: list[str | None] = []
+    known: dict[str | None, int] = {}
+    for event in events:
         size = 1
-        while not isinstance(event := next(self.events), MappingEndEvent):
-            if not isinstance(event, ScalarEvent):
-                raise _Refused(event, "a key must be text")
-            key = str(event.value)
-            if key in items:
-                raise _Refused(event, f"key {key!r} stands twice")
-            value, inside = self._value(next(self.events), depth + 1)
-            size = _bounded(event, size + inside)
-            if key == "<<" and event.implicit[0]:
-                below = {**_merged(event, value), **below}
-            else:
-                items[key] = value
-        return {**below, **items}, size
-
-
-def _bounded(event: Event, size: int) -> int:
-    if size > MAX_VALUES:
-        raise _Refused(event, f"more than {MAX_VALUES} values, aliases written out")
-    return size
-
-
-def _merged(event: Event, value: Any) -> dict[str, Any]:
-    """What a merge key (`<<: *name`) lays below a mapping's own keys; of several the first wins."""
-    several = value if isinstance(value, list) else [value]
-    if not all(isinstance(mapping, dict) for mapping in several):
-        raise _Refused(event, "'<<' takes a mapping or a list of mappings")
-    return {key: item for mapping in reversed(several) for key, item in mapping.items()}
-
-
-def _scalar(event: ScalarEvent) -> Any:
-    """The value of a scalar by the core schema of YAML 1.2; quoted text stays text."""
-    text = str(event.value)
-    if not event.implicit[0] and str(event.tag or "!") in ("!", "tag:yaml.org,2002:str"):
-        return text
-    if text in _WORDS:
-        return _WORDS[text]
-    if _INTEGER.fullmatch(text) and len(text) < 400:
-        base = {"0o": 8, "0x": 16}.get(text[:2], 10)
-        return int(text, base)
-    return float(text) if _FLOAT.fullmatch(text) or _INTEGER.fullmatch(text) else text
+        if isinstance(event, DocumentStartEvent) and event.version not in (None, (1, 2)):
+            raise _Refused(event, "a config follows YAML 1.2: leave out the line %YAML")
+        if isinstance(event, MappingStartEvent | SequenceStartEvent):
+            names.append(event.anchor)
+            sizes.append(0)
+            if len(names) > DEEPEST:
+                raise _Refused(event, f"nested more than {DEEPEST} levels deep")
+            continue
+        if isinstance(event, MappingEndEvent | SequenceEndEvent):
+            size += sizes.pop()
+            known[names.pop()] = size
+        elif isinstance(event, AliasEvent):
+            if event.anchor not in known:
+                raise _Refused(event, f"alias *{event.anchor} stands for nothing that came before it")
+            size = known[event.anchor]
+        elif isinstance(event, ScalarEvent):
+            known[event.anchor] = size
+        else:
+            continue
+        sizes[-1] += size
+        if sizes[-1] > MAX_VALUES:
+            raise _Refused(event, f"more than {MAX_VALUES} values, aliases written out")

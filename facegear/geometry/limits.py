@@ -4,11 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
 
+from scipy.optimize import brentq
+
 from facegear.errors import GeometryError, NotConverged
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
-from facegear.geometry.roots import root
 
+ROUNDING = 1e-15
+"""Absolute tolerance (m or rad) of roots: some thousand times less than a limit is printed with."""
 THINNEST_LAND = 0.05
 """Thinnest tip or root land, in modules: less cannot be cut, nor meshed."""
 
@@ -84,7 +87,7 @@ def _last(room: Callable[[PairDesign, float], float], design: PairDesign, low: f
         return low
     if room(design, high) >= 0:
         return high
-    return root(lambda radius: room(design, radius), low, high, 1e-9)
+    return float(brentq(lambda radius: room(design, radius), low, high, xtol=ROUNDING))
 
 
 def _land_left(design: PairDesign, radius: float) -> float:
@@ -115,7 +118,7 @@ def undercut_radius(design: PairDesign) -> float:
     def margin(psi: float) -> float:
         return tan(psi) / 2 * (1 + sqrt(1 + 4 / (ratio * cos(psi)) ** 2)) - roll
 
-    psi = root(margin, 0.0, atan(roll))
+    psi = brentq(margin, 0.0, atan(roll), xtol=ROUNDING)
     return hypot(base * (sin(psi) - roll * cos(psi)), base / (ratio * cos(psi)))
 
 
@@ -129,7 +132,7 @@ def tip_plane_radius(design: PairDesign) -> float:
         outwards = (1 - height * cos(psi)) * (height - cos(psi)) / sin(psi) ** 3
         return outwards + sin(psi) / (ratio**2 * cos(psi) ** 3)
 
-    psi = root(slope, 1e-4, 1.0)
+    psi = brentq(slope, 1e-4, 1.0, xtol=ROUNDING)
     return hypot(base * (1 - height * cos(psi)) / sin(psi), base / (ratio * cos(psi)))
 
 
@@ -150,7 +153,7 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
         raise GeometryError(
             "face_gear.addendum_modules", round(tip, 6), "less: the tooth is pointed everywhere"
         )
-    planar_psi = root(planar, thickest, pi / 2)
+    planar_psi = brentq(planar, thickest, pi / 2, xtol=ROUNDING)
     exact_psi = _root_near(exact, planar_psi)
     roll = (height - cos(exact_psi)) / sin(exact_psi)
     exact_radius = hypot(base * (sin(exact_psi) - roll * cos(exact_psi)), base / (ratio * cos(exact_psi)))
@@ -163,6 +166,6 @@ def _root_near(function: Callable[[float], float], guess: float) -> float:
     while width < 1.0:
         low, high = max(guess - width, 1e-3), min(guess + width, pi / 2 - 1e-6)
         if function(low) * function(high) <= 0:
-            return root(function, low, high)
+            return float(brentq(function, low, high, xtol=ROUNDING))
         width *= 2
     raise NotConverged("geometry", "the pointing limit", f"brackets up to 1 rad around {guess:.4f} rad")

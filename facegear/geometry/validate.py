@@ -5,14 +5,14 @@ from functools import lru_cache
 from math import cos, inf, pi, sin, sqrt, tan
 
 import numpy as np
+from scipy.optimize import brentq
 
 from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.gear_modifications import flank_end
 from facegear.geometry.generated import generated
-from facegear.geometry.limits import THINNEST_LAND, RadiusLimits, face_range, radius_limits
-from facegear.geometry.roots import root
+from facegear.geometry.limits import ROUNDING, THINNEST_LAND, RadiusLimits, face_range, radius_limits
 
 MAX_RELIEF = 0.05
 """Largest relief or crowning, in modules: some three times what the heaviest load asks for."""
@@ -179,7 +179,7 @@ def check_shaper(design: PairDesign) -> None:
     if rounding >= deepest or _land_left(design, rounding) < 0:
         max_rounding = deepest
         if _land_left(design, deepest) < 0:
-            max_rounding = root(lambda radius: _land_left(design, radius), 0.0, deepest, 1e-9)
+            max_rounding = brentq(lambda radius: _land_left(design, radius), 0.0, deepest, xtol=ROUNDING)
         allowed = f"at most {max_rounding / m:.4f}: the shaper's tip is round"
         _refuse("shaper.tip_rounding_modules", rounding / m, allowed)
 

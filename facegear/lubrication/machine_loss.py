@@ -10,10 +10,10 @@ from dataclasses import dataclass, fields
 from typing import Protocol
 
 import numpy as np
+from scipy.optimize import NoConvergence, anderson
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.errors import NotConverged
-from facegear.lubrication.fixed_point import fixed_point
 from facegear.lubrication.heat import (
     SETTLED,
     STEPS,
@@ -204,11 +204,19 @@ def settled_bulk(step: Callable[[Array], Array], known: Lubrication, torque: Arr
             require_cool((row[0], row[1]), known, load, speed)
         return after
 
-    bulk = fixed_point(cool, np.tile(starting_bulk(known), (torque.size, 1)), SETTLED, STEPS)
-    if bulk is None:
+    start = np.tile(starting_bulk(known), (torque.size, 1))
+    try:
+        return anderson(
+            lambda bulk: cool(bulk) - bulk,
+            start,
+            alpha=1.0,  # the first step takes over what `cool` gives
+            f_tol=SETTLED,
+            maxiter=STEPS,
+            line_search=None,
+        )
+    except NoConvergence:
         what = f"{STEPS} steps of loss and bulk temperature"
-        raise NotConverged("bulk temperature", f"{speed:g} rad/s", what)
-    return bulk
+        raise NotConverged("bulk temperature", f"{speed:g} rad/s", what) from None
 
 
 def _losses(loads: MeshLoads, curves: LossCurves, speed: float) -> tuple[Array, Array]:

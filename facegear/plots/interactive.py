@@ -34,13 +34,9 @@ ALIGNED = 0.02
 """Widths of a figure within which two panels stand above each other."""
 
 
-def interactive(figure: Figure, drawn: bool = False) -> dict[str, Any]:
-    """`title`, and `data` and `layout` of plotly.js for a figure; no data where it is a drawing.
-
-    drawn: matplotlib has drawn it since it was last changed, so that its ticks and texts have their values.
-    """
-    if not drawn:
-        figure.draw_without_rendering()
+def interactive(figure: Figure) -> dict[str, Any]:
+    """`title`, and `data` and `layout` of plotly.js for a figure; no data where it is a drawing."""
+    figure.draw_without_rendering()  # gives ticks and texts their values, and panels their places
     try:
         panels = _panels(figure)
         parts = [convert(panel) for panel in panels]
@@ -62,9 +58,9 @@ def interactive(figure: Figure, drawn: bool = False) -> dict[str, Any]:
     return {"title": markup(figure.get_suptitle()), "data": traces, "layout": layout}
 
 
-def write(figure: Figure, path: Path, drawn: bool = False) -> None:
-    """The interactive form as a file."""
-    text = json.dumps(interactive(figure, drawn), ensure_ascii=False, separators=(",", ":"))
+def write(figure: Figure, path: Path) -> None:
+    """Write the interactive form as a file."""
+    text = json.dumps(interactive(figure), ensure_ascii=False, separators=(",", ":"))
     path.write_text(text, encoding="utf-8")
 
 

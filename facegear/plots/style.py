@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 
 from facegear.io.atomic import atomic_path
 from facegear.plots import interactive
-from facegear.plots.both import Canvas, draw_both, draw_picture
-from facegear.plots.once import found_once
 
 STYLE = {
     "figure.dpi": 110,
@@ -44,39 +42,38 @@ def styled() -> Iterator[None]:
 
 
 def save(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure to each path (the suffix names the format; json: its interactive form) and close it.
+    """Write a figure to files and close it.
 
-    The same figure gives the same bytes: without a date, names inside a svg by a fixed salt. Its parts are
-    laid out once for all formats, and drawn once for svg and png; matplotlib would do so before each of them.
+    The same figure gives the same bytes, whatever other files are written: its parts are placed once, an svg
+    holds no date, and its inner names follow from a fixed salt.
+
+    Parameters
+    ----------
+    figure
+        The figure to write.
+    *paths
+        Files to write. The suffix names the format: one that matplotlib knows, or `.json` for the interactive
+        form (`facegear.plots.interactive`).
     """
-    by_ending = {Path(path).suffix: path for path in paths}
-    both = [by_ending[ending] for ending in (".svg", ".png")] if {".svg", ".png"} <= {*by_ending} else []
-    with styled(), plt.rc_context({"figure.constrained_layout.use": False}), found_once():
-        figure.set_dpi(STYLE["savefig.dpi"])
-        canvas = Canvas(figure)
+    with styled():
         lay_out(figure)
-        if both:
-            with atomic_path(both[0]) as svg, atomic_path(both[1]) as png:
-                draw_both(canvas, svg, png)
         for path in paths:
-            if path in both:
-                continue
-            ending = Path(path).suffix
+            suffix = Path(path).suffix
             with atomic_path(path) as temporary:
-                if ending == ".json":
-                    interactive.write(figure, temporary, bool(both))
-                elif ending == ".png":
-                    draw_picture(canvas, temporary)
+                if suffix == ".json":
+                    interactive.write(figure, temporary)
                 else:
-                    figure.savefig(temporary, metadata={"Date": None} if ending == ".svg" else None)
+                    figure.savefig(temporary, metadata={"Date": None} if suffix == ".svg" else None)
     plt.close(figure)
 
 
 def lay_out(figure: Figure) -> None:
-    """Give all parts of a figure their places, which it keeps from then on."""
-    if (engine := figure.get_layout_engine()) is not None:
+    """Place the parts of a figure for good, at the resolution of its files."""
+    figure.set_dpi(STYLE["savefig.dpi"])
+    engine = figure.get_layout_engine()
+    if engine is not None:
         engine.execute(figure)
-        figure.set_layout_engine(None)
+        figure.set_layout_engine("none")
 
 
 def mesh_looks(meshes: Iterable[str]) -> dict[str, dict[str, str]]:

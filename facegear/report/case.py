@@ -11,6 +11,7 @@ from facegear.report.glance import glance_chapter
 from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
 from facegear.report.poses import pose_tables, pose_text
+from facegear.ties import first_largest_rows
 
 BY_TORQUE = (
     "One row for each torque on the pinion, over a pitch. ste peak to peak: the largest transmission error "
@@ -109,8 +110,6 @@ DRAWINGS = ("layout", "machine", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LONG_TABLE = 40
 """Rows of natural frequencies above which their table is folded."""
-LARGEST_SVG = 1_500_000
-"""Bytes; a larger drawing is shown as its png."""
 
 
 def case_report(
@@ -137,12 +136,12 @@ def case_report(
     studied = [name for name in others if name.startswith("contact_")]
     added = {STUDIED_CONTACT: studied, "Load sharing": [name for name in others if name not in studied]}
     drawing = next((name for name in DRAWINGS if name in pictures), None)
-    drawn = () if drawing is None else (_picture(pictures[drawing], caption_of(drawing, values)),)
+    drawn = () if drawing is None else (Picture(pictures[drawing], caption_of(drawing, values)),)
     chapters = [glance_chapter(values, tables, drawn, pair, notes), machine_chapter(values, tables, base)]
     for title, text, names in CHAPTERS:
         shown = [*names, *added.get(title, ())]
         shown_pictures = [
-            _picture(pictures[name], caption_of(name, values))
+            Picture(pictures[name], caption_of(name, values))
             for name in shown
             if name in pictures and name not in (drawing, "machine")
         ]
@@ -160,12 +159,6 @@ def case_report(
         "Every table can be saved as csv."
     )
     return render(f"facegear: {values['case']}", lead, chapters)
-
-
-def _picture(path: Path, caption: str) -> Picture:
-    smaller = path.with_suffix(".png")
-    shown = smaller if path.stat().st_size > LARGEST_SVG and smaller.exists() else path
-    return Picture(shown, caption)
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
@@ -243,7 +236,7 @@ def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     listed = [Table(SAFETY, shown, 4), Table(RATING, tables["rating"], 4, folded=True)]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
-        hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]
+        hardest = first_largest_rows(loads, "largest_force_n", ["bin"], sort=True)
         listed += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
     return listed
 
@@ -277,7 +270,7 @@ def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Ta
         return []
     table = tables["stress_over_speed"]
     nearest = table["speed_rpm"].iloc[(table["speed_rpm"] - speed_rpm).abs().argmin()]
-    hardest = table.loc[table.groupby("motion", sort=False)["largest_force_n"].idxmax()]
+    hardest = first_largest_rows(table, "largest_force_n", ["motion"])
     shown = pd.concat([table[table["speed_rpm"] == nearest], hardest]).drop_duplicates()
     return [Table(OVER_SPEED, shown, 4)]
 

@@ -82,7 +82,7 @@ PAPER_NUMBERS = {
 }
 """Which figure of the reproduced paper a figure stands for; those of studies stand in the config."""
 
-KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions", "drivers": "pinions on one gear"}
+KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions"}
 """Kinds of load-sharing groups in words."""
 
 

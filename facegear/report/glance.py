@@ -88,7 +88,7 @@ def findings(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
             f"K_gamma, {row.group}",
             f"{row.k_gamma:.3f} (K_v {row.k_v:.3f}) at {row.speed_rpm:.0f} rpm and {row.torque_n_m:g} N m, "
             f"{row.k_gamma_static:.3f} at rest, over "
-            f"{row.mesh_cycles} mesh cycles while the runouts turn",
+            f"{row.mesh_cycles} mesh cycles while the runouts turn; {_meaning_of_k_gamma(row.k_gamma)}",
         )
     if "jumps" in tables:
         irregular = tables["jumps"]["kind"] == IRREGULAR
@@ -99,6 +99,14 @@ def findings(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
     if "scorecard" in tables:
         counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
         yield Finding("claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items()))
+
+
+def _meaning_of_k_gamma(k_gamma: float) -> str:
+    """Definition of K_gamma in words, and why it can be below 1."""
+    meaning = "largest mean load of a mesh over its nominal even share"
+    if k_gamma < 1.0:
+        meaning += "; below 1, less load takes this path than an even split would send through it"
+    return meaning
 
 
 def _counted_speeds(jumps: pd.DataFrame) -> str:

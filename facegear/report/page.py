@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import floor, isfinite, log10
 from pathlib import Path
 from typing import Any, Literal
@@ -14,7 +15,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray
-from facegear.io import pages
+from facegear.io import documents, pages
+from facegear.io.pictures import read_svg
 from facegear.report.stills import data_uri
 from facegear.report.units import UNITS, ending_of
 
@@ -26,8 +28,6 @@ PLAIN = (1e-3, 1e6)
 """Numbers between these are written without a power of ten."""
 NAMED = 5
 """Words of a caption that name its file."""
-SCREEN_DPI, PNG_DPI = 96, 160
-"""Points an inch of a page, and of a stored png."""
 PAPER_PT, COLUMN_GAP_PT, LETTER_WIDTH = 532.0, 8.0, 0.64
 """On A4: width of a table, room beside a column (pt), and the mean width of a letter in its height."""
 PRINTED = (4.0, 8.0)
@@ -40,36 +40,40 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Picture:
-    """A stored svg or png with its caption."""
+    """A stored svg with its caption."""
 
     path: Path
     caption: str
 
+    @cached_property
+    def still(self) -> str:
+        """Text of the svg. Raises CorruptFile where the file is not whole."""
+        return read_svg(self.path)
+
     @property
     def width_px(self) -> int:
         """Width at which the text has the size it was drawn with."""
-        if self.path.suffix == ".svg":
-            match = re.search(
-                r'<svg[^>]* width="([\d.]+)(pt|px)?"', self.path.read_text(encoding="utf-8")[:4000]
-            )
-            return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
-        return round(int.from_bytes(self.path.read_bytes()[16:20], "big") * SCREEN_DPI / PNG_DPI)
+        match = re.search(r'<svg[^>]* width="([\d.]+)(pt|px)?"', self.still[:4000])
+        return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
 
     @property
     def anchor(self) -> str:
         """Name of the figure inside the page."""
         return f"figure-{self.path.stem}"
 
-    @property
+    @cached_property
     def interactive(self) -> Any:
-        """What plotly.js draws in its place, from the file beside it; nothing where it has no such form."""
+        """What plotly.js draws in its place, from the file beside it; nothing where it has no such form.
+
+        Raises CorruptFile where that file is not whole.
+        """
         stored = self.path.with_suffix(".json")
-        content = json.loads(stored.read_text(encoding="utf-8")) if stored.exists() else {}
+        content = documents.read(stored) if stored.exists() else {}
         return content if content.get("data") else None
 
     def data_uri(self) -> str:
         """The picture as a data URI."""
-        return data_uri(self.path)
+        return data_uri(self.still)
 
 
 @dataclass(frozen=True)

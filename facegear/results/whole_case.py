@@ -1,7 +1,7 @@
 """All that a config asks for, computed in this process: the report, and every file of the case."""
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -10,13 +10,14 @@ from typing import Any
 from facegear.config.arguments import typed_arguments
 from facegear.config.notes import notes
 from facegear.errors import FacegearError, extras_named
-from facegear.io.atomic import atomic_path
+from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.pipeline.asked import machine_loads
 from facegear.pipeline.needs import resolved_needs
 from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair, table_name
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
+from facegear.plots.style import save
 from facegear.provenance.manifest import versions
 from facegear.results.base import StageOutput
 from facegear.results.chain import Chain
@@ -40,9 +41,10 @@ class WholeCase:
         path = Path(path)
         if path.suffix != ".html":
             raise FacegearError(f"{path}: must end in .html")
+        require_writable_file(path)
         with extras_named(), TemporaryDirectory() as folder:
             stages = [stage for stage in self._asked() if _is_reported(stage)]
-            text = self._page(Path(folder), stages, png=False)
+            text = self._page(Path(folder), stages)
         with atomic_path(path) as temporary:
             temporary.write_text(text, encoding="utf-8")
         return path
@@ -54,6 +56,7 @@ class WholeCase:
         Returns the path of the report.
         """
         folder = Path(folder)
+        require_writable(folder)
         for stage in self._asked():
             content = self._output(stage).content
             paths = {
@@ -64,10 +67,50 @@ class WholeCase:
             }
             write_stage(stage, content, paths)
         with extras_named():
-            text = self._page(folder / "figures", self._asked(), png=True)
+            text = self._page(folder / "figures", self._asked())
         with atomic_path(folder / "report.html") as temporary:
             temporary.write_text(text, encoding="utf-8")
         return folder / "report.html"
+
+    def write_figures(
+        self, folder: str | Path, names: Sequence[str] = (), suffix: str = ".png"
+    ) -> list[Path]:
+        """Draw figures of the case into a folder.
+
+        Parameters
+        ----------
+        folder
+            Where the files go, as `<name><suffix>`.
+        names
+            Names of the figures, as those of the files in the case's `figures` folder; all if empty.
+        suffix
+            Format of the files, one that matplotlib writes.
+
+        Returns
+        -------
+        list of Path
+            The files, in the order of computation.
+
+        Raises
+        ------
+        FacegearError
+            If the case has no figure of such a name.
+        """
+        known = {name: stage for stage in self._asked() for name in self._figure_names(stage)}
+        for name in names:
+            if name not in known:
+                raise FacegearError(f"figure {name!r}: must be one of this case: {', '.join(known)}")
+        wanted = names or known
+        paths = []
+        with extras_named():
+            for stage in (stage for stage in self._asked() if set(self._figure_names(stage)) & set(wanted)):
+                self._output(stage)
+                for name, figure in self._figures(stage):
+                    if name in wanted:
+                        path = Path(folder) / f"{name}{suffix}"
+                        save(figure, path)
+                        paths.append(path)
+        return paths
 
     def _asked(self) -> list[Stage]:
         return [stage for name, stage in STAGES.items() if asked_for(name, self.chain.case)]
@@ -83,7 +126,7 @@ class WholeCase:
             self.on_stage(stage.name, output.summary)
         return output
 
-    def _page(self, folder: Path, stages: list[Stage], png: bool) -> str:
+    def _page(self, folder: Path, stages: list[Stage]) -> str:
         from facegear.report.case import case_report
 
         for stage in stages:
@@ -94,7 +137,7 @@ class WholeCase:
         tables = {
             table_name(STAGES[name].files[file].path): self.chain.part(name, file) for name, file in wanted
         }
-        pictures = {name: path for stage in stages for name, path in self._drawn(stage, folder, png)}
+        pictures = {name: path for stage in stages for name, path in self._drawn(stage, folder)}
         values = {**self.chain.values, "reproduction": False}
         return case_report(
             values,
@@ -107,23 +150,24 @@ class WholeCase:
             notes=notes(self.chain.values),
         )
 
-    def _drawn(self, stage: Stage, folder: Path, png: bool) -> Iterator[tuple[str, Path]]:
-        """Names and paths (svg) of a stage's figures, drawn into a folder.
+    def _figure_names(self, stage: Stage) -> Sequence[str]:
+        """Names of all figures of a stage."""
+        return stage.figures.named(self.chain.case) if stage.figures else ()
 
-        `png`: each as a png as well, not only one that the report shows so for its size.
-        """
-        if stage.figures is None or not stage.figures.named(self.chain.case):
+    def _figures(self, stage: Stage) -> Iterator[tuple[str, Any]]:
+        """Draw the figures of a stage; yield each with its name."""
+        names = self._figure_names(stage)
+        if stage.figures is None or not names:
             return
-        from facegear.plots.style import save
-        from facegear.report.case import LARGEST_SVG
-
         draw, needs = load(stage.figures.draw), resolved_needs(stage.figures.needs, self.chain.case)
         figures = draw(**self.chain.given(stage.figures.upstream), **typed_arguments(draw, needs))
-        for name, figure in zip(stage.figures.named(self.chain.case), figures, strict=True):
+        yield from zip(names, figures, strict=True)
+
+    def _drawn(self, stage: Stage, folder: Path) -> Iterator[tuple[str, Path]]:
+        """Write the figures of a stage, as svg and interactive; yield the name and svg of each."""
+        for name, figure in self._figures(stage):
             path = folder / f"{name}.svg"
             save(figure, path, path.with_suffix(".json"))
-            if png or path.stat().st_size > LARGEST_SVG:
-                save(figure, path.with_suffix(".png"))
             yield name, path
 
     def _part(self, stage: str, file: str) -> Any:

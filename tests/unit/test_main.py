@@ -31,7 +31,54 @@ def test_a_mistake_on_the_command_line_ends_in_one_line(capsys, arguments, line)
     assert message.startswith(line) and message.count("\n") == 1
 
 
+def test_a_file_that_the_system_refuses_ends_in_one_line(monkeypatch, capsys):
+    def refuse(_):
+        raise PermissionError(13, "Permission denied", "/shut/own.yaml")
+
+    monkeypatch.setattr("facegear.__main__.load_config", refuse)
+    assert main(("check", "own.yaml")) == 1
+    assert capsys.readouterr().err == "/shut/own.yaml: permission denied\n"
+
+
+@pytest.mark.parametrize("usable", [True, False])
+def test_a_run_has_a_cache_of_its_own_where_the_home_folder_allows_none(monkeypatch, tmp_path, usable):
+    """Snakemake ended with PermissionError; the folder of results can be written, or nothing could."""
+    home = tmp_path / "home"
+    home.mkdir() if usable else home.write_text("a file")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(home))
+    monkeypatch.chdir(tmp_path)
+    given = []
+    monkeypatch.setattr("os.execve", lambda *arguments: given.append(arguments[-1]))
+    main(("run", str(ROOT / "config" / "harmonics_only.yaml")))
+    wanted = home if usable else tmp_path / ".snakemake" / "cache"
+    assert given[0]["XDG_CACHE_HOME"] == str(wanted)
+
+
 @pytest.mark.parametrize("name", ["misaligned", "unequal_inputs", "eight_pinions"])
 def test_the_example_machines_are_configs_without_mistakes(capsys, name):
     assert main(("check", str(ROOT / "examples" / "machines" / f"{name}.yaml"))) == 0
     assert f"no mistakes; {4 if name == 'misaligned' else 1} case" in capsys.readouterr().out
+
+
+CASE = str(ROOT / "config" / "harmonics_only.yaml")
+
+
+def test_pictures_of_named_figures_are_drawn_beside_the_run_and_nothing_else(tmp_path, capsys):
+    assert main(("figures", CASE, "mode_shapes", "--png", "--results", str(tmp_path))) == 0
+    (path,) = (path for path in tmp_path.rglob("*") if path.is_file())
+    assert path.parts[-2:] == ("figures", "mode_shapes.png") and path.read_bytes().startswith(b"\x89PNG")
+    assert capsys.readouterr().out == f"{path}\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (("mode_shape", "--png"), "figure 'mode_shape': must be one of this case: "),
+        (("mode_shapes",), "figures: the svg in "),
+    ],
+)
+def test_figures_that_cannot_be_drawn_end_in_one_line(tmp_path, capsys, arguments, line):
+    assert main(("figures", CASE, *arguments, "--results", str(tmp_path))) == 1
+    message = capsys.readouterr().err
+    assert message.startswith(line) and message.count("\n") == 1
+    assert not list(tmp_path.iterdir())

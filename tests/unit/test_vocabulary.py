@@ -1,143 +1,170 @@
-"""Names and text use the terms of docs/glossary.md, and none of the words that it refuses."""
+"""The code keeps the rules of language, but for a list that only shrinks; a glossary term stands once."""
 
-import ast
-import io
 import re
-import tokenize
-from collections.abc import Iterator
-from functools import cache
-from itertools import chain
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
-pytestmark = pytest.mark.xdist_group("vocabulary")  # a module is parsed once a process
+from validation import language
+
+pytestmark = pytest.mark.xdist_group("vocabulary")  # all modules are parsed in one process
 ROOT = Path(__file__).parents[2]
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
-AREAS = ("facegear", "paper", "validation", "workflow")
-SOURCES = [
-    path
-    for area in AREAS
-    for path in sorted((ROOT / area).rglob("*.py"))
-    if "tests" not in path.relative_to(ROOT).parts
-]
-PAGES = [
-    path
-    for path in (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md", ROOT / "CONTRIBUTING.md")
-    if path.name != "glossary.md"
-]
+SAMPLE = '''"""The same of a module."""
+
+KEPT = 1
+"""Of a constant."""
 
 
-def rows(title: str) -> list[list[str]]:
+class Others:
+    """A class."""
+
+    def area(self, width: float, height: Array) -> float:
+        """Return an area.
+
+        Parameters
+        ----------
+        width
+            Width, m.
+        height : Array
+            Heights (n,).
+
+        Returns
+        -------
+        float
+            The area.
+        """
+        own = width
+        return own
+
+    def load(self, torque: float, lines: Array) -> Array:
+        """Return a load.
+
+        Parameters
+        ----------
+        torque : float
+            Torque, N m.
+        lines
+            Lengths, mm.
+
+        Returns
+        -------
+        Array
+            Loads (n,), N.
+        """
+
+    def _asked(self):
+        """As above."""
+
+
+def is_closed(gap):
+    """Whether a gap is closed. Ofen and Asgard are words."""
+
+    def inner(others):
+        """Some gap."""
+
+
+def write() -> None:
+    """Write nothing."""
+'''
+BROKEN = {
+    "<module>::opening",
+    "KEPT::name",
+    "KEPT::opening",
+    "Others::name",
+    "Others.area.own::name",
+    "Others.area::units",
+    "Others.load::shapes",
+    "Others._asked::name",
+    "Others._asked::opening",
+    "is_closed::parameters",
+    "is_closed.inner.others::name",
+    "is_closed.inner::opening",
+}
+
+
+@pytest.fixture
+def listed(tmp_path, monkeypatch):
+    """A repository with two offenders, and the path of a list that does not exist yet."""
+    monkeypatch.setattr(language, "ROOT", tmp_path)
+    monkeypatch.setattr(language, "OFFENDERS", tmp_path / "list.txt")
+    monkeypatch.setattr(language, "find_offenders", lambda: {"b.py::f::opening", "a.py::f.own::name"})
+    return tmp_path / "list.txt"
+
+
+def test_nothing_new_breaks_the_rules_and_the_list_names_nothing_that_keeps_them():
+    present, stored = language.find_offenders(), language.read_list()
+    new, obsolete = sorted(present - stored), sorted(stored - present)
+    assert not new, "\n".join(["break a rule of language (CONTRIBUTING.md, Language):", *new[:40]])
+    renew = "no longer offend; run: python -m validation.language --shrink"
+    assert not obsolete, "\n".join([renew, *obsolete[:40]])
+
+
+def test_the_list_is_sorted_and_holds_each_key_once():
+    lines = language.OFFENDERS.read_text(encoding="utf-8").splitlines()
+    assert lines == sorted(set(lines)) and all(line.count("::") == 2 for line in lines)
+
+
+def test_each_rule_refuses_what_breaks_it_and_nothing_else():
+    offenders = language.offenders_of(Path("facegear/a.py"), SAMPLE)
+    assert {key.removeprefix("facegear/a.py::") for key in offenders} == BROKEN
+    assert language.offenders_of(Path("facegear/asked.py"), '"""A module."""\n') == {
+        "facegear/asked.py::<module>::name"
+    }
+
+
+def test_names_and_sections_of_tests_are_free_and_their_docstrings_are_not():
+    offenders = language.offenders_of(Path("tests/unit/test_a.py"), SAMPLE)
+    assert {key.rpartition("::")[2] for key in offenders} == {"opening"}
+
+
+@pytest.mark.parametrize("name", ["OWN", "_kept", "founds", "Others", "abreast", "Courses"])
+def test_bare_names_are_seen_in_any_case_and_number(name):
+    assert language.is_bare(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["own_mesh", "lowest", "is_closed", "speed", "seed", "mesh", "least", "bearing"]
+)
+def test_plain_words_are_allowed(name):
+    assert not language.is_bare(name)
+
+
+def test_the_code_that_contributing_shows_keeps_the_rules():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    blocks = [dedent(block) for block in re.findall(r"(?s)```\w+\n(.*?) *```", text) if "def " in block]
+    assert len(blocks) >= 4
+    for block in blocks:
+        folder = "tests" if "def test_" in block else "facegear"
+        assert not language.offenders_of(Path(folder) / "gear_ratio.py", block)
+
+
+def test_create_writes_a_list_once_and_shrink_never_adds(listed, capsys):
+    assert language.main(["--create"]) == 0
+    assert listed.read_text() == "a.py::f.own::name\nb.py::f::opening\n"
+    assert language.main(["--create"]) == 1
+    listed.write_text("b.py::f::opening\nc.py::g::opening\n")
+    assert language.main([]) == 1 and listed.read_text().startswith("b.py")
+    assert language.main(["--shrink"]) == 1, "a.py offends, and is not added"
+    assert listed.read_text() == "b.py::f::opening\n"
+    assert "a.py::f.own::name: breaks a rule" in capsys.readouterr().err
+
+
+def rows(title):
     """Cells of the table below a heading of the glossary, without its head."""
     section = GLOSSARY.split(f"\n## {title}\n")[1].split("\n## ")[0]
     lines = [line for line in section.splitlines() if line.startswith("|")][2:]
     return [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in lines]
 
 
-REFUSED = rows("Words that are refused")
-WHOLE = {word for word, names, *_ in REFUSED if names}
-PARTS = {word for word, names, *_ in REFUSED if names == "any part"}
-TESTS = [path for folder in (".", "paper", "validation") for path in (ROOT / folder / "tests").rglob("*.py")]
-SPOKEN = [word.replace("_", "[ _]") for word, _, text, *_ in REFUSED if text]
-IN_TEXT = re.compile(rf"\b(?:{'|'.join(SPOKEN)})\b", re.IGNORECASE)
-ALLOWED = {name for name, *_ in rows("Exceptions")}
-
-
-def defined_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
-    """Line and name of all that a module defines: functions, classes, arguments, variables, attributes."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            yield node.lineno, node.name
-        elif isinstance(node, ast.arg):
-            yield node.lineno, node.arg
-        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            yield node.lineno, node.id
-        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
-            yield node.lineno, node.attr
-        elif isinstance(node, ast.alias) and node.asname:
-            yield node.lineno, node.asname
-
-
-@cache
-def names_in(path: Path) -> tuple[tuple[int, str], ...]:
-    return tuple(defined_names(ast.parse(path.read_text(encoding="utf-8"))))
-
-
-def refused(name: str) -> bool:
-    return name not in ALLOWED and (name in WHOLE or not PARTS.isdisjoint(name.lower().split("_")))
-
-
-def texts(source: str) -> Iterator[tuple[int, str]]:
-    """Line and content of all comments and strings of a module."""
-    for token in tokenize.generate_tokens(io.StringIO(source).readline):
-        if token.type in (tokenize.COMMENT, tokenize.STRING):
-            yield from enumerate(token.string.splitlines(), start=token.start[0])
-
-
-@pytest.mark.parametrize("area", AREAS)
-def test_names_use_the_terms_of_the_glossary(area):
-    wrong = [
-        f"{path.relative_to(ROOT)}:{line} {name}"
-        for path in SOURCES
-        if path.is_relative_to(ROOT / area)
-        for line, name in names_in(path)
-        if refused(name)
-    ]
-    assert not wrong, "\n".join(["names that docs/glossary.md refuses:", *wrong])
-
-
-def test_names_of_tests_hold_no_word_that_text_refuses():
-    spoken = {word for word, names, text, *_ in REFUSED if names == "any part" and text}
-    wrong = [
-        f"{path.relative_to(ROOT)}:{line} {name}"
-        for path in TESTS
-        for line, name in names_in(path)
-        if not spoken.isdisjoint(name.lower().split("_"))
-    ]
-    assert spoken and not wrong, "\n".join(["names that docs/glossary.md refuses:", *wrong])
-
-
-def test_text_uses_the_terms_of_the_glossary():
-    of_code = ((path, texts(path.read_text(encoding="utf-8"))) for path in SOURCES)
-    of_pages = ((path, enumerate(path.read_text(encoding="utf-8").splitlines(), start=1)) for path in PAGES)
-    wrong = [
-        f"{path.relative_to(ROOT)}:{number} {line.strip()[:90]}"
-        for path, lines in chain(of_code, of_pages)
-        for number, line in lines
-        if IN_TEXT.search(line)
-    ]
-    assert not wrong, "\n".join(["text with words that docs/glossary.md refuses:", *wrong])
-
-
-def test_every_exception_is_needed():
-    names = {name for path in SOURCES for _, name in names_in(path)}
-    assert names >= ALLOWED
-    for name in ALLOWED:
-        assert name in WHOLE or not PARTS.isdisjoint(name.lower().split("_"))
-
-
-def test_a_name_of_each_kind_and_each_kind_of_text_is_seen():
-    source = (
-        'class told:\n    """found"""\n    def one(self, place, *least): self.most = flow = lambda wide: 1\n'
-    )
-    assert {name for _, name in defined_names(ast.parse(source))} == {
-        *("told", "one", "self", "place", "least", "most", "flow", "wide")
-    }
-    assert refused("ring_play") and refused("MOST_STEPS") and refused("one") and not refused("one_sided")
-    assert [
-        line for line, text in texts(source + "# afloat\n") if "found" in text or IN_TEXT.search(text)
-    ] == [2, 4]
-
-
 def test_names_of_code_in_the_terms_are_those_of_the_code():
-    code = "\n".join(path.read_text(encoding="utf-8") for path in SOURCES)
+    paths = [path for folder in language.SOURCES for path in (ROOT / folder).rglob("*.py")]
+    code = "\n".join(path.read_text(encoding="utf-8") for path in paths)
     quoted = {name for _, meaning in rows("Terms") for name in re.findall(r"`([A-Za-z_]+)`", meaning)}
     assert quoted and all(re.search(rf"\b{name}\b", code) for name in quoted)
 
 
 def test_each_term_stands_once_in_the_glossary():
     terms = [part.strip() for term, *_ in rows("Terms") for part in term.split(",")]
-    words = [word for word, *_ in REFUSED]
-    assert len(terms) == len(set(terms)) and len(words) == len(set(words))
-    assert not set(terms) & set(words)
+    assert len(terms) == len(set(terms))

@@ -151,7 +151,7 @@ def with_chosen_image(begun: Begun, system: System, held: Sequence[Symmetry]) ->
 
 
 def start_on_image(response: SteadyState, held: Sequence[Symmetry]) -> State | None:
-    """Return a state of the image that with_chosen_image() would take of a response; None for itself."""
+    """Return a state of the image that with_chosen_image() would take of a response; None for the same."""
     symmetry = _preferred(_cycle_of(response), response.moments, held) if response.period else None
     if symmetry is None:
         return None
@@ -161,7 +161,7 @@ def start_on_image(response: SteadyState, held: Sequence[Symmetry]) -> State | N
 
 
 def _preferred(cycle: Cycle, moments: Moments, held: Sequence[Symmetry]) -> Symmetry | None:
-    """The symmetry that leads to the image which the rule prefers; None for the motion itself."""
+    """The symmetry that leads to the image which the rule prefers; None where that is the motion itself."""
     if all(map(cycle.holds, held)):
         return None
     best, best_numbers = None, np.concatenate([moments.ac_rms, moments.mean])

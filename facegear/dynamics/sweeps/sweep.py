@@ -31,7 +31,7 @@ class Piece:
 
     motion (P,): class of motion, period (P,) its mesh periods where it is periodic, else 0. deflection_*
     (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
-    forces, without the damper's part, N; largest_force (P, M): largest magnitude of their samples.
+    forces, without the damper's part, N; largest_force (P, M): their largest magnitude.
     largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
     open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_fraction (P, M) of the samples,
     at which a mesh is pressed past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
@@ -204,7 +204,7 @@ def _row(
         "period": response.period,
         **{f"deflection_{name}": getattr(meshes, name) for name in DEFLECTION},
         **dict(zip(("mean_force", "mean_force_magnitude"), response.mean_forces, strict=True)),
-        "largest_force": np.abs(response.forces).max(axis=0),
+        "largest_force": response.largest_forces,
         "largest_pull": response.averages.pull,
         **dict(zip(("open_fraction", "drive_fraction", "back_fraction"), response.fractions, strict=True)),
         "past_law_fraction": response.past_law,

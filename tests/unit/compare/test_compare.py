@@ -74,7 +74,7 @@ def test_a_mesh_a_thousandth_stiffer_is_found(nominal, tmp_path):
 def test_a_number_is_judged_by_its_own_numerical_error(factor, verdict, nominal, tmp_path):
     shutil.copytree(nominal, tmp_path, dirs_exist_ok=True)
     table = pd.read_csv(tmp_path / "stiffness/harmonics.csv")
-    table.loc[0, "b_n_per_m"] *= factor
+    table.loc[0, "cos_n_per_m"] *= factor
     table.to_csv(tmp_path / "stiffness/harmonics.csv", index=False)
     assert compare(nominal, tmp_path).rows["verdict"].to_list() == [verdict] * (verdict is not None)
 
@@ -128,6 +128,49 @@ def test_a_motion_that_is_irregular_in_one_run_first_is_a_change(tmp_path):
     gone = sweep_peaks(tmp_path / "gone", "period-1", 1.0, False, (7500.0, 9200.0))
     assert not compare(old, other).equal
     assert not compare(old, gone).equal
+
+
+def jumps(folder, *rows, error_rpm=0.8, **columns):
+    """A table of jumps upwards: the speed before each, the AC RMS after it (um) and its multiplier."""
+    (folder / "dynamics").mkdir(parents=True)
+    table = pd.DataFrame(
+        rows, columns=["speed_before_rpm", "deflection_ac_rms_after_um", "leading_multiplier_before"]
+    )
+    table = table.assign(
+        direction="up", mesh="right input/upper", speed_after_rpm=table["speed_before_rpm"] + 0.8
+    )
+    table.assign(error_rpm=error_rpm, **columns).to_csv(folder / "dynamics/jumps.csv", index=False)
+    return folder
+
+
+JUMPS = (5806.5, 15.7, 0.956), (8876.0, 20.0, 0.95)
+
+
+@pytest.mark.parametrize(
+    ("moved", "verdicts"),
+    [
+        ((8876.0, 20.0, 0.95 + 1.3e-6), {Verdict.WITHIN_ERROR}),
+        ((8876.0, 20.0, 0.95 + 2e-2), {Verdict.MOVED}),
+        ((8876.0, 20.1, 0.95), {Verdict.MOVED}),
+        ((8877.5, 20.1, 0.93), {Verdict.WITHIN_ERROR}),
+        ((8877.5, 22.0, 0.93), {Verdict.WITHIN_ERROR, Verdict.MOVED}),
+        ((8878.5, 20.0, 0.95), {Verdict.GONE, Verdict.ADDED}),
+    ],
+)
+def test_a_jump_is_compared_within_the_error_of_its_bracket(moved, verdicts, tmp_path):
+    old, new = jumps(tmp_path / "old", *JUMPS), jumps(tmp_path / "new", JUMPS[0], moved)
+    assert set(compare(old, new).rows["verdict"]) == verdicts
+
+
+def test_a_jump_that_ends_irregular_motion_is_known_to_a_step_of_the_sweep(tmp_path):
+    old = jumps(tmp_path / "old", *JUMPS, error_rpm=200.0)
+    new = jumps(tmp_path / "new", JUMPS[0], (8950.0, 20.1, 0.93), error_rpm=200.0)
+    assert compare(old, new).equal
+
+
+def test_jumps_of_two_directions_are_not_taken_for_one_another(tmp_path):
+    old, new = jumps(tmp_path / "old", *JUMPS), jumps(tmp_path / "new", *JUMPS, direction="down")
+    assert set(compare(old, new).rows["verdict"]) == {Verdict.GONE, Verdict.ADDED}
 
 
 @pytest.mark.parametrize(("residual", "equal"), [(6e-13, True), (2e-12, False)])

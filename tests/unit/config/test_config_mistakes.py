@@ -68,16 +68,21 @@ def test_all_mistakes_of_a_file_are_reported_at_once():
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ("a: 1\na: 2\n", ":2: key 'a' stands twice"),
+        ("a: 1\na: 2\n", ':2: not valid YAML: while constructing a mapping, found duplicate key "a"'),
         ("a: [1, 2\n", ":2: not valid YAML"),
         ("- 1\n", "a config is a mapping"),
-        ("a: !!python/object/apply:os.system ['true']\n", ":1: tag"),
+        (
+            "a: !!python/object/apply:os.system ['true']\n",
+            ":1: not valid YAML: could not determine a constructor",
+        ),
         ("\x00", "not valid YAML"),
         ("a: *b\n", ":1: alias *b"),
         ("a: &x [*x]\n", ":1: alias *x"),
         ("a:\n  b: 1\n c: 2\n", ":3: not valid YAML"),
-        ("a: 1\n---\nb: 2\n", ":2: a second document"),
-        ("? [1, 2]\n: 3\n", ":1: a key must be text"),
+        ("a: 1\n---\nb: 2\n", ":2: not valid YAML: expected a single document"),
+        ("%YAML 1.1\n---\na: 025\n", ":2: a config follows YAML 1.2"),
+        ("a: 2024-13-45\n", "not valid YAML: month must be in 1..12"),
+        (f"a: {'9' * 5000}\n", "not valid YAML: Exceeds the limit"),
     ],
 )
 def test_broken_yaml_ends_in_one_line(tmp_path, text, line):
@@ -87,6 +92,24 @@ def test_broken_yaml_ends_in_one_line(tmp_path, text, line):
         read_yaml(path)
     assert line in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("case: 2024-01-01\n", "(2024-01-01: put text in quotes)"),
+        ("case: !!set {x}\n", "({'x'}: put text in quotes)"),
+        ("case: a\n? [1, 2]\n: 3\n", "(keys must be str"),
+        ("1: 2\n", "1 = 2: unknown key"),
+    ],
+)
+def test_what_no_config_holds_is_refused_by_its_value(tmp_path, text, line):
+    path = tmp_path / "strange.yaml"
+    path.write_text(text)
+    with pytest.raises(ConfigErrors) as caught:
+        parse(Machine, read_yaml(path))
+    assert any(line in said for said in caught.value.lines)
+    assert not any("\n" in line for line in caught.value.lines)
 
 
 def test_missing_file_is_named(tmp_path):
@@ -136,14 +159,14 @@ def test_aliases_and_merge_keys_stand_for_what_they_name(tmp_path):
     ("text", "value"),
     [
         *(("1e-8", 1e-8), ("6.5e7", 6.5e7), (".5", 0.5), ("-3", -3), ("0o25", 21), ("0x1F", 31)),
-        *(("025", 25), ("1:20", "1:20"), ("yes", "yes"), ("on", "on"), ("'80'", "80"), ("1_000", "1_000")),
-        *(("2024-01-01", "2024-01-01"), ("true", True), ("~", None), (".inf", float("inf"))),
+        *(("025", 25), ("1:20", "1:20"), ("yes", "yes"), ("on", "on"), ("'80'", "80")),
+        *(("true", True), ("~", None), (".inf", float("inf"))),
     ],
 )
 def test_scalars_follow_yaml_1_2(tmp_path, text, value):
     """Under the rules of YAML 1.1, 025 was 21 and 1:20 was 80."""
     path = tmp_path / "n.yaml"
-    path.write_text(f"%YAML 1.1\n---\nvalue: {text}\n")
+    path.write_text(f"value: {text}\n")
     (found,) = read_yaml(path).values()
     assert found == value and type(found) is type(value)
 

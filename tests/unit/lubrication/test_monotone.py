@@ -1,11 +1,10 @@
-"""Interpolation of many small tables, and fixed points."""
+"""Interpolation of many small tables."""
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
-from facegear.lubrication.fixed_point import fixed_point
 from facegear.lubrication.monotone import monotone_at
 
 
@@ -23,14 +22,3 @@ def test_tables_are_interpolated_as_by_scipy_s_pchip(nodes, seed):
         for table in values
     ]
     np.testing.assert_allclose(monotone_at(at_nodes, values, places), expected, rtol=1e-12, atol=1e-12)
-
-
-@given(slopes=st.lists(st.floats(-0.95, 0.6), min_size=1, max_size=4))
-def test_a_map_that_contracts_settles_at_its_fixed_point(slopes):
-    slopes = np.array(slopes)
-    found = fixed_point(lambda at: slopes * at + 10.0, np.zeros(slopes.size), 1e-9, 60)
-    np.testing.assert_allclose(found, 10.0 / (1.0 - slopes), rtol=1e-7)
-
-
-def test_a_map_without_a_fixed_point_has_none():
-    assert fixed_point(lambda at: at + 1.0, np.zeros(2), 1e-6, 30) is None

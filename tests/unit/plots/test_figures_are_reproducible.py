@@ -4,8 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from facegear.plots.style import save, styled
-from facegear.report.page import PNG_DPI
+from facegear.plots.style import STYLE, save, styled
 
 
 def figure():
@@ -24,7 +23,20 @@ def test_a_figure_drawn_twice_is_the_same_file(tmp_path, ending):
     assert (tmp_path / f"first.{ending}").read_bytes() == (tmp_path / f"again.{ending}").read_bytes()
 
 
-def test_a_png_has_the_resolution_that_the_report_counts_with(tmp_path):
+def test_a_drawing_does_not_depend_on_the_formats_written_before_it(tmp_path):
+    save(figure(), tmp_path / "first.svg")
+    save(figure(), tmp_path / "again.png", tmp_path / "again.json", tmp_path / "again.svg")
+    assert (tmp_path / "first.svg").read_bytes() == (tmp_path / "again.svg").read_bytes()
+
+
+def test_every_path_is_written_though_several_have_one_ending(tmp_path):
+    """Of two paths with one ending only the last was written."""
+    paths = [tmp_path / f"{name}.{ending}" for name in ("first", "last") for ending in ("svg", "png", "json")]
+    save(figure(), *paths)
+    assert all(path.stat().st_size for path in paths)
+
+
+def test_a_png_has_the_resolution_of_the_style(tmp_path):
     save(figure(), tmp_path / "a.png")
     width = int.from_bytes((tmp_path / "a.png").read_bytes()[16:20], "big")
-    assert width == 3 * PNG_DPI
+    assert width == 3 * STYLE["savefig.dpi"]
