@@ -411,7 +411,11 @@ class Gearbox:
         longest_period: int | None = None,
         starts: int | None = None,
     ) -> "BranchesResult":
-        """Every periodic motion over speed, stable or not, beside the sweep: folds, margins, coexistence.
+        """Periodic motions over speed, stable or not, beside the sweep: folds, margins, coexistence.
+
+        These are all motions that branches join to the first one, to those of the sweep or to those of the
+        random starts, up to the longest period, with their images under the machine's symmetries. A motion
+        that no branch leads to is missing if no start has found it; docs/branches.md lists all bounds.
 
         Speeds, the longest period followed through doublings and the number of random `starts` as in section
         `branches` of the config unless given, its defaults where there is no such section. Raises

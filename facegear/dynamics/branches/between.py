@@ -38,6 +38,11 @@ def may_change(segment: Segment, low: float, high: float) -> bool:
     return segment.length * (high - low) >= SHORTEST_LENGTH and closest <= NEAR_CIRCLE
 
 
+def is_damped(segment: Segment, low: float, high: float) -> bool:
+    """Whether an end of a stretch has no multiplier on the circle itself, as undamped motions have."""
+    return max(_distance(segment.at(fraction)) for fraction in (low, high)) > UNDAMPED
+
+
 def _distance(point: BranchPoint) -> float:
     """Distance from the unit circle of the multiplier nearest to it."""
     return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
