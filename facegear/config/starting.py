@@ -6,6 +6,7 @@ from math import cos, pi, radians
 from string import Template
 
 from facegear.config.limits import face_limits
+from facegear.config.transmission import MAX_PINIONS
 from facegear.errors import ConfigError
 
 STEEL = 7850.0
@@ -18,6 +19,8 @@ BEARING = 5.0
 """Stiffness of a bearing over that of a mesh."""
 WIDEST = 8.0
 """Widest face that is chosen, in modules."""
+BOUNDS = {"torque_n_m": (1e-5, 1e6), "speed_rpm": (1.0, 1e5), "pinions": (1, MAX_PINIONS)}
+"""Smallest and largest values; the config has loads and speeds beyond them."""
 WITHIN = 0.1
 """Part of the range of the face that is left free at either end."""
 
@@ -53,11 +56,14 @@ class Known:
 
 def starting_config(known: Known) -> str:
     """The config as YAML text. Raises ConfigError for teeth that no pair can have, and for no load."""
-    for key in ("torque_n_m", "speed_rpm", "pinions"):
-        if not getattr(known, key) > 0.0:
-            raise ConfigError(key, getattr(known, key), "above 0")
+    for key, (low, high) in BOUNDS.items():
+        if not low <= getattr(known, key) <= high:
+            raise ConfigError(key, getattr(known, key), f"from {low:g} to {high:g}")
     if known.idlers < 0:
         raise ConfigError("idlers", known.idlers, "0 or more")
+    if known.pinions + known.idlers > MAX_PINIONS:
+        most = MAX_PINIONS - known.idlers
+        raise ConfigError("pinions", known.pinions, f"at most {most}, with {known.idlers} idlers beside them")
     inner, outer, allowed = _face(known)
     module, speed = known.module_mm, known.speed_rpm
     torque = known.torque_n_m / len(_gears(known))

@@ -51,7 +51,7 @@ def test_following_a_single_pair_has_the_columns_of_its_table(pair, tmp_path):
 @pytest.mark.parametrize("answer", ["hunting", "sensitivity", "load_sharing", "shaft_orders"])
 def test_a_plot_without_anything_to_draw_says_so(pair, answer):
     quick = pair.with_values({"load_sharing.cycles": 20, "load_sharing.starts": 1})
-    with pytest.raises(FacegearError, match="one: no .*, there is nothing to draw"):
+    with pytest.raises(FacegearError, match=r"one: no .*, there is nothing to draw"):
         getattr(quick, answer)().plot()
 
 

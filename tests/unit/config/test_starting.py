@@ -64,5 +64,5 @@ def test_the_chosen_bodies_are_those_of_a_steel_ring(tmp_path):
 
 
 def test_a_machine_without_load_is_refused_in_one_line():
-    with pytest.raises(ConfigError, match=r"^torque_n_m = 0: must be above 0$"):
+    with pytest.raises(ConfigError, match=r"^torque_n_m = 0: must be from 1e-05 to 1e\+06$"):
         starting_config(Known("own", 23, 143, 3.75, 0, 7500))
