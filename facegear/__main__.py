@@ -87,7 +87,7 @@ def parser() -> argparse.ArgumentParser:
         limits.add_argument(flag(name), type=kind, required=default is None, default=default, help=text)
     limits.set_defaults(command=_limits)
     compare = commands.add_parser("compare", help="what moved between two folders of results, and why")
-    compare.add_argument("old", help="a folder of results, or a release's stored answer such as 0.1.0/quick")
+    compare.add_argument("old", help="a folder of results, or a stored answer such as current/quick")
     compare.add_argument("new", help="the same")
     compare.add_argument(
         "--page", type=Path, help="write an html page with the curves of both over each other"

@@ -108,8 +108,11 @@ GIVEN = ("--pinion-teeth=23", "--face-gear-teeth=143", "--module-mm=3.75", "--to
         (("own.yaml", *GIVEN), "new: --speed-rpm must be given"),
         (("there.yaml", *GIVEN, "--speed-rpm=1"), "there.yaml: exists already"),
         (("own.txt", *GIVEN, "--speed-rpm=1"), "own.txt: must end in .yaml"),
-        (("own.yaml", *GIVEN, "--speed-rpm=0"), "speed_rpm = 0.0: must be above 0"),
-        (("own.yaml", *GIVEN, "--speed-rpm=1", "--module-mm=-1"), "module_mm = -1.0: must be above 0"),
+        (("own.yaml", *GIVEN, "--speed-rpm=0"), "speed_rpm = 0.0: must be from 1 to 100000"),
+        (
+            ("own.yaml", *GIVEN, "--speed-rpm=1", "--module-mm=-1"),
+            "module_mm = -1.0: must be from 0.1 to 100",
+        ),
         (("own.yaml", *GIVEN, "--speed-rpm=1", "--torque-n-m=1"), "new: mesh.resolution = "),
     ],
 )
