@@ -42,11 +42,12 @@ def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
         import pandas as pd
 
         from validation.mutation.modules import mutation_tables, rows
-        from validation.platforms import MEASURED, platforms_table
+        from validation.platforms import MEASURED, OUTCOMES, outcomes_table, platforms_table
         from validation.references import read, verification_table
 
         source[0] = source[0].replace("{mutants}", mutation_tables(rows()))
         source[0] = source[0].replace("{platforms}", platforms_table(pd.read_csv(MEASURED)))
+        source[0] = source[0].replace("{platform_tests}", outcomes_table(pd.read_csv(OUTCOMES)))
         source[0] = source[0].replace("{references}", verification_table(read()))
 
 

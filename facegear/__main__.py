@@ -11,21 +11,30 @@ from typing import NoReturn
 
 from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
-from facegear.io.atomic import atomic_path
-from facegear.questions import QUESTIONS, answered, flag
+from facegear.io.atomic import atomic_path, require_writable, require_writable_file
+from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
 CONFIG = "config file (yaml)"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; a mistake of the user's ends it with one line each and exit code 1."""
+    """Run a command; a mistake of the user's ends it with one line each and exit code 1.
+
+    So does a file or folder that the system refuses.
+    """
     given = parser().parse_args(arguments)
     try:
         return given.command(given)
     except FacegearError as error:
         print(error, file=sys.stderr)
-        return 1
+    except OSError as error:
+        if error.filename is None:
+            raise
+        print(
+            f"{os.fsdecode(error.filename)}: {(error.strerror or 'cannot be used').lower()}", file=sys.stderr
+        )
+    return 1
 
 
 def parser() -> argparse.ArgumentParser:
@@ -36,6 +45,9 @@ def parser() -> argparse.ArgumentParser:
     new.add_argument("config", type=Path, help="file to write, such as own.yaml")
     for name, (kind, default, text) in QUESTIONS.items():
         new.add_argument(flag(name), type=kind, help=text + ("" if default is None else f" ({default})"))
+    chosen = new.add_argument_group("values that are chosen unless they are given")
+    for name, (kind, text) in OPTIONS.items():
+        chosen.add_argument(flag(name), type=kind, help=text)
     new.add_argument(
         "--from", dest="rexs", type=Path, metavar="REXS", help="REXS file whose equal pinions are taken over"
     )
@@ -108,7 +120,7 @@ def installed_version() -> str:
 
 def _new(given: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
-    from facegear.config.starting import Known, starting_config
+    from facegear.variants.first_machine import Known, first_machine
     from facegear.variants.gear_unit import known_of_rexs
 
     if given.config.exists():
@@ -119,13 +131,18 @@ def _new(given: argparse.Namespace) -> int:
     if given.idlers and given.pinions is None and "pinions" in read:
         read["pinions"] = max(read["pinions"] - given.idlers, 0)
     own = {name: value for name, value in vars(given).items() if value is not None}
-    known = Known(case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own})))
+    given_values = {name: own[name] for name in OPTIONS if name in own}
+    known = Known(
+        case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own}) | given_values)
+    )
+    machine = first_machine(known)
     with atomic_path(given.config) as temporary:
-        temporary.write_text(starting_config(known), encoding="utf-8")
+        temporary.write_text(machine.text, encoding="utf-8")
         try:
             load_config(temporary)
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
+    print(*machine.expected, sep="\n")
     print(f"{given.config}: written; `facegear report {given.config}` computes it")
     return 0
 
@@ -136,16 +153,33 @@ def _run(given: argparse.Namespace) -> int:
     Where the workflow is not at hand, as it is no part of the wheel, this process computes the same files.
     """
     read_layers(given.config)
-    return _with_snakemake(given) if (ROOT / "Snakefile").is_file() else _run_here(given)
+    return _with_snakemake(given) if (ROOT / "workflow" / "Snakefile").is_file() else _run_here(given)
 
 
 def _with_snakemake(given: argparse.Namespace) -> NoReturn:
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
-    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "workflow" / "Snakefile")]
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
-    os.execv(sys.executable, [*command, "--", *given.targets])
+    folder = Path(given.directory)
+    for inside in ("", ".snakemake", "results"):
+        require_writable(folder / inside)
+    os.execve(sys.executable, [*command, "--", *given.targets], _with_cache(folder.resolve()))
+
+
+def _with_cache(folder: Path) -> dict[str, str]:
+    """This process's environment, with a cache in a folder of results where the home folder allows none.
+
+    Snakemake ends with a traceback where it cannot make its own folder there.
+    """
+    from platformdirs import user_cache_path
+
+    try:
+        require_writable(user_cache_path("snakemake"))
+    except (FacegearError, RuntimeError):
+        return {**os.environ, "XDG_CACHE_HOME": str(folder / ".snakemake" / "cache")}
+    return dict(os.environ)
 
 
 def _run_here(given: argparse.Namespace) -> int:
@@ -208,6 +242,8 @@ def _compare(given: argparse.Namespace) -> int:
     from facegear.compare.judge import compare
     from facegear.compare.page import by_table, causes_table, verdict, write_page
 
+    if given.page:
+        require_writable_file(given.page)
     with opened(given.old) as old, opened(given.new) as new:
         comparison = compare(old, new)
         reasons = causes_table(comparison, old, new)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from facegear.results.branch_loci import BranchLociResult
     from facegear.results.branches import BranchesResult
     from facegear.results.contact import ContactResult
+    from facegear.results.displaced_contact import DisplacedContact
     from facegear.results.dynamic_stress import DynamicStressResult
     from facegear.results.friction import FrictionResult
     from facegear.results.gear_bodies import GearBodiesResult
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from facegear.results.topography import TopographyResult
     from facegear.results.whole_case import WholeCase
     from facegear.scenarios.inverse import Loosest
+    from facegear.stages.outcome import Outcome
     from facegear.transmission.machine import Machine
 
 HOLDS = {"tolerances": "causes and what is asked of them", "search": "variables and objectives"}
@@ -69,7 +71,7 @@ def load(config: str | Path | Mapping[str, Any], results: str | Path | None = "r
     if isinstance(config, Mapping):
         read, folders = config_of(config), [Path()]
     else:
-        read, folders = load_config(config), [Path(), Path(config).resolve().parents[1]]
+        read, folders = load_config(config), [Path(), Path(config).resolve().parent.parent]
     return Gearbox(read, Store(None if results is None else case_folder(folders, results, read.case)))
 
 
@@ -157,13 +159,61 @@ class Gearbox:
         """
         from facegear.results.contact import ContactResult
 
-        changes = _given({"contact.torques_n_m": torques, "contact.positions_per_pitch": positions})
-        if torques is not None:
-            changes["contact.torques_n_m"] = torques if isinstance(torques, Iterable) else [torques]
-            changes["mesh_stiffness.torque_n_m"] = None  # need not lie within these
-            if self._values["strength"] is not None:  # nor its duty cycle; the fillets keep their gauges
-                changes |= {"strength": None, "contact.root_stress": self._values["contact"]["root_stress"]}
+        changes = {**self._torques(torques), **_given({"contact.positions_per_pitch": positions})}
         return self._changed("contact", changes)._chain.result(ContactResult)
+
+    def displaced_contact(
+        self,
+        pinion: Mapping[str, float] | None = None,
+        face_gear: Mapping[str, float] | None = None,
+        mesh: str | None = None,
+        position: float = 0.5,
+    ) -> "DisplacedContact":
+        """Contact and closing of both flanks of a mesh whose two bodies stand displaced by given amounts.
+
+        Parameters
+        ----------
+        pinion
+            Any of x_um, y_um, z_um, tilt_x_deg, tilt_y_deg and theta_deg; 0 unless given. x along the
+            tangent as the upper gear's teeth move, y along the gears' axis towards the upper gear, z outwards
+            along the pinion; tilts about the middle of its face, theta as it drives.
+        face_gear
+            The same of the gear: x towards azimuth 0, y a quarter turn further, z from the lower to the upper
+            gear; tilts about the point of its axis that `tilt` or `hub_tilt` says, or in the pitch plane;
+            theta as it is driven.
+        mesh
+            `pinion/gear`, as `right idler/upper`; the first one unless given, and none for a pair without a
+            transmission, which counts as that of an upper gear at azimuth 0.
+        position
+            Place of a pitch, 0 to 1, for flanks whose contact changes with it.
+
+        Raises ConfigError for a pair without bodies, a displacement beyond 5 mm or 2 degrees or that is no
+        number, NotConverged where flanks do not face each other.
+
+        >>> import facegear
+        >>> moved = {"x_um": 100, "y_um": -20}
+        >>> found = facegear.example().displaced_contact(pinion=moved, mesh="right input/upper")
+        >>> found.table().set_index("flank")["approach_um"].round(1).to_dict()
+        {'drive': 82.9, 'back': -99.0}
+        """
+        from facegear.geometry.bodies import BODIES
+        from facegear.results.displaced_contact import DisplacedContact
+
+        with extras_named():
+            from facegear.stages.displaced_contact import displaced_contact, loaded_displaced_contact
+
+        config, given = self.config, (dict(pinion or {}), dict(face_gear or {}))
+        flanks = displaced_contact(config.tooth_pair, config.transmission, mesh, *given, position)
+
+        def solve(torques: float | Iterable[float] | None) -> "Outcome":
+            changed = self._changed("displaced_contact", self._torques(torques))
+            parts = [changed._chain.part("compliance", "arrays", {"body": body}) for body in BODIES]
+            contact = changed.config.contact_used
+            return loaded_displaced_contact(
+                flanks, config.tooth_pair, contact, (parts[0], parts[1]), contact.torques_n_m
+            )
+
+        return DisplacedContact(flanks, solve)
 
     def root_stress(self) -> "RootStressResult":
         """Stress at the fillets of both gears over a tooth's passage, at the contact analysis' torques.
@@ -258,7 +308,7 @@ class Gearbox:
         Raises ConfigError for a load outside those of the contact analysis.
 
         >>> import facegear
-        >>> facegear.example().stiffness().table()["b_n_per_m"].round(-3).to_list()[0]
+        >>> facegear.example().stiffness().table()["cos_n_per_m"].round(-3).to_list()[0]
         410000000.0
         """
         from facegear.results.stiffness import StiffnessResult
@@ -476,6 +526,11 @@ class Gearbox:
         """
         from facegear.results.tooth_errors import ToothErrorsResult
 
+        bodies = filter(None, (self.config.tooth_pair.pinion, self.config.tooth_pair.face_gear))
+        grids = [body.flanks.grids for body in bodies]
+        if grids and all(grid.tooth is None for given in grids for grid in given):
+            allowed = "given for single teeth of pinion or face_gear: all are alike"
+            raise ConfigError("tooth_pair.pinion.flanks.grids", [], allowed)
         return self._chain.result(ToothErrorsResult)
 
     def sensitivity(self, positions: int | None = None) -> "SensitivityResult":
@@ -565,7 +620,8 @@ class Gearbox:
         """Write a model for another program, by the path's ending; returns the path.
 
         STEP or STL (mm): the exact teeth of a body, modifications included; `body`: pinion or face_gear;
-        `teeth`: a sector of so many, the whole gear unless given. FMU: the dynamic model as C sources for
+        `teeth`: a sector of so many, the whole gear unless given; a STEP product has the name of case and
+        body. FMU: the dynamic model as C sources for
         co-simulation (FMI 3.0), at the config's speed. GLB: a glTF scene of all gears in mesh, or of one
         pinion and its gear without a transmission. REXS: pinions, shafts, bearings and material as REXS 2.0,
         which has no face gear; the file names what is lost. CSV: nominal points and normals of all flanks
@@ -588,7 +644,7 @@ class Gearbox:
         with extras_named():
             from facegear.stages.cad import export
 
-            return export(path, body, teeth, self.config.tooth_pair)
+            return export(path, body, teeth, self.config.tooth_pair, self.config.case)
 
     def tolerances(self, samples: int | None = None) -> "TolerancesResult":
         """Percentiles, fractions and Sobol indices of the machine with its tolerances, in one process.
@@ -675,6 +731,18 @@ class Gearbox:
             f"Gearbox({self.config.case}: pinions {pinions} x {pair.pinion_teeth} teeth, "
             f"face gears {gears} x {pair.face_gear_teeth} teeth)"
         )
+
+    def _torques(self, torques: float | Iterable[float] | None) -> dict[str, Any]:
+        """Changed keys of a contact analysis at other torques (N m on the pinion); none for None."""
+        if torques is None:
+            return {}
+        changes: dict[str, Any] = {
+            "contact.torques_n_m": torques if isinstance(torques, Iterable) else [torques]
+        }
+        changes["mesh_stiffness.torque_n_m"] = None  # need not lie within these
+        if self._values["strength"] is not None:  # nor its duty cycle; the fillets keep their gauges
+            changes |= {"strength": None, "contact.root_stress": self._values["contact"]["root_stress"]}
+        return changes
 
     def _required(self, section: str) -> Mapping[str, Any]:
         """A section of HOLDS. Raises ConfigError where the config leaves it out."""

@@ -18,6 +18,31 @@ QUESTIONS: dict[str, tuple[type[int] | type[float], float | None, str]] = {
 }
 """What `new` asks: kind of number, default if there is one, and the question."""
 
+OPTIONS: dict[str, tuple[type[int] | type[float], str]] = {
+    "profile_shift_modules": (float, "profile shift of the pinions"),
+    "pinion_addendum_modules": (float, "addendum of the pinions"),
+    "pinion_dedendum_modules": (float, "dedendum of the pinions' rack"),
+    "rack_tip_radius_modules": (float, "tip radius of the pinions' rack"),
+    "gear_addendum_modules": (float, "addendum of the face gears"),
+    "shaper_teeth": (int, "teeth of the shaper"),
+    "shaper_addendum_modules": (float, "addendum of the shaper"),
+    "shaper_tip_rounding_modules": (float, "tip rounding of the shaper"),
+    "thinning_um": (float, "normal backlash of a pair"),
+    "inner_radius_mm": (float, "inner radius of the face"),
+    "outer_radius_mm": (float, "outer radius of the face"),
+    "rim_thickness_mm": (float, "thickness of the face gears' rim"),
+    "pinion_width_mm": (float, "face width of the pinions"),
+    "pinion_bore_radius_mm": (float, "radius of the pinions' bore"),
+    "pinion_mass_kg": (float, "mass of a pinion"),
+    "gear_mass_kg": (float, "mass of a face gear"),
+    "input_bearing_n_per_m": (float, "radial stiffness of an input's bearing"),
+    "idler_bearing_n_per_m": (float, "radial stiffness of an idler's bearing"),
+    "gear_bearing_n_per_m": (float, "stiffness of a face gear's bearing"),
+    "axial_bearing_n_per_m": (float, "axial stiffness of a pinion's bearing"),
+    "mesh_damping_n_s_per_m": (float, "damping of a mesh"),
+}
+"""Values that `new` chooses unless they are given: kind of number, and what it is."""
+
 
 def flag(name: str) -> str:
     """The option of an argument."""

@@ -1,7 +1,9 @@
-"""How far the numbers of the reference tests move between platforms: `python -m validation.platforms`.
+"""What moves between processors and threads: `python -m validation.platforms [PLATFORM ...]`.
 
-The same tests run in processes of their own: with and without MKL, on one and two threads, with the newest
-kernels of NumPy and OpenBLAS and with old ones. Every number compared is set beside that of the first run.
+Processes of their own run the same tests natively and with lowered levels of instructions in NumPy, OpenBLAS
+and numba, on one and two threads. A level can only be lower than that of the machine. Every number of the
+reference tests is set beside that of the first run. Tests of notebooks, stored answers, dynamics, load
+sharing and contact must pass on each.
 """
 
 import json
@@ -9,32 +11,56 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
 
+from facegear.machine_code import shipped
 from validation.references import ROOT, declarations
 
 MEASURED = ROOT / "docs" / "measured" / "platforms.csv"
 STORED = ROOT / "results" / "platforms"
 """Numbers and messages of each platform, written as soon as its process has ended."""
-OLD_KERNELS = {
+OUTCOMES = ROOT / "docs" / "measured" / "platform_tests.csv"
+SSE_INSTRUCTIONS = (
+    *("cmov", "cx16", "cx8", "fxsr", "mmx", "popcnt", "sahf"),
+    *("sse", "sse2", "sse3", "sse4.1", "sse4.2", "ssse3"),
+)
+AVX2 = {
+    "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
+    "OPENBLAS_CORETYPE": "Haswell",
+    "NUMBA_CPU_NAME": shipped.CPU,
+    "NUMBA_CPU_FEATURES": shipped.FEATURES,
+}
+"""Level x86-64-v3 without AVX-512."""
+SSE = {
     "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR",
     "OPENBLAS_CORETYPE": "Nehalem",
-    "MKL_ENABLE_INSTRUCTIONS": "SSE4_2",
+    "NUMBA_CPU_NAME": "nehalem",
+    "NUMBA_CPU_FEATURES": ",".join(f"+{instruction}" for instruction in SSE_INSTRUCTIONS),
 }
-"""NumPy 2.4 names its kernels by levels of x86-64; without X86_V3 and later it has those of SSE 4.2."""
-PLATFORMS: dict[str, tuple[bool, int, dict[str, str]]] = {
-    "MKL, one thread": (True, 1, {}),
-    "MKL, two threads": (True, 2, {}),
-    "without MKL, one thread": (False, 1, {}),
-    "without MKL, two threads": (False, 2, {}),
-    "MKL, one thread, old kernels": (True, 1, OLD_KERNELS),
-    "without MKL, one thread, old kernels": (False, 1, OLD_KERNELS),
+"""Level x86-64-v2 without AVX and fused multiplication. NumPy 2.4 names its kernels by these levels."""
+
+
+@dataclass(frozen=True)
+class Platform:
+    """Threads of the libraries, and the environment that lowers their instructions."""
+
+    threads: int
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+
+PLATFORMS: Mapping[str, Platform] = {
+    "native, one thread": Platform(1),
+    "native, two threads": Platform(2),
+    "AVX2, two threads": Platform(2, AVX2),
+    "SSE4.2, one thread": Platform(1, SSE),
 }
-"""Whether PARDISO solves sparse systems, threads, further environment; all are compared with the first."""
+"""All are compared with the first."""
 CASES = (
     "tests/unit/geometry/test_separation.py",
     "tests/unit/contact/test_manufactured_solutions.py",
@@ -51,36 +77,53 @@ CASES = (
     "tests/unit/scenarios/test_statistics.py",
 )
 """Small cases of all stages that compute."""
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-START = "import sys{without}; import pytest; sys.exit(pytest.main(sys.argv[1:]))"
+TESTS = (
+    "tests/stage/test_example_notebook.py",
+    "tests/unit/test_front_door.py",
+    "tests/unit/compare",
+    "tests/unit/contact/test_contact_solver.py",
+    "tests/unit/contact/test_interfering_teeth.py",
+    "tests/unit/dynamics/branches/test_dynamics_survey.py",
+    "tests/unit/dynamics/test_clean_folds.py",
+    "tests/unit/dynamics/test_dynamics_labels.py",
+    "tests/unit/dynamics/test_dynamics_settling.py",
+    "tests/unit/dynamics/test_dynamics_sweep.py",
+    "tests/unit/dynamics/test_dynamics_symmetries.py",
+    "tests/unit/load_sharing/test_load_sharing_run.py",
+    "tests/workflow/test_stored_answers.py",
+)
+"""Tests whose labels, notebooks and stored answers a processor might decide."""
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
 COLUMNS = ("platform", "end", "capability", "numbers", "largest_relative", "largest_of_tolerance")
+OUTCOME_COLUMNS = ("platform", "passed", "failed", "failed_tests")
 Numbers = dict[str, list[tuple[str, list[float], list[float], list[float]]]]
 
 
 def run_on(name: str) -> None:
-    """Run the tests on a platform; store their numbers, and how the process ended, at once."""
-    with_mkl, threads, environment = PLATFORMS[name]
-    start = START.format(without="" if with_mkl else "; sys.modules['pypardiso'] = None")
-    own = {**os.environ, **environment, **dict.fromkeys(THREADS, str(threads)), "PYTHONPATH": str(ROOT)}
+    """Run the tests on a platform; store their numbers, outcomes and how the process ended, at once."""
     STORED.mkdir(parents=True, exist_ok=True)
     path = numbers_of(name)
-    for stored in (path, path.with_suffix(".end")):
+    for stored in (path, path.with_suffix(".end"), path.with_suffix(".xml")):
         stored.unlink(missing_ok=True)
-    options = ["-q", "-n", "0", "-p", "faulthandler", "-m", "reference", f"--numbers={path}", "--tb=line"]
-    with path.with_suffix(".log").open("w", encoding="utf-8") as log:
+    code = _pytest(name, ".log", "-n", "0", "-m", "reference", f"--numbers={path}", *CASES)
+    path.with_suffix(".end").write_text(end_of(code), encoding="utf-8")
+    _pytest(name, ".tests.log", f"--junitxml={path.with_suffix('.xml')}", *TESTS)
+
+
+def _pytest(name: str, ending: str, *options: str) -> int:
+    """Exit code of pytest on a platform; what it prints goes to a file."""
+    platform = PLATFORMS[name]
+    own = {**os.environ, **platform.environment, **dict.fromkeys(THREADS, str(platform.threads))}
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "faulthandler", "--tb=short", *options]
+    with numbers_of(name).with_suffix(ending).open("w", encoding="utf-8") as log:
         done = subprocess.run(
-            [sys.executable, "-c", start, *options, *CASES],
-            cwd=ROOT,
-            env=own,
-            stdout=log,
-            stderr=log,
-            check=False,
+            command, cwd=ROOT, env={**own, "PYTHONPATH": str(ROOT)}, stdout=log, stderr=log, check=False
         )
-    path.with_suffix(".end").write_text(end_of(done.returncode), encoding="utf-8")
+    return done.returncode
 
 
 def numbers_of(name: str) -> Path:
-    """The file of a platform's numbers; its log and how it ended stand beside it."""
+    """The file of a platform's numbers; logs, outcomes of tests and how it ended stand beside it."""
     return STORED / f"{name.replace(', ', '-').replace(' ', '_')}.json"
 
 
@@ -135,6 +178,27 @@ def table_of_platforms() -> pd.DataFrame:
     return pd.concat(tables).reindex(columns=list(COLUMNS)) if tables else pd.DataFrame(columns=list(COLUMNS))
 
 
+def outcomes(name: str, report: Path) -> dict[str, object]:
+    """One row, OUTCOME_COLUMNS, of a report in JUnit's format: tests that passed, and those that did not."""
+    cases = list(ElementTree.parse(report).getroot().iter("testcase"))
+    failed = [each for each in cases if each.find("failure") is not None or each.find("error") is not None]
+    skipped = sum(each.find("skipped") is not None for each in cases)
+    names = " ".join(f"{each.get('classname')}::{each.get('name')}" for each in failed)
+    return {
+        "platform": name,
+        "passed": len(cases) - len(failed) - skipped,
+        "failed": len(failed),
+        "failed_tests": names,
+    }
+
+
+def table_of_outcomes() -> pd.DataFrame:
+    """OUTCOME_COLUMNS, a row for each platform that has run."""
+    reports = {name: numbers_of(name).with_suffix(".xml") for name in PLATFORMS}
+    rows = [outcomes(name, report) for name, report in reports.items() if report.exists()]
+    return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
+
+
 def platforms_table(measured: pd.DataFrame) -> str:
     """Markdown: a row a platform, with the largest differences of all its numbers."""
     lines = [
@@ -149,14 +213,30 @@ def platforms_table(measured: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-def main(names: list[str]) -> None:
-    """Run on the platforms named, or on all; the table is written after each."""
+def outcomes_table(measured: pd.DataFrame) -> str:
+    """Markdown: how many tests passed on each platform, and the names of those that did not."""
+    lines = ["| platform | passed | failed | names |", "|---|---|---|---|"]
+    for row in measured.fillna("").itertuples():
+        lines.append(f"| {row.platform} | {row.passed} | {row.failed} | {row.failed_tests or '-'} |")
+    return "\n".join(lines)
+
+
+def main(names: list[str]) -> int:
+    """Run on the platforms named, or on all; the tables are written after each. 1 where a test failed."""
     for name in names or PLATFORMS:
         run_on(name)
-        print(f"{name}: {numbers_of(name).with_suffix('.end').read_text(encoding='utf-8')}", flush=True)
+        measured = table_of_outcomes()
+        row = measured.set_index("platform").loc[name]
+        end = numbers_of(name).with_suffix(".end").read_text(encoding="utf-8")
+        print(f"{name}: references {end}; {row['passed']} tests passed, {row['failed']} failed", flush=True)
+        if row["failed"]:
+            print(f"  {row['failed_tests']}", flush=True)
         if numbers_of(next(iter(PLATFORMS))).exists():
             table_of_platforms().to_csv(MEASURED, index=False, float_format="%.3g", lineterminator="\n")
+        measured.to_csv(OUTCOMES, index=False, lineterminator="\n")
+    ends = [numbers_of(name).with_suffix(".end").read_text(encoding="utf-8") for name in names or PLATFORMS]
+    return int(bool(table_of_outcomes()["failed"].sum()) or any(end != end_of(0) for end in ends))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))

@@ -32,7 +32,11 @@ class Kind(StrEnum):
 INDEPENDENT = tuple(kind for kind in Kind if kind is not Kind.CONVERGENCE)
 DECLARED = ("kind", "source", "capability", "module")
 """Columns that a test declares in its decorator `against`."""
-METHOD_TITLES = {"export": "Exact teeth for other programs", "loosest_tolerances": "Loosest tolerances"}
+METHOD_TITLES = {
+    "displaced_contact": "Contact of two displaced bodies",
+    "export": "Exact teeth for other programs",
+    "loosest_tolerances": "Loosest tolerances",
+}
 """Methods of the Gearbox that are no stage of their own."""
 EQUAL, NO_LESS = "equal", "at least"
 """Relations of a computed value to the expected one."""

@@ -7,7 +7,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from facegear.compare.quantities import AFTER_IRREGULAR, OPEN_CLASSES, REGULAR, TABLES, Table, declared
+from facegear.compare.quantities import (
+    AFTER_IRREGULAR,
+    OPEN_CLASSES,
+    REGULAR,
+    SYMMETRY_BROKEN,
+    TABLES,
+    Bracket,
+    Table,
+    declared,
+)
 from facegear.errors import FacegearError
 from facegear.io import documents, tables
 
@@ -31,6 +40,7 @@ class Verdict(StrEnum):
     NO_ERROR = "moved, its error is not stated"
     IRREGULAR = "irregular motion, a statistic"
     ROUNDING = "after irregular motion, decided by rounding"
+    MIRROR = "mirror image of the same motion"
     LABEL = "label changed"
     GONE = "gone"
     ADDED = "added"
@@ -98,25 +108,44 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
         return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
     table = declared(TABLES, name) or Table()
-    before, after = (_by_row(frame, table) for frame in (before, after))
+    speeds = _bracket_names(before, after, table)
+    groups = pd.concat([_without_item(frame, table) for frame in (before, after)])
+    before, after = (
+        _by_row(frame, table, known) for frame, known in zip((before, after), speeds, strict=True)
+    )
+    groups = dict(zip([*before.index, *after.index], groups, strict=True))
     shared = before.index.intersection(after.index, sort=False)
     columns = [column for column in before.columns if column in after.columns]
-    parts = [_judge_column(name, table, before.loc[shared], after.loc[shared], column) for column in columns]
+    group = pd.Series([groups[row] for row in shared], index=shared, dtype=object)
+    parts = [
+        _judge_column(name, table, before.loc[shared], after.loc[shared], column, group) for column in columns
+    ]
     for this, other, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
         lost = [f"column {column}" for column in this.columns if column not in other.columns]
         rows = this.loc[this.index.difference(other.index, sort=False)]
         frame = _one_sided(name, [*rows.index.astype(str), *lost], verdict)
-        open_rows = np.concatenate([_after_irregular(rows), np.zeros(len(lost), dtype=bool)])
-        parts.append(frame.assign(verdict=frame["verdict"].mask(open_rows, Verdict.ROUNDING)))
+        elsewhere = other.loc[other.index.difference(this.index, sort=False)]
+        exchanged = {groups[row] for row in elsewhere.index[_flagged(elsewhere, SYMMETRY_BROKEN)]}
+        in_both = np.fromiter((groups[row] in exchanged for row in rows.index), dtype=bool, count=len(rows))
+        not_rows = np.zeros(len(lost), dtype=bool)
+        open_rows = np.concatenate([_flagged(rows, AFTER_IRREGULAR), not_rows])
+        images = np.concatenate([_flagged(rows, SYMMETRY_BROKEN) & in_both, not_rows])
+        judged = frame["verdict"].mask(open_rows, Verdict.ROUNDING).mask(images, Verdict.MIRROR)
+        parts.append(frame.assign(verdict=judged))
     return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
 
 
-def _by_row(frame: pd.DataFrame, table: Table) -> pd.DataFrame:
-    """The table with a text index that names its rows; rows of one name are counted."""
+def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.DataFrame:
+    """The table with a text index that names its rows; rows of one name are counted.
+
+    speeds: of rows that are named by a bracket, beside the keys.
+    """
     keys = [key for key in table.keys if key in frame.columns]
     if not keys:
         return frame.set_axis([f"row {number + 1}" for number in range(len(frame))])
     parts = [frame[key].map(_written) for key in keys]
+    if speeds is not None:
+        parts.append(speeds.map(_written))
     names = parts[0].str.cat(parts[1:], sep=", ") if len(parts) > 1 else parts[0]
     again = names.groupby(names).cumcount()
     names = names.where(again == 0, names + " #" + (again + 1).astype(str))
@@ -128,42 +157,129 @@ def _written(value: object) -> str:
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
+def _bracket_names(
+    before: pd.DataFrame, after: pd.DataFrame, table: Table
+) -> tuple[pd.Series | None, pd.Series | None]:
+    """Speeds that name the rows of two tables with brackets; None for other tables.
+
+    A row of `after` takes the name of the nearest row of `before` with the same keys, where the errors of
+    both allow that they are the same.
+    """
+    if table.bracket is None:
+        return None, None
+    names = after[table.bracket.before].astype(float)
+    middles, errors = zip(*(_located(frame, table.bracket) for frame in (before, after)), strict=True)
+    taken: set[int] = set()
+    for old in range(len(before)):
+        apart = np.abs(middles[1] - middles[0][old])
+        like = (after[list(table.keys)] == before[list(table.keys)].iloc[old]).all(axis=1).to_numpy()
+        near = [int(new) for new in np.flatnonzero(like & (apart <= errors[0][old] + errors[1]))]
+        free = [new for new in near if new not in taken]
+        if free:
+            new = min(free, key=apart.__getitem__)
+            taken.add(new)
+            names.iloc[new] = before[table.bracket.before].iloc[old]
+    return before[table.bracket.before], names
+
+
+def _located(frame: pd.DataFrame, bracket: Bracket) -> tuple[np.ndarray, np.ndarray]:
+    """Middle of the bracket of each row, and how far its true speed may lie from it, both (rows,)."""
+    first, last = (frame[column].to_numpy(float) for column in (bracket.before, bracket.after))
+    width = np.abs(last - first)
+    stated = frame[bracket.error].to_numpy(float) if bracket.error in frame.columns else width
+    return 0.5 * (first + last), np.maximum(stated, width)
+
+
+def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
+    """What names a row but for the mesh or body, shape (rows,)."""
+    keys = [key for key in table.keys if key in frame.columns and key != table.item]
+    if not keys or table.item is None:
+        return pd.Series(np.arange(len(frame)).astype(str), index=frame.index)
+    parts = [frame[key].map(_written) for key in keys]
+    return parts[0].str.cat(parts[1:], sep=", ") if len(parts) > 1 else parts[0]
+
+
 def _judge_column(
-    name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str
+    name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, group: pd.Series
 ) -> pd.DataFrame:
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     shown = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
-    open_rows = _after_irregular(before) & _after_irregular(after)
+    open_rows = _flagged(before, AFTER_IRREGULAR) & _flagged(after, AFTER_IRREGULAR)
+    broken = _flagged(before, SYMMETRY_BROKEN) & _flagged(after, SYMMETRY_BROKEN)
     if not numeric:
         same = (old.fillna("").astype(str) == new.fillna("").astype(str)).to_numpy()
         return shown.assign(
             relative_change=np.nan,
             numerical_error=np.nan,
             verdict=np.select(
-                [same, open_rows, _both_irregular(old, new, table)],
-                [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR],
+                [same, open_rows, _both_irregular(old, new, table), broken & (column not in table.motion)],
+                [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR, Verdict.MIRROR],
                 Verdict.LABEL,
             ),
         )
-    error = table.error(column)
     zero = table.zero.get(column, 0.0)
     before_zero, after_zero = (side.mask(side.abs() <= zero, 0.0) for side in (old, new))
-    change = _relative_change(before_zero, after_zero, before.get(table.quantity))
+    change, scale = _relative_change(before_zero, after_zero, before.get(table.quantity))
+    errors = _errors(table, before, after, column, scale)
     irregular = _irregular(before, table) | _irregular(after, table)
-    beyond = Verdict.NO_ERROR if error is None else Verdict.MOVED
+    images = broken & _same_but_for_items(before_zero, after_zero, before.get(table.quantity), group, errors)
+    with np.errstate(invalid="ignore"):
+        within = change <= errors
     verdict = np.select(
-        [change <= REPEATABLE, irregular, change <= (error or 0.0), open_rows],
-        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING],
-        beyond,
+        [change <= REPEATABLE, irregular, within, open_rows, images],
+        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
+        np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.MOVED),
     )
-    return shown.assign(
-        relative_change=change, numerical_error=np.nan if error is None else error, verdict=verdict
-    )
+    return shown.assign(relative_change=change, numerical_error=errors, verdict=verdict)
 
 
-def _relative_change(old: pd.Series, new: pd.Series, quantity: pd.Series | None) -> np.ndarray:
-    """Change over the largest magnitude of the column or of the row's quantity, shape (rows,)."""
+def _errors(
+    table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, scale: np.ndarray
+) -> np.ndarray:
+    """Relative numerical error of a column (rows,), NaN where none is stated.
+
+    A bracket's speeds are known up to the errors of both tables, and what changes over a bracket is known no
+    better where the bracket lies elsewhere.
+    """
+    plain, elsewhere = (table.error(column, other) for other in (False, True))
+    errors = np.full(len(before), np.nan if plain is None else plain)
+    bracket = table.bracket
+    if bracket is None:
+        return errors
+    moved = (before[bracket.before] != after[bracket.before]).to_numpy()
+    errors[moved] = np.nan if elsewhere is None else elsewhere
+    if column in (bracket.before, bracket.after, bracket.error):
+        allowed = sum(_located(frame, bracket)[1] for frame in (before, after))
+        return np.divide(allowed, scale, out=np.zeros(len(before)), where=scale > 0.0)
+    return errors
+
+
+def _same_but_for_items(
+    old: pd.Series, new: pd.Series, quantity: pd.Series | None, group: pd.Series, errors: np.ndarray
+) -> np.ndarray:
+    """Rows in whose group meshes or bodies have exchanged their numbers, and no more, shape (rows,)."""
+    sizes = pd.DataFrame(
+        {"old": old.abs().to_numpy(), "new": new.abs().to_numpy(), "group": group.to_numpy()}
+    )
+    ordered = [sizes.sort_values(["group", side], kind="stable") for side in ("old", "new")]
+    pair = [pd.Series(part[side].to_numpy()) for part, side in zip(ordered, ("old", "new"), strict=True)]
+    change, _ = _relative_change(
+        pair[0], pair[1], None if quantity is None else _by_group(ordered[0], quantity)
+    )
+    allowed = np.nan_to_num(np.maximum(errors[ordered[0].index], REPEATABLE), nan=REPEATABLE)
+    fits = pd.Series(change <= allowed).groupby(ordered[0]["group"].to_numpy()).all()
+    return group.map(fits).to_numpy(dtype=bool)
+
+
+def _by_group(ordered: pd.DataFrame, quantity: pd.Series) -> pd.Series:
+    return pd.Series(quantity.to_numpy()[ordered.index])
+
+
+def _relative_change(
+    old: pd.Series, new: pd.Series, quantity: pd.Series | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Change over the largest magnitude of the column or of the row's quantity, and that, both (rows,)."""
     pair = np.stack([old.to_numpy(float), new.to_numpy(float)])
     with np.errstate(invalid="ignore"):
         change = np.where((pair[0] == pair[1]) | np.isnan(pair).all(axis=0), 0.0, np.abs(pair[1] - pair[0]))
@@ -171,7 +287,7 @@ def _relative_change(old: pd.Series, new: pd.Series, quantity: pd.Series | None)
     finite = np.where(np.isfinite(pair), np.abs(pair), 0.0).max(axis=0)
     groups = np.zeros(len(finite)) if quantity is None else quantity.to_numpy()
     scale = pd.Series(finite).groupby(groups).transform("max").to_numpy() if len(finite) else finite
-    return np.divide(change, scale, out=change.copy(), where=scale > 0.0)
+    return np.divide(change, scale, out=change.copy(), where=scale > 0.0), scale
 
 
 def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
@@ -193,11 +309,11 @@ def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
     return np.logical_or(*(side.isin(OPEN_CLASSES).to_numpy() for side in sides)) & ~regular
 
 
-def _after_irregular(frame: pd.DataFrame) -> np.ndarray:
-    """Rows whose motion rounding can decide, shape (rows,); none where the table does not say so."""
-    if AFTER_IRREGULAR not in frame.columns:
+def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
+    """Rows for which a column of yes and no says yes, shape (rows,); none where there is no such column."""
+    if column not in frame.columns:
         return np.zeros(len(frame), dtype=bool)
-    return frame[AFTER_IRREGULAR].fillna(False).astype(bool).to_numpy()
+    return frame[column].fillna(False).astype(bool).to_numpy()
 
 
 def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:

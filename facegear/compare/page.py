@@ -59,6 +59,8 @@ def verdict(comparison: Comparison) -> str:
         more = f" {within} numbers moved within their numerical error." if within else ""
         rounding = comparison.counts[Verdict.ROUNDING]
         more += f" {rounding} numbers, labels and rows that rounding decides differ." if rounding else ""
+        images = comparison.counts[Verdict.MIRROR]
+        more += f" {images} are of the mirror image of the same motion." if images else ""
         return f"Both folders say the same.{more}"
     files = comparison.rows.loc[comparison.rows["verdict"].isin(CHANGES), "file"].nunique()
     return f"The folders differ in {files} table{'s' * (files > 1)}."

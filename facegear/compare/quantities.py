@@ -19,6 +19,30 @@ OPEN_CLASSES = ("not settled", "undecided")
 """Classes that leave open which irregular motion it is: they contradict none of the others."""
 AFTER_IRREGULAR = "after_irregular"
 """Column of rows whose motion, numbers, class and all, rounding can decide."""
+SYMMETRY_BROKEN = "symmetry_broken"
+"""Column of rows whose motion has mirror images under the machine's symmetries, which are one motion."""
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """Columns of rows that lie between two speeds, such as jumps, and are known no closer.
+
+    Attributes
+    ----------
+    before, after
+        Columns of the two speeds.
+    error
+        Column that says how far the true speed may lie from them, in the unit of the speeds; where a table
+        lacks it, it is the distance of the two.
+    errors
+        Relative numerical error of columns, as in `Table`, where a row's speeds are others in both tables: by
+        how much a number changes over the error of the speeds.
+    """
+
+    before: str
+    after: str
+    error: str
+    errors: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -39,6 +63,10 @@ class Table:
         solved to rounding.
     motion
         Columns, where present, that name the class of motion of a row.
+    item
+        The key that names a mesh or body; mirror images exchange these.
+    bracket
+        Speeds that name a row, beside `keys`, up to their error.
     """
 
     keys: tuple[str, ...] = ()
@@ -46,11 +74,17 @@ class Table:
     errors: Mapping[str, float] = field(default_factory=dict)
     zero: Mapping[str, float] = field(default_factory=dict)
     motion: tuple[str, ...] = MOTION_COLUMNS
+    item: str | None = None
+    bracket: Bracket | None = None
 
-    def error(self, column: str) -> float | None:
-        """Relative numerical error of a column, or None where none is stated."""
-        fitting = [start for start in self.errors if column.startswith(start)]
-        return self.errors[max(fitting, key=len)] if fitting else None
+    def error(self, column: str, elsewhere: bool = False) -> float | None:
+        """Relative numerical error of a column, or None where none is stated.
+
+        elsewhere: of a row whose bracket lies elsewhere in the other table.
+        """
+        errors = {**self.errors, **self.bracket.errors} if elsewhere and self.bracket else self.errors
+        fitting = [start for start in errors if column.startswith(start)]
+        return errors[max(fitting, key=len)] if fitting else None
 
 
 ROUNDED = 1e-9
@@ -59,8 +93,14 @@ CONTACT = {"k_": 3e-3, "ste": 1e-2, "pressure": 1e-2, "path": 1e-4}
 """docs/contact.md: the default mesh against one that is finer in every direction."""
 RESIDUALS = {"kkt_residual": 1e-12, "torque_residual": 1e-10}
 """Relative residuals up to which a contact counts as solved."""
-MOTION = {"value": 8.6e-4}
-"""docs/dynamics.md: periodic motions against a tolerance of 1e-10 and 4096 samples."""
+MOTION = {"value": 8.6e-4, "energy_fraction": 1.8e-3, "resonance_rpm": ROUNDED, "order": ROUNDED}
+"""docs/dynamics.md: periodic motions against a tolerance of 1e-10 and 4096 samples; energies are squares."""
+MULTIPLIERS = 1e-5
+"""docs/dynamics.md: of the nominal motion, whose tolerance is finer than that of a sweep."""
+JUMPS = {**MOTION, "deflection": 8.6e-4, "leading_multiplier": 5e-3}
+"""docs/dynamics.md, jumps: at the same speed, against a tolerance of 1e-9."""
+OVER_BRACKET = {"deflection": 3e-2, "leading_multiplier": 0.15}
+"""docs/dynamics.md, jumps: how much a motion changes over the width of a bracket next to its fold."""
 FORCES = {"fraction": 6e-4, "mean_n": 6e-4, "largest_n": 2e-3}
 """docs/load_sharing.md: means and largest values of periodic motions."""
 SHARING = {
@@ -86,17 +126,25 @@ TABLES: Mapping[str, Table] = {
         ("order",), errors={"a_n": 3e-3, "b_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
     ),
     "stiffness/tvms.csv": Table(("position",), errors={"k_": 3e-3}),
-    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION),
+    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"),
     "dynamics/response.csv": Table(
-        ("mesh", "mesh_cycle"), errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4}
+        ("mesh", "mesh_cycle"), errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4, "time_s": ROUNDED}
     ),
-    "dynamics/spectrum.csv": Table(("mesh", "order"), errors={"amplitude": 8.6e-4}),
+    "dynamics/spectrum.csv": Table(("mesh", "order"), errors={"amplitude": 8.6e-4, "frequency": ROUNDED}),
+    "dynamics/multipliers.csv": Table(errors={"": MULTIPLIERS}),
+    "dynamics/seams.csv": Table(("direction", "speed_rpm")),
     "dynamics/bearings.csv": Table(("body", "direction"), errors={"static": ROUNDED, "": 8.6e-4}),
-    "dynamics/sweep.csv": Table(("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION),
-    "dynamics/resonances.csv": Table(
-        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION
+    "dynamics/sweep.csv": Table(
+        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"
     ),
-    "dynamics/jumps.csv": Table(("direction", "speed_before_rpm", "mesh"), errors={"deflection": 8.6e-4}),
+    "dynamics/resonances.csv": Table(
+        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"
+    ),
+    "dynamics/jumps.csv": Table(
+        ("direction",),
+        errors=JUMPS,
+        bracket=Bracket("speed_before_rpm", "speed_after_rpm", "error_rpm", OVER_BRACKET),
+    ),
     "load_sharing/summary.csv": Table(("study", "point", "group"), errors=SHARING),
     "load_sharing/nominal_summary.csv": Table(("group",), errors=SHARING),
     "load_sharing/forces.csv": Table(("mesh",), errors=FORCES),

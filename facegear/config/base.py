@@ -125,12 +125,14 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
 
 
 RENAMED = {
+    "a_n_per_m": "sin_n_per_m",
+    "b_n_per_m": "cos_n_per_m",
     "least_bending_safety": "min_bending_safety",
     "least_pitting_safety": "min_pitting_safety",
     "longest_found": "longest_start_period",
     "most_branches": "max_branches",
 }
-"""Keys of earlier versions and what they are called today."""
+"""Keys and columns of earlier versions and what they are called today."""
 
 
 def suggestion(key: str, allowed: Collection[str]) -> str:

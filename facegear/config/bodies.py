@@ -14,9 +14,9 @@ LIGHTEST_KG, SMALLEST_KG_M2 = 1e-6, 1e-12
 class BearingStiffness(Section):
     """Bearing stiffness along a body's axes."""
 
-    x: float = Field(ge=0, le=1e14)
-    y: float = Field(ge=0, le=1e14)
-    z: float = Field(ge=0, le=1e14)
+    x: float = Field(ge=0, le=1e14, description="along x: of a pinion tangential to the face gear")
+    y: float = Field(ge=0, le=1e14, description="along y: of a pinion along the face gear's axis")
+    z: float = Field(ge=0, le=1e14, description="along z, the body's own axis")
     xy: float = Field(0.0, ge=-1e14, le=1e14, description="couples x and y; below sqrt(x y) in size")
 
     @model_validator(mode="after")
@@ -58,14 +58,14 @@ def _refuse_both(one_side: float | None, diametral: float | None) -> None:
 class PinionBody(Section):
     """Data shared by all pinions; x is tangential to the face gear, y along the face gear's axis."""
 
-    mass_kg: float = Field(ge=LIGHTEST_KG, le=1e5)
-    inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e5)
+    mass_kg: float = Field(ge=LIGHTEST_KG, le=1e5, description="mass of each pinion with its shaft")
+    inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e5, description="about its own axis")
     bearing_stiffness_n_per_m: BearingStiffness | None = Field(
         None, description="null only where each pinion has a shaft or a bearing stiffness of its own"
     )
     base_radius_mm: float | None = Field(
         None,
-        gt=0,
+        ge=1e-3,
         le=1e4,
         description="for mesh_kinematics printed; null: module * teeth / 2 * cos(pressure angle)",
     )
@@ -93,7 +93,9 @@ class TiltSection(Section):
     """Rocking of a face gear about its diameters."""
 
     inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e6, description="about a diameter")
-    stiffness_n_m_per_rad: float = Field(gt=0, le=1e14)
+    stiffness_n_m_per_rad: float = Field(
+        ge=1e-6, le=1e14, description="of the bearings against rocking about a diameter"
+    )
     centre_below_pitch_plane_mm: float = Field(
         0.0,
         ge=-1e4,
@@ -114,11 +116,11 @@ Bending = Annotated[BodySection | None, BeforeValidator(_elastic)]
 class GearBody(Section):
     """Data shared by the face gears; z is their axis."""
 
-    mass_kg: float = Field(ge=LIGHTEST_KG, le=1e6)
-    inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e6)
+    mass_kg: float = Field(ge=LIGHTEST_KG, le=1e6, description="mass of each face gear")
+    inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e6, description="about its own axis")
     bearing_stiffness_n_per_m: BearingStiffness
     mesh_radius_mm: float | None = Field(
-        None, gt=0, le=1e4, description="required by mesh_kinematics printed, refused by geometric"
+        None, ge=1e-3, le=1e4, description="required by mesh_kinematics printed, refused by geometric"
     )
     tilt: TiltSection | None = Field(None, description="null: the gears stay square to their axis")
     hub_tilt: TiltSection | None = Field(
@@ -155,18 +157,27 @@ class GearForce(Section):
 class SinglePinion(Section):
     """What is different in one pinion; null keeps what all pinions have."""
 
-    mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e5)
-    inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e5)
+    mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e5, description="mass; null: that of all pinions")
+    inertia_kg_m2: float | None = Field(
+        None, ge=SMALLEST_KG_M2, le=1e5, description="about its own axis; null: that of all pinions"
+    )
     bearing_stiffness_n_per_m: BearingStiffness | None = None
     position_um: Position = Position()
     force_n: PinionForce = PinionForce()
-    clearance_um: float | None = Field(None, ge=0, le=1e4)
+    clearance_um: float | None = Field(
+        None,
+        ge=0,
+        le=1e4,
+        description="clearance of its bearings to each side of their centre; null: that of all pinions",
+    )
     clearance_diametral_um: float | None = Field(None, ge=0, le=2e4, description=DIAMETRAL)
     clocking_deg: float = Field(
         0.0, ge=-360, le=360, description="lower rim of a compound pinion ahead of its upper rim"
     )
     runout: RunoutSection | None = None
-    cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")
+    cumulative_pitch_um: tuple[Annotated[float, Field(ge=-1e5, le=1e5)], ...] = Field(
+        (), description="of every tooth, ahead as it turns"
+    )
     tilt: ClassVar[None] = None
     hub_tilt: ClassVar[None] = None
     body: ClassVar[None] = None
@@ -192,14 +203,18 @@ class SingleGear(Section):
         description="on the lower of two gears, negative where it is driven; the other's follows",
     )
     force_n: GearForce = GearForce()
-    mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e6)
-    inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e6)
+    mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e6, description="mass; null: that of both gears")
+    inertia_kg_m2: float | None = Field(
+        None, ge=SMALLEST_KG_M2, le=1e6, description="about its own axis; null: that of both gears"
+    )
     bearing_stiffness_n_per_m: BearingStiffness | None = None
     tilt: TiltSection | None = None
     hub_tilt: TiltSection | None = None
     body: BodySection | None = Field(None, description="hub, web and rim that bend")
     runout: RunoutSection | None = None
-    cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")
+    cumulative_pitch_um: tuple[Annotated[float, Field(ge=-1e5, le=1e5)], ...] = Field(
+        (), description="of every tooth, ahead as it turns"
+    )
 
 
 LIKE_ALL_PINIONS, LIKE_ALL_GEARS = SinglePinion(), SingleGear()

@@ -1,6 +1,6 @@
 """Config section `branches`: which motions exist over the speed, where they end, how far a jump is."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -14,31 +14,33 @@ Parameter = Literal["torque", "backlash", "mesh_damping", "bearing_stiffness"]
 class Explore(Section):
     """Random starts at chosen speeds."""
 
-    speeds_rpm: tuple[float, ...] = Field((), max_length=200, description="empty: the nominal speed alone")
+    speeds_rpm: tuple[Annotated[float, Field(ge=1e-3, le=MAX_SPEED_RPM)], ...] = Field(
+        (), max_length=200, description="empty: the nominal speed alone"
+    )
     starts: int = Field(100, ge=1, le=1_000_000, description="at each speed")
     spread_um: float = Field(
         100.0,
-        gt=0,
+        ge=1e-6,
         le=1e5,
         description="half width of the box around rest: displacements, and rotations at the mesh radius",
     )
-    seed: int = Field(0, ge=0, le=2**31)
+    seed: int = Field(0, ge=0, le=2**31, description="of the random starts")
 
 
 class Loci(Section):
     """Curves of folds and period doublings in the plane of speed and one more parameter."""
 
     parameters: tuple[Parameter, ...] = Field(("torque",), max_length=4, description="multiplied by a factor")
-    from_factor: float = Field(0.5, gt=0, lt=1)
-    to_factor: float = Field(2.0, gt=1, le=1000)
+    from_factor: float = Field(0.5, ge=1e-3, lt=1, description="smallest factor on the parameter")
+    to_factor: float = Field(2.0, gt=1, le=1000, description="largest factor on the parameter")
     nearest: int = Field(4, ge=0, le=1000, description="special points nearest to the nominal speed")
 
 
 class Branches(Section):
     """Continuation of periodic motions, stable or not."""
 
-    from_rpm: float = Field(200, gt=0, le=MAX_SPEED_RPM)
-    to_rpm: float = Field(20_000, gt=0, le=MAX_SPEED_RPM)
+    from_rpm: float = Field(200, ge=1e-3, le=MAX_SPEED_RPM, description="smallest pinion speed")
+    to_rpm: float = Field(20_000, ge=1e-3, le=MAX_SPEED_RPM, description="largest pinion speed")
     tolerance: float = Field(
         1e-7,
         ge=1e-14,
@@ -51,7 +53,7 @@ class Branches(Section):
     longest_start_period: int = Field(
         8, ge=1, le=64, description="longest period followed of motions of the sweep and of random starts"
     )
-    max_branches: int = Field(48, ge=1, le=10_000)
+    max_branches: int = Field(48, ge=1, le=10_000, description="how many branches are followed")
     explore: Explore = Explore()
     loci: Loci = Loci()
 

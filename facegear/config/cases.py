@@ -42,7 +42,12 @@ def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], where: s
     Raises ConfigErrors, led by `where`, for a key that does not stand in the config and a value it refuses.
     """
     changed, lines = deepcopy({**base, "studies": [], "reproduction": None}), []
+    before: list[str] = []
     for key, value in changes.items():
+        lost = [earlier for earlier in before if earlier.startswith(f"{key}.")]
+        before.append(key)
+        if lost:
+            lines.append(f"{lost[0]}: must come after {key}, which holds it, or its value would be lost")
         try:
             set_key(changed, key, value)
         except ConfigError as error:

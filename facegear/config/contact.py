@@ -20,21 +20,27 @@ class RefinementSection(Section):
 class SectorSection(Section):
     """How much of each gear is modelled."""
 
-    pinion_teeth: Literal["full"] | Annotated[int, Field(ge=5, le=500)] = "full"
-    face_gear_teeth: Literal["full"] | Annotated[int, Field(ge=5, le=2000)] = "full"
+    pinion_teeth: Literal["full"] | Annotated[int, Field(ge=5, le=500)] = Field(
+        default="full", description="teeth of the pinion that are modelled"
+    )
+    face_gear_teeth: Literal["full"] | Annotated[int, Field(ge=5, le=2000)] = Field(
+        default="full", description="teeth of the face gear that are modelled"
+    )
     cut_faces: Literal["free", "clamped"] = Field(default="free", description="of a sector")
 
 
 class Contact(Section):
     """Loaded tooth contact of one mesh: pinion bore turned against the gear, whose rim back is clamped."""
 
-    torques_n_m: tuple[Annotated[float, Field(gt=0, le=1e7)], ...] = Field(
+    torques_n_m: tuple[Annotated[float, Field(ge=1e-6, le=1e7)], ...] = Field(
         default=(100.0, 300.0, 600.0, 1000.0),
         min_length=1,
         max_length=64,
         description="on the pinion, per mesh",
     )
-    positions_per_pitch: int = Field(default=32, ge=4, le=4096)
+    positions_per_pitch: int = Field(
+        default=32, ge=4, le=4096, description="positions solved over one pitch of the pinion"
+    )
     refinement: RefinementSection = RefinementSection()
     sector: SectorSection = SectorSection()
     element: Literal["hex27", "hex8", "tet4"] = Field(

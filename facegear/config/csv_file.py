@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from facegear.config.base import RENAMED, suggestion
+
 LARGEST_FILE = 2_000_000
 """Bytes that are read at most."""
 
@@ -30,31 +32,35 @@ class CsvFault(Exception):
     """Why a file cannot be used, with the line where there is one; the text is one line."""
 
 
-def read_numbers(path: str | Path, columns: Sequence[str]) -> list[CsvRow]:
-    """The finite numbers of the named columns; other columns may stand beside them and are left alone.
+def read_numbers(path: str | Path, columns: Sequence[str], unread: Sequence[str] = ()) -> list[CsvRow]:
+    """Return the finite numbers of the named columns, row by row.
 
-    Raises CsvFault naming the line.
+    Columns named in `unread` may stand beside them. Raises CsvFault naming the line, or any other column.
     """
-    return [row for row, _ in read_table(path, columns).rows]
+    return [row for row, _ in read_table(path, columns, unread=unread).rows]
 
 
 def read_table(
-    path: str | Path, columns: Sequence[str], texts: Sequence[str] = (), optional: Sequence[str] = ()
+    path: str | Path,
+    columns: Sequence[str],
+    texts: Sequence[str] = (),
+    optional: Sequence[str] = (),
+    unread: Sequence[str] = (),
 ) -> CsvTable:
-    """Finite numbers of `columns`, texts of others, and numbers of the `optional` ones where all stand there.
+    """Return finite numbers of `columns`, texts of `texts`, and numbers of `optional` where they stand there.
 
-    Raises CsvFault naming the line.
+    Of the optional columns all or none must be given; those named in `unread` may stand beside them. Raises
+    CsvFault naming the line, or any other column.
     """
     content = _text(Path(path)).splitlines()
     first = next((number for number, line in enumerate(content) if not line.startswith("#")), len(content))
     lines = csv.reader(content[first:])
     try:
         header = [name.strip() for name in next(lines, [])]
-        missing = [name for name in (*texts, *columns) if header.count(name) != 1]
-        if missing:
-            message = f"column {missing[0]} must stand once in its first line, separated by commas"
-            raise CsvFault(f"{message}; it has {', '.join(header)[:200] or 'none'}")
-        numbers = [*columns, *(optional if set(optional) <= set(header) else ())]
+        given = set(optional) & set(header)
+        needed = [*texts, *columns, *(optional if given else ())]
+        _check_header(header, needed, [*texts, *columns, *optional], unread)
+        numbers = [*columns, *(optional if given else ())]
         rows = []
         for cells in lines:
             if any(cell.strip() for cell in cells):
@@ -64,6 +70,36 @@ def read_table(
     if not rows:
         raise CsvFault("it holds no numbers")
     return CsvTable([line.lstrip("# ").strip() for line in content[:first]], rows)
+
+
+def column_names(path: str | Path) -> list[str]:
+    """Return the names in the first line that is no remark; none where the file is empty.
+
+    Raises CsvFault where the file or this line cannot be read.
+    """
+    lines = (line for line in _text(Path(path)).splitlines() if not line.startswith("#"))
+    try:
+        return [name.strip() for name in next(csv.reader(lines), [])]
+    except csv.Error as error:
+        raise CsvFault(f"its column names cannot be read: {error}") from None
+
+
+def _check_header(
+    header: Sequence[str], needed: Sequence[str], known: Sequence[str], unread: Sequence[str]
+) -> None:
+    """Raise CsvFault for a column that is missing, stands twice, is unknown or has another name today."""
+    renamed = [name for name in header if RENAMED.get(name) in known]
+    if renamed:
+        raise CsvFault("columns: " + ", ".join(f"`{name}` is now `{RENAMED[name]}`" for name in renamed))
+    missing = [name for name in needed if header.count(name) != 1]
+    if missing:
+        message = f"column {missing[0]} must stand once in its first line, separated by commas"
+        raise CsvFault(f"{message}; it has {', '.join(header)[:200] or 'none'}")
+    for number, name in enumerate(header, start=1):
+        if not name:
+            raise CsvFault(f"column {number} has no name; pandas writes such an index without index=False")
+        if name not in (*known, *unread):
+            raise CsvFault(f"column {name[:40]!r} is unknown; {suggestion(name, known)}")
 
 
 def _row(

@@ -64,15 +64,19 @@ SWEPT_TEXT = (
 class Sweep(Section):
     """Speeds run up and down with the state carried over."""
 
-    from_rpm: float = Field(200, ge=1, le=MAX_SPEED_RPM)
-    to_rpm: float = Field(20_000, ge=1, le=MAX_SPEED_RPM)
-    points: int = Field(400, ge=2, le=100_000)
-    directions: tuple[Literal["up", "down"], ...] = Field(("up", "down"), min_length=1, max_length=2)
+    from_rpm: float = Field(200, ge=1, le=MAX_SPEED_RPM, description="smallest pinion speed")
+    to_rpm: float = Field(20_000, ge=1, le=MAX_SPEED_RPM, description="largest pinion speed")
+    points: int = Field(400, ge=2, le=100_000, description="evenly spaced speeds, both ends included")
+    directions: tuple[Literal["up", "down"], ...] = Field(
+        ("up", "down"), min_length=1, max_length=2, description="ways in which the speeds are run"
+    )
     chunks: int = Field(
         1, ge=1, le=1000, description="independent pieces of each direction; more for more than two cores"
     )
     overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
-    jump_resolution_rpm: float = Field(1.0, gt=0, le=1000)
+    jump_resolution_rpm: float = Field(
+        1.0, ge=1e-6, le=1000, description="width to which the speed of a jump is bracketed"
+    )
     accuracy: Accuracy = Field(SWEPT, description=SWEPT_TEXT)
 
     @model_validator(mode="after")
@@ -90,7 +94,7 @@ class Dynamics(Section):
     """Time response of the lumped model."""
 
     speed_rpm: float = Field(7500, ge=1, le=MAX_SPEED_RPM, description="nominal pinion speed")
-    accuracy: Accuracy = Accuracy()
+    accuracy: Accuracy = Field(Accuracy(), description="of the response at the nominal speed")
     sweep: Sweep = Sweep()
 
 

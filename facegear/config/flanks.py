@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -30,21 +30,21 @@ class GridSection(Section):
     """Deviations from the nominal flank at the places of a grid, along its outward normal."""
 
     tooth: int | None = Field(
-        None, ge=1, description="from 1 in the order in which they come into mesh; null: all others"
+        None, ge=1, le=2000, description="from 1 in the order in which they come into mesh; null: all others"
     )
     flank: Side = Field(description="as docs/geometry.md has them: the pinion's right drives the gear's left")
-    face_mm: tuple[float, ...] = Field(
+    face_mm: tuple[Annotated[float, Field(ge=-1e5, le=1e5)], ...] = Field(
         min_length=2, max_length=1000, description="pinion: from the middle of its face; face gear: radius"
     )
-    profile_mm: tuple[float, ...] = Field(
+    profile_mm: tuple[Annotated[float, Field(ge=-1e5, le=1e5)], ...] = Field(
         min_length=2,
         max_length=1000,
         description="pinion: length of roll; face gear: depth below the tip plane",
     )
-    deviation_um: tuple[tuple[float, ...], ...] = Field(
+    deviation_um: tuple[tuple[Annotated[float, Field(ge=-1e5, le=1e5)], ...], ...] = Field(
         description="a row for each place along the face; positive: material"
     )
-    nominal: tuple[tuple[tuple[float, ...], ...], ...] = Field(
+    nominal: tuple[tuple[tuple[Annotated[float, Field(ge=-1e6, le=1e6)], ...], ...], ...] = Field(
         (), exclude=True, description="of a file that has them: nominal point (mm) and normal at each place"
     )
 
@@ -72,7 +72,9 @@ class FlanksSection(Section):
         "included", description="left_out: each tooth counts from its value at the middle of its flank"
     )
     amplitude: float = Field(1.0, ge=-10, le=10, description="factor on all deviations")
-    grids: tuple[GridSection, ...] = Field((), max_length=4000)
+    grids: tuple[GridSection, ...] = Field(
+        (), max_length=4000, description="instead of a file: one a flank, for all teeth or for a single one"
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> "FlanksSection":

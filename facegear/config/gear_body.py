@@ -1,6 +1,7 @@
 """Config section `body` of a face gear: hub, web and rim that bend, or any section, and how finely."""
 
-from typing import Any, Literal
+from math import pi
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -10,13 +11,18 @@ from facegear.config.material import MaterialSection
 
 COLUMNS = ("r_mm", "height_mm")
 MAX_CORNERS = 200
+Corner = Annotated[float, Field(ge=-1e5, le=1e5)]
+DAMPING_RATIO = 0.002
+"""Damping ratio of a body's modes without a value: that of solid steel without joints."""
+LARGEST_DAMPING_RATIO = 0.5
+"""Largest damping ratio of a mode."""
 
 
 class HubSection(Section):
     """Rectangle round the bore; heights as those of the whole section."""
 
-    bore_radius_mm: float = Field(gt=0, le=1e4)
-    outer_radius_mm: float = Field(gt=0, le=1e4)
+    bore_radius_mm: float = Field(ge=1e-3, le=1e4, description="of the bore, which the shaft holds")
+    outer_radius_mm: float = Field(ge=1e-3, le=1e4, description="at which the web begins")
     back_mm: float = Field(ge=-1e4, le=1e4, description="height of its face away from the teeth")
     front_mm: float = Field(ge=-1e4, le=1e4, description="height of its face on the side of the teeth")
 
@@ -24,8 +30,8 @@ class HubSection(Section):
 class WebSection(Section):
     """Straight web between hub and rim, flat or conical; thicknesses along the axis."""
 
-    hub_thickness_mm: float = Field(gt=0, le=1e4)
-    rim_thickness_mm: float = Field(gt=0, le=1e4)
+    hub_thickness_mm: float = Field(ge=1e-3, le=1e4, description="where the web meets the hub")
+    rim_thickness_mm: float = Field(ge=1e-3, le=1e4, description="where the web meets the rim")
     offset_mm: float = Field(0.0, ge=-1e4, le=1e4, description="height of its middle plane at the rim")
     cone_angle_deg: float = Field(
         0.0, ge=-80, le=80, description="by which its middle plane rises outwards; 0: a flat web"
@@ -35,8 +41,8 @@ class WebSection(Section):
 class RimSection(Section):
     """Rectangle below the teeth, up to their root land."""
 
-    inner_radius_mm: float | None = Field(None, gt=0, le=1e4, description="null: that of the teeth")
-    outer_radius_mm: float | None = Field(None, gt=0, le=1e4, description="null: that of the teeth")
+    inner_radius_mm: float | None = Field(None, ge=1e-3, le=1e4, description="null: that of the teeth")
+    outer_radius_mm: float | None = Field(None, ge=1e-3, le=1e4, description="null: that of the teeth")
     back_mm: float = Field(ge=-1e4, le=0, description="height of its face away from the teeth")
 
 
@@ -49,7 +55,7 @@ class BodySection(Section):
     hub: HubSection | None = None
     web: WebSection | None = None
     rim: RimSection | None = None
-    corners_mm: tuple[tuple[float, float], ...] = Field(
+    corners_mm: tuple[tuple[Corner, Corner], ...] = Field(
         (),
         max_length=MAX_CORNERS,
         description="instead of hub, web and rim: distance and height of every corner",
@@ -58,26 +64,39 @@ class BodySection(Section):
     step: str | None = Field(
         None,
         description="the corners as a STEP file: a solid of revolution about its z axis, or its half section "
-        "at y = 0, x > 0; z is the height",
+        "in any half plane through that axis; z is the height",
     )
-    held_edges: tuple[int, ...] = Field(
+    held_edges: tuple[Annotated[int, Field(ge=1, le=MAX_CORNERS)], ...] = Field(
         (),
         description="edges of corners_mm that the shaft holds, 1 from the first corner on; []: the bore",
     )
     material: MaterialSection | None = Field(None, description="null: that of the face gear's teeth")
-    density_kg_per_m3: float = Field(7850.0, ge=500, le=25000)
+    density_kg_per_m3: float = Field(7850.0, ge=500, le=25000, description="density of the body")
     teeth: Literal[True, False, "fitted"] = Field(
         True,
         description="whether the teeth's mass and stiffness belong to the body, as a layer of common teeth; "
         "fitted: as one fitted to a sector of the own teeth",
     )
     max_frequency_hz: float = Field(
-        10000.0, gt=0, le=1e6, description="modes up to it are kept; what the others give counts as static"
+        10000.0, ge=1, le=1e6, description="modes up to it are kept; what the others give counts as static"
     )
     nodal_diameters: int = Field(12, ge=0, le=40, description="largest number of which modes are kept")
-    damping_ratio: float = Field(0.002, ge=0, le=0.5, description="of every mode, in the steel that turns")
+    damping_ratio: float | None = Field(
+        None,
+        ge=0,
+        le=LARGEST_DAMPING_RATIO,
+        description=f"of every mode, in the steel that turns; null: {DAMPING_RATIO}, or none beside "
+        "stiffness_damping_s",
+    )
+    stiffness_damping_s: float | None = Field(
+        None,
+        ge=0,
+        le=1,
+        description="in place of damping_ratio: beta of a damping beta K in proportion to the stiffness of "
+        "the steel that turns; a mode of f Hz then has the damping ratio pi f beta",
+    )
     contact_width_pitches: float = Field(
-        4.0, gt=0, le=40, description="width of the raised cosine by which a mesh loads the rim; 4 fits"
+        4.0, ge=0.01, le=40, description="width of the raised cosine by which a mesh loads the rim; 4 fits"
     )
 
     @model_validator(mode="before")
@@ -103,8 +122,15 @@ class BodySection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "BodySection":
-        require_all(self._check_parts, self._check_edges)
+        require_all(self._check_parts, self._check_edges, self._check_damping)
         return self
+
+    @property
+    def damping(self) -> tuple[float, float]:
+        """Damping ratio of every mode, and the factor beta (s) of the stiffness in the damping."""
+        if self.stiffness_damping_s is not None:
+            return 0.0, self.stiffness_damping_s
+        return DAMPING_RATIO if self.damping_ratio is None else self.damping_ratio, 0.0
 
     def _check_parts(self) -> None:
         if self.corners_mm:
@@ -117,6 +143,19 @@ class BodySection(Section):
         if (self.hub is None) != (self.web is None):
             missing = "hub" if self.hub is None else "web"
             refuse(missing, None, "given: hub and web go together; a rim alone is a disc or ring")
+
+    def _check_damping(self) -> None:
+        beta = self.stiffness_damping_s
+        if beta is None:
+            return
+        if self.damping_ratio is not None:
+            allowed = f"left out where damping_ratio = {self.damping_ratio:g} is given"
+            refuse("stiffness_damping_s", beta, allowed)
+        largest = LARGEST_DAMPING_RATIO / (pi * self.max_frequency_hz)
+        if beta > largest:
+            reached = f"a mode of max_frequency_hz then has {LARGEST_DAMPING_RATIO:g} of the critical damping"
+            allowed = f"at most {largest:.3g}: {reached}"
+            refuse("stiffness_damping_s", beta, allowed)
 
     def _check_edges(self) -> None:
         if self.held_edges and not self.corners_mm:

@@ -9,9 +9,9 @@ from facegear.load_sharing.options import SharingOptions, SpeedRange
 class SpeedRangeSection(Section):
     """Speeds over which the largest coefficients are looked for."""
 
-    from_rpm: float = Field(200.0, ge=1, le=1e5)
-    to_rpm: float = Field(20000.0, ge=1, le=1e5)
-    points: int = Field(100, ge=2, le=2000)
+    from_rpm: float = Field(200.0, ge=1, le=1e5, description="smallest pinion speed")
+    to_rpm: float = Field(20000.0, ge=1, le=1e5, description="largest pinion speed")
+    points: int = Field(100, ge=2, le=2000, description="evenly spaced speeds, both ends included")
 
     @model_validator(mode="after")
     def _ordered(self) -> "SpeedRangeSection":
@@ -23,12 +23,12 @@ class SpeedRangeSection(Section):
 class LoadSharing(Section):
     """Averages over many cycles and starts, with their uncertainty; statics and slow running beside them."""
 
-    samples_per_cycle: int = Field(256, ge=32, le=8192)
+    samples_per_cycle: int = Field(256, ge=32, le=8192, description="of each mesh cycle")
     cycles: int = Field(200, ge=20, le=20000, description="mesh cycles kept from each start")
     starts: int = Field(4, ge=1, le=200, description="one from rest, the others disturbed at random")
     start_spread_um: float = Field(20.0, ge=0, le=1e4, description="size of the random disturbance")
     seed: int = Field(0, ge=0, le=2**31, description="of the random disturbance")
-    confidence: float = Field(0.95, gt=0.5, lt=1.0)
+    confidence: float = Field(0.95, gt=0.5, lt=1.0, description="level of the intervals")
     quasi_static_rpm: float = Field(10.0, ge=1, le=1000, description="speed of the slow run")
     speed_range: SpeedRangeSection = SpeedRangeSection()
     hunting_positions: int = Field(

@@ -1,7 +1,7 @@
 """Config section `lubrication`: the oil, how it is supplied, roughness, friction and what the flanks bear."""
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
@@ -29,22 +29,22 @@ GEAR_TESTS: dict[str, Callable[[float], friction.FrictionModel]] = {
 
 
 class Roughness(Section):
-    """Of a flank after running in."""
+    """Roughness of a flank after running in."""
 
-    ra_um: float = Field(gt=0, le=LARGEST_RA_UM, description="arithmetic mean roughness Ra")
-    rq_um: float | None = Field(None, gt=0, le=10, description="root mean square; null: 1.25 Ra")
+    ra_um: float = Field(ge=1e-3, le=LARGEST_RA_UM, description="arithmetic mean roughness Ra")
+    rq_um: float | None = Field(None, ge=1e-3, le=10, description="root mean square; null: 1.25 Ra")
 
 
 class DoleschelConstants(Section):
     """Constants of a twin disc test of the oil; the formula is in docs/friction.md."""
 
-    solid: float = Field(gt=0, le=1)
-    solid_pressure: float = Field(ge=-2, le=2)
-    solid_speed: float = Field(ge=-2, le=2)
-    fluid: float = Field(gt=0, le=1)
-    fluid_pressure: float = Field(ge=-2, le=2)
-    fluid_speed: float = Field(ge=-2, le=2)
-    fluid_viscosity: float = Field(ge=-2, le=2)
+    solid: float = Field(ge=1e-6, le=1, description="mu_F at 1000 MPa and a sum velocity of 1 m/s")
+    solid_pressure: float = Field(ge=-2, le=2, description="exponent of pressure in mu_F")
+    solid_speed: float = Field(ge=-2, le=2, description="exponent of the sum velocity in mu_F")
+    fluid: float = Field(ge=1e-6, le=1, description="mu_EHD at 1000 MPa, 1 m/s and 1 mPa s")
+    fluid_pressure: float = Field(ge=-2, le=2, description="exponent of pressure in mu_EHD")
+    fluid_speed: float = Field(ge=-2, le=2, description="exponent of the sum velocity in mu_EHD")
+    fluid_viscosity: float = Field(ge=-2, le=2, description="exponent of the viscosity in mu_EHD")
 
 
 class FrictionSection(Section):
@@ -52,10 +52,10 @@ class FrictionSection(Section):
 
     model: Literal[
         "constant", "schlenk", "iso_6336_20", "iso_6336_22", "benedict_kelley", "xu", "doleschel"
-    ] = "schlenk"
+    ] = Field("schlenk", description="formula of the coefficient, as docs/friction.md has it")
     coefficient: float | None = Field(None, ge=0, le=1, description="of the model constant")
     lubricant_factor: float | None = Field(
-        None, gt=0, le=2, description="X_L of schlenk, iso_6336_20 and iso_6336_22; null: that of the oil"
+        None, ge=0.01, le=2, description="X_L of schlenk, iso_6336_20 and iso_6336_22; null: that of the oil"
     )
     constants: DoleschelConstants | None = Field(None, description="of the model doleschel")
     effect: Literal["loss_only", "excitation"] = Field(
@@ -80,14 +80,19 @@ class FrictionSection(Section):
 class BulkSection(Section):
     """Temperature of the teeth: given, from the heat that bodies give off, or a rule of cylindrical gears."""
 
-    source: Literal["given", "cooling", "iso_6336_20"]
+    source: Literal["given", "cooling", "iso_6336_20"] = Field(
+        description="given: temperature_c; cooling: from the heat that the bodies give off; iso_6336_20: the "
+        "rule of cylindrical gears"
+    )
     temperature_c: float | None = Field(
         None, ge=-60, le=600, description="of both gears where source is given"
     )
     pinion_w_per_k: float | None = Field(
-        None, gt=0, le=1e6, description="heat that a pinion gives off a kelvin above the oil, for cooling"
+        None, ge=1e-6, le=1e6, description="heat that a pinion gives off a kelvin above the oil, for cooling"
     )
-    face_gear_w_per_k: float | None = Field(None, gt=0, le=1e6, description="the same of a face gear")
+    face_gear_w_per_k: float | None = Field(
+        None, ge=1e-6, le=1e6, description="heat that a face gear gives off a kelvin above the oil"
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> "BulkSection":
@@ -103,18 +108,18 @@ class BulkSection(Section):
 
 
 class SteelSection(Section):
-    """What heat finds in a flank; the values of ISO/TR 15144-1."""
+    """Thermal properties of the flanks; by default those of ISO/TR 15144-1."""
 
-    conductivity_w_per_m_k: float = Field(45.0, gt=0, le=1000)
-    density_kg_per_m3: float = Field(7800.0, gt=0, le=30000)
-    heat_capacity_j_per_kg_k: float = Field(440.0, gt=0, le=10000)
+    conductivity_w_per_m_k: float = Field(45.0, ge=0.01, le=1000, description="thermal conductivity")
+    density_kg_per_m3: float = Field(7800.0, ge=100, le=30000, description="density")
+    heat_capacity_j_per_kg_k: float = Field(440.0, ge=1, le=10000, description="specific heat capacity")
 
 
 class Scuffing(Section):
-    """What the contact temperature is compared with."""
+    """Limits that the contact temperature is compared with."""
 
     temperature_c: float | None = Field(
-        None, gt=0, le=1000, description="contact temperature allowed; null: of the oil, or of fzg_stage"
+        None, ge=1, le=1000, description="contact temperature allowed; null: of the oil, or of fzg_stage"
     )
     fzg_stage: float | None = Field(
         None, ge=1, le=14, description="failure load stage A/8.3/90; null: of the oil"
@@ -132,20 +137,22 @@ class LubricationSection(Section):
 
     oil: OilCard = Field(description="name of an oil of the package, a yaml file, or the card itself")
     supply_temperature_c: float = Field(ge=-60, le=400, description="of the oil as it reaches the mesh")
-    supply: Literal["jet", "dip", "submerged"] = "jet"
-    pinion: Roughness
-    face_gear: Roughness
+    supply: Literal["jet", "dip", "submerged"] = Field(
+        "jet", description="how the oil reaches the mesh, for the rule of iso_6336_20"
+    )
+    pinion: Roughness = Field(description="roughness of the pinion's flanks after running in")
+    face_gear: Roughness = Field(description="roughness of the face gear's flanks after running in")
     friction: FrictionSection = FrictionSection()
     bulk: BulkSection
     steel: SteelSection = SteelSection()
     scuffing: Scuffing = Scuffing()
     allowed_film_ratio: float | None = Field(
         None,
-        gt=0,
+        ge=1e-3,
         le=10,
         description="specific film of ISO/TS 6336-22 that a test of the oil allows; null: not judged",
     )
-    map_speeds_rpm: tuple[float, ...] = Field(
+    map_speeds_rpm: tuple[Annotated[float, Field(ge=1e-3, le=1e6)], ...] = Field(
         (),
         max_length=100,
         description="of the efficiency map; none: 12 from a tenth of dynamics.speed_rpm to 1.25 times it",
@@ -159,8 +166,8 @@ class LubricationSection(Section):
     @field_validator("map_speeds_rpm")
     @classmethod
     def _rising(cls, speeds: tuple[float, ...]) -> tuple[float, ...]:
-        if any(not 0 < speed <= 1e6 for speed in speeds) or list(speeds) != sorted(set(speeds)):
-            refuse("", list(speeds), "rising speeds above 0")
+        if list(speeds) != sorted(set(speeds)):
+            refuse("", list(speeds), "rising speeds")
         return speeds
 
     @model_validator(mode="after")
@@ -199,11 +206,22 @@ def limits_of(section: LubricationSection) -> Limits:
     scuffing = section.scuffing
     return Limits(
         contact_temperature=scuffing.temperature_c or section.oil.scuffing_temperature_c,
+        contact_temperature_source=_source_of_contact_temperature(section),
         fzg_stage=scuffing.fzg_stage or section.oil.fzg_stage,
         structure_factor=scuffing.structure_factor,
         lubricant_factor=section.friction.lubricant_factor or section.oil.lubricant_factor,
         film_ratio=section.allowed_film_ratio,
     )
+
+
+def _source_of_contact_temperature(section: LubricationSection) -> str:
+    """Where the allowed contact temperature is from, in words."""
+    if section.scuffing.temperature_c:
+        return "lubrication.scuffing.temperature_c"
+    if section.oil.scuffing_temperature_c:
+        return section.oil.scuffing_temperature_source or f"oil card: {section.oil.source}"
+    stage = section.scuffing.fzg_stage or section.oil.fzg_stage
+    return "not given" if stage is None else f"FZG load stage {stage:g}"
 
 
 def map_speeds(section: LubricationSection, nominal_rpm: float) -> tuple[float, ...]:

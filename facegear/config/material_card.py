@@ -3,24 +3,29 @@
 from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, parse, refuse
+from facegear.config.material import SOFTEST_GPA
 from facegear.config.yaml_file import read_yaml
 from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits
 
 CARDS = Path(str(files("facegear") / "strength" / "cards"))
 """Folder of the cards that come with the package."""
 
+Cycles = Annotated[float, Field(ge=1, le=1e18)]
+LifeFactor = Annotated[float, Field(ge=1e-6, le=1e3)]
+
 
 class Limits(Section):
     """A fatigue limit for 1 % failures, and its life factors as rising cycles with falling factors."""
 
-    limit_mpa: float = Field(gt=0, le=1e5)
-    life: tuple[tuple[float, float], ...] = Field(min_length=2, description="[cycles, factor] points")
+    limit_mpa: float = Field(ge=1e-3, le=1e5, description="stress that lasts, at life factor 1")
+    life: tuple[tuple[Cycles, LifeFactor], ...] = Field(min_length=2, description="[cycles, factor] points")
     weibull_shape: float | None = Field(
-        None, gt=0, le=20, description="of the distribution of lives; null: no reliability is stated"
+        None, ge=0.01, le=20, description="of the distribution of lives; null: no reliability is stated"
     )
 
     @model_validator(mode="after")
@@ -42,27 +47,29 @@ class Limits(Section):
 class MeanStress(Section):
     """Mean stress ratio M = constant - slope Y_S."""
 
-    constant: float = Field(ge=0, le=1)
-    slope: float = Field(ge=0, le=1)
+    constant: float = Field(ge=0, le=1, description="M where Y_S is 0")
+    slope: float = Field(ge=0, le=1, description="by which M falls for 1 of the stress correction Y_S")
 
 
 class Bending(Limits):
     """Limits of the root; what the card's source does not give is left out."""
 
-    slip_layer_mm: float | None = Field(None, gt=0, le=1, description="rho' of ISO 6336-3")
-    mean_stress: MeanStress | None = None
+    slip_layer_mm: float | None = Field(None, ge=1e-6, le=1, description="rho' of ISO 6336-3")
+    mean_stress: MeanStress | None = Field(
+        None, description="mean stress ratio M; null: teeth loaded both ways are not rated"
+    )
 
 
 class Card(Section):
     """A material card."""
 
-    name: str
+    name: str = Field(description="of the material")
     source: str = Field(min_length=1, description="where the limits are from")
-    grade: str
-    young_modulus_gpa: float = Field(gt=0, le=2000)
-    poisson_ratio: float = Field(ge=0, lt=0.5)
-    pitting: Limits | None = None
-    bending: Bending | None = None
+    grade: str = Field(description="quality grade of the source, such as MQ")
+    young_modulus_gpa: float = Field(ge=SOFTEST_GPA, le=2000, description="Young's modulus")
+    poisson_ratio: float = Field(ge=0, lt=0.5, description="Poisson's ratio")
+    pitting: Limits | None = Field(None, description="contact stress that flanks bear; null: not known")
+    bending: Bending | None = Field(None, description="stress that roots bear; null: not known")
 
 
 def material_card(path: str | Path) -> MaterialCard:

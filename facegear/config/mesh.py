@@ -12,19 +12,19 @@ from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 class SizesSection(Section):
     """Element sizes; quadratic elements carry nodes at half these distances."""
 
-    profile_mm: float = Field(gt=0, le=100, description="across the flank's profile, at its surface")
-    width_mm: float = Field(gt=0, le=100, description="along the face")
-    thickness_mm: float = Field(gt=0, le=100, description="largest inside the tooth and the body below")
+    profile_mm: float = Field(ge=1e-7, le=100, description="across the flank's profile, at its surface")
+    width_mm: float = Field(ge=1e-7, le=100, description="along the face")
+    thickness_mm: float = Field(ge=1e-7, le=100, description="largest inside the tooth and the body below")
     fillet_mm: float | None = Field(
         default=None,
-        gt=0,
+        ge=1e-7,
         le=100,
         description="along the lower half of the fillet's profile; null: as across the flank, half of that "
         "below a thin fillet",
     )
     fillet_depth_mm: float | None = Field(
         default=None,
-        gt=0,
+        ge=1e-7,
         le=100,
         description="first row below a thin fillet, less below a sharp one; null: 0.8 of profile_mm",
     )
@@ -33,7 +33,9 @@ class SizesSection(Section):
 class Mesh(Section):
     """How fine both bodies are meshed."""
 
-    resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = "coarse"
+    resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = Field(
+        default="coarse", description="sizes that follow from the module, or own sizes"
+    )
     thin_fillet: bool | None = Field(
         default=None,
         description="finer elements at and below the fillets; null: where root stress is asked for",

@@ -82,7 +82,7 @@ class Config(Section):
     search: Search | None = Field(
         None, description="designs that no other beats in every objective; null: not done"
     )
-    studies: tuple[Study, ...] = ()
+    studies: tuple[Study, ...] = Field((), description="the same machine with some keys changed")
     reproduction: str | None = Field(
         None,
         min_length=1,

@@ -16,50 +16,57 @@ OIL_CARDS = Path(str(files("facegear") / "lubrication" / "cards"))
 class PowerLaw(Section):
     """Pressure coefficient scale nu^exponent in 1/GPa, nu in mm2/s."""
 
-    law: Literal["power"]
-    scale: float = Field(gt=0, le=1000)
-    exponent: float = Field(ge=0, le=1)
+    law: Literal["power"] = Field(description="scale nu^exponent, nu in mm2/s")
+    scale: float = Field(ge=1e-6, le=1000, description="1/GPa at 1 mm2/s")
+    exponent: float = Field(ge=0, le=1, description="of the viscosity nu in mm2/s")
 
 
 class EsterLaw(Section):
     """Pressure coefficient of MIL-L-23699 oils."""
 
-    law: Literal["polyol_ester"]
+    law: Literal["polyol_ester"] = Field(description="formula for MIL-L-23699 oils")
 
 
 class FixedLaw(Section):
     """The same pressure coefficient at every temperature."""
 
-    law: Literal["fixed"]
-    per_gpa: float = Field(gt=0, le=100)
+    law: Literal["fixed"] = Field(description="the same pressure coefficient at every temperature")
+    per_gpa: float = Field(ge=1e-3, le=100, description="pressure coefficient, 1/GPa")
 
 
 class Conductivity(Section):
     """Thermal conductivity at a temperature, and what it falls by in a degree."""
 
-    w_per_m_k: float = Field(gt=0, le=1)
-    at_c: float = Field(20.0, ge=-100, le=300)
-    falls_per_k: float = Field(0.0, ge=0, le=0.01)
+    w_per_m_k: float = Field(ge=1e-3, le=1, description="conductivity at the temperature at_c")
+    at_c: float = Field(20.0, ge=-100, le=300, description="temperature of w_per_m_k")
+    falls_per_k: float = Field(0.0, ge=0, le=0.01, description="W/(m K) lost with a kelvin more")
 
 
 class OilCard(Section):
-    """An oil."""
+    """What the friction chain needs of an oil."""
 
-    name: str
+    name: str = Field(description="of the oil")
     source: str = Field(min_length=1, description="where the numbers are from")
-    temperatures_c: tuple[float, float] = Field(description="two temperatures, the lower first")
+    temperatures_c: tuple[
+        Annotated[float, Field(ge=-100, le=1000)], Annotated[float, Field(ge=-100, le=1000)]
+    ] = Field(description="two temperatures, the lower first")
     viscosities_mm2_s: tuple[
         Annotated[float, Field(gt=0.2, le=1e5)], Annotated[float, Field(gt=0.2, le=1e5)]
     ] = Field(description="kinematic viscosity at both; between and beyond them ASTM D341")
-    density_15_c_kg_m3: float = Field(ge=500, le=2000)
+    density_15_c_kg_m3: float = Field(ge=500, le=2000, description="density at 15 C")
     pressure_coefficient: PowerLaw | EsterLaw | FixedLaw = Field(
         discriminator="law", description="of viscosity under pressure"
     )
     conductivity: Conductivity
-    flash_point_c: float = Field(gt=0, le=600, description="no temperature of the oil may reach it")
-    lubricant_factor: float = Field(1.0, gt=0, le=2, description="X_L of the friction models of gear tests")
+    flash_point_c: float = Field(ge=1, le=600, description="no temperature of the oil may reach it")
+    lubricant_factor: float = Field(
+        1.0, ge=0.01, le=2, description="X_L of the friction models of gear tests"
+    )
     scuffing_temperature_c: float | None = Field(
-        None, gt=0, le=1000, description="mean contact temperature at which tests scuffed"
+        None, ge=1, le=1000, description="mean contact temperature at which tests scuffed"
+    )
+    scuffing_temperature_source: str | None = Field(
+        None, description="where this temperature is from, for the table of safeties; null: source"
     )
     fzg_stage: float | None = Field(None, ge=1, le=14, description="FZG failure load stage A/8.3/90")
 

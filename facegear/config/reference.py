@@ -9,6 +9,8 @@ from typing import Any
 
 from facegear.config.model import Config
 
+NUMBERS = ("minimum", "maximum")
+"""Words of a JSON schema for the bounds of a number."""
 HEAD = """# All keys of a config
 Made from the models that check a config, by `python -m facegear.config.reference > docs/config.md`.
 Required keys are required where their section is given; `[]` stands for each item of a list, `<name>` for a
@@ -22,9 +24,7 @@ def reference() -> str:
     parts = [HEAD]
     for name, section in schema["properties"].items():
         parts.append(f"\n## {name}\n")
-        whole = _plain(schema, section)
-        if text := (whole.get("description") or section.get("description")):
-            parts.append(f"{text}\n")
+        parts.append(f"{meaning(schema, section)}\n")
         parts.append("\n| key | default | allowed | meaning |\n|---|---|---|---|\n")
         required = name in schema.get("required", ())
         parts.extend(_row(*row) for row in _rows(schema, name, section, required))
@@ -39,8 +39,8 @@ def _rows(
     schema: Mapping[str, Any], key: str, field: Mapping[str, Any], required: bool
 ) -> Iterator[tuple[str, str, str, str]]:
     """A row for the key itself, then those of the keys inside it."""
-    inside = [_plain(schema, option) for option in field.get("anyOf", [field])]
-    yield (f"`{key}`", _default(field, required), _allowed(schema, inside), field.get("description", ""))
+    inside = [_plain(schema, option) for option in _options(field)]
+    yield (f"`{key}`", _default(field, required), _allowed(schema, inside), meaning(schema, field))
     for option in inside:
         item, name = option, key
         if isinstance(item.get("additionalProperties"), dict):
@@ -49,6 +49,24 @@ def _rows(
             item, name = _plain(schema, item["items"]), f"{name}[]"
         for inner, value in item.get("properties", {}).items():
             yield from _rows(schema, f"{name}.{inner}", value, inner in item.get("required", ()))
+
+
+def meaning(schema: Mapping[str, Any], field: Mapping[str, Any]) -> str:
+    """Return what a key stands for: its own description, or that of the section which it holds.
+
+    schema: the config's JSON schema; field: the part of it that describes the key.
+    """
+    options = [_plain(schema, option) for option in _options(field)]
+    texts = (
+        option.get("description") or _plain(schema, option.get("items", {})).get("description", "")
+        for option in options
+    )
+    return " ".join((field.get("description") or next(filter(None, texts), "")).split())
+
+
+def _options(field: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return the forms that a value may have."""
+    return list(field.get("anyOf") or field.get("oneOf") or [field])
 
 
 def _plain(schema: Mapping[str, Any], field: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -74,12 +92,14 @@ def _kind(schema: Mapping[str, Any], option: Mapping[str, Any]) -> str:
         return ", ".join(f"`{value}`" for value in option.get("enum", [option.get("const")]))
     kind = option.get("type", "any value")
     if kind == "array":
-        return f"list{_bounds(option, ('minItems', 'maxItems'))}"
+        items = option.get("items") or option.get("prefixItems", [{}])[0]
+        numbers = f" of numbers{_bounds(items, NUMBERS)}" if items.get("type") == "number" else ""
+        return f"list{_bounds(option, ('minItems', 'maxItems'))}{numbers}"
     inside = option.get("additionalProperties")
     if kind == "object" and isinstance(inside, Mapping) and inside.get("type") == "number":
         return f"names, each with a {_kind(schema, inside)}"
     words = {"integer": "whole number", "object": "section", "string": "text", "boolean": "true, false"}
-    return words.get(kind, kind) + _bounds(option, ("minimum", "maximum"))
+    return words.get(kind, kind) + _bounds(option, NUMBERS)
 
 
 def _bounds(option: Mapping[str, Any], names: tuple[str, str]) -> str:

@@ -1,6 +1,6 @@
 """Config section `search`: which numbers of a machine are free, what is wanted of it, what it must hold."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -12,16 +12,18 @@ from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, of_jum
 TAKEN = ("design", "error", "generation", "seed")
 """Columns beside those of variables, objectives and constraints."""
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
+Bounded = Annotated[float, Field(ge=-1e15, le=1e15)]
+"""Value of a free number or a limit, in the unit of any quantity."""
 
 
 class VariableSection(Section):
     """A number that is free, and the keys of the machine that take it."""
 
-    name: str = Field(pattern=NAME)
+    name: str = Field(pattern=NAME, description="names its column in tables")
     sets: tuple[str, ...] = Field(
         min_length=1, description="dotted keys of numbers of `transmission`, `tooth_pair`"
     )
-    limits: tuple[float, float]
+    limits: tuple[Bounded, Bounded] = Field(description="smallest and largest value")
     steps: int | None = Field(
         None,
         ge=2,
@@ -44,7 +46,7 @@ class VariableSection(Section):
 class ObjectiveSection(Section):
     """Something that is to be small, or large."""
 
-    name: str = Field(pattern=NAME)
+    name: str = Field(pattern=NAME, description="names its column in tables")
     largest_of: tuple[str, ...] = Field(
         (),
         description="to be small: quantities of tolerances/samples.parquet, or what several begin with",
@@ -77,8 +79,8 @@ class ObjectiveSection(Section):
 class ConstraintSection(ObjectiveSection):
     """Something that may not be larger, or smaller, than a limit."""
 
-    at_most: float | None = Field(None, description="required with largest_of")
-    at_least: float | None = Field(None, description="required with smallest_of")
+    at_most: Bounded | None = Field(None, description="required with largest_of")
+    at_least: Bounded | None = Field(None, description="required with smallest_of")
 
     @property
     def limit(self) -> float:
@@ -101,10 +103,13 @@ class Jumps(Section):
     """Sweeps up and down around the operating speed, where the margin to the nearest jump is asked for."""
 
     range_rpm: float = Field(
-        500, gt=0, le=100_000, description="on both sides of the speed; the margin where nothing jumps in it"
+        500,
+        ge=1e-3,
+        le=100_000,
+        description="on both sides of the speed; the margin where nothing jumps in it",
     )
-    step_rpm: float = Field(50, gt=0, le=10_000, description="at most, from speed to speed")
-    resolution_rpm: float = Field(1.0, gt=0, le=1000, description="to which a jump is bracketed")
+    step_rpm: float = Field(50, ge=1e-3, le=10_000, description="at most, from speed to speed")
+    resolution_rpm: float = Field(1.0, ge=1e-6, le=1000, description="to which a jump is bracketed")
     accuracy: Accuracy = Field(SWEPT, description=SWEPT_TEXT)
 
     @model_validator(mode="after")
@@ -119,9 +124,15 @@ class Jumps(Section):
 class Search(Section):
     """Designs that no other beats in every objective."""
 
-    variables: tuple[VariableSection, ...] = Field(min_length=1, max_length=50)
-    objectives: tuple[ObjectiveSection, ...] = Field(min_length=1, max_length=4)
-    constraints: tuple[ConstraintSection, ...] = Field((), max_length=20)
+    variables: tuple[VariableSection, ...] = Field(
+        min_length=1, max_length=50, description="numbers that are free"
+    )
+    objectives: tuple[ObjectiveSection, ...] = Field(
+        min_length=1, max_length=4, description="what is to be small, or large"
+    )
+    constraints: tuple[ConstraintSection, ...] = Field(
+        (), max_length=20, description="what a design must hold"
+    )
     model: Literal["quasi_static", "dynamic"] = Field(
         "quasi_static", description="of the loads; jumps are looked for in the motion with both"
     )
@@ -132,8 +143,8 @@ class Search(Section):
     samples: int = Field(32, ge=2, le=100_000, description="of each design, where a percentile is asked for")
     winner_samples: int = Field(256, ge=2, le=100_000, description="the same of the winners")
     population: int = Field(24, ge=4, le=10_000, description="designs of a generation")
-    generations: int = Field(20, ge=1, le=10_000)
-    seeds: tuple[int, ...] = Field(
+    generations: int = Field(20, ge=1, le=10_000, description="of the evolution, on each island")
+    seeds: tuple[Annotated[int, Field(ge=0, le=2**31)], ...] = Field(
         (1, 2, 3), min_length=1, max_length=100, description="one island, a job, each"
     )
 
@@ -162,8 +173,8 @@ class Search(Section):
             refuse("variables.sets", keys, "each key once")
 
     def _check_seeds(self) -> None:
-        if len(set(self.seeds)) < len(self.seeds) or min(self.seeds) < 0:
-            refuse("seeds", list(self.seeds), "different numbers from 0 on")
+        if len(set(self.seeds)) < len(self.seeds):
+            refuse("seeds", list(self.seeds), "different numbers")
 
 
 def jump_range(section: Jumps) -> JumpRange:

@@ -1,5 +1,7 @@
 """Config sections `shafts` and `torsion` of a transmission: what pinions sit on, and what torques turn."""
 
+from typing import Annotated
+
 import numpy as np
 from pydantic import Field, model_validator
 
@@ -23,9 +25,9 @@ OUTPUT = "output"
 class SegmentSection(Section):
     """A piece of shaft between two steps."""
 
-    length_mm: float = Field(ge=SHORTEST_MM, le=LONGEST_MM)
-    diameter_mm: float = Field(ge=1, le=5000)
-    bore_mm: float = Field(0.0, ge=0, le=5000)
+    length_mm: float = Field(ge=SHORTEST_MM, le=LONGEST_MM, description="along the shaft")
+    diameter_mm: float = Field(ge=1, le=5000, description="outer diameter")
+    bore_mm: float = Field(0.0, ge=0, le=5000, description="diameter of the bore; 0: a solid shaft")
 
     @model_validator(mode="after")
     def _hollow(self) -> "SegmentSection":
@@ -42,10 +44,19 @@ class ShaftBearing(Section):
     """A bearing: stiffness across and along the shaft and against tilting, or its matrix."""
 
     at_mm: float = Field(ge=0, le=LONGEST_MM * 100, description="from the beginning of the first segment")
-    radial_n_per_m: float | None = Field(None, ge=SOFTEST_BEARING, le=STIFFEST_BEARING)
-    axial_n_per_m: float | None = Field(None, ge=SOFTEST_BEARING, le=STIFFEST_BEARING)
-    tilt_n_m_per_rad: float | None = Field(None, gt=0, le=1e12)
-    matrix: tuple[tuple[float, ...], ...] | None = Field(
+    radial_n_per_m: float | None = Field(
+        None, ge=SOFTEST_BEARING, le=STIFFEST_BEARING, description="stiffness across the shaft"
+    )
+    axial_n_per_m: float | None = Field(
+        None,
+        ge=SOFTEST_BEARING,
+        le=STIFFEST_BEARING,
+        description="stiffness along the shaft; null: it does not hold the shaft that way",
+    )
+    tilt_n_m_per_rad: float | None = Field(
+        None, ge=1e-3, le=1e12, description="stiffness against tilting; null: none"
+    )
+    matrix: tuple[tuple[Annotated[float, Field(ge=-1e16, le=1e16)], ...], ...] | None = Field(
         None, description=f"5 x 5 in {MOTIONS_KEPT}, N/m, N/rad and N m/rad, in place of the others"
     )
 
@@ -95,7 +106,7 @@ class ShaftSection(Section):
     bearings: tuple[ShaftBearing, ...] = Field(
         max_length=10, description="one or more, named A, B and so on in this order"
     )
-    material: MaterialSection = STEEL
+    material: MaterialSection = Field(STEEL, description="of the shaft")
     tilt_inertia_kg_m2: float | None = Field(
         None,
         ge=1e-12,
@@ -152,7 +163,9 @@ class ShaftSection(Section):
 class TurningMassSection(Section):
     """A turning mass behind a torsional spring."""
 
-    name: str = Field(pattern="^[a-z][a-z0-9_]*$", max_length=30)
+    name: str = Field(
+        pattern="^[a-z][a-z0-9_]*$", max_length=30, description="names the mass in tables and modes"
+    )
     inertia_kg_m2: float = Field(ge=1e-12, le=1e7, description="reduced to the speed of the gear")
     stiffness_n_m_per_rad: float | None = Field(
         None, ge=1, le=1e12, description="of the spring before it, reduced to the speed of the gear"
@@ -160,7 +173,7 @@ class TurningMassSection(Section):
     segments: tuple[SegmentSection, ...] = Field(
         (), max_length=100, description="in place of the stiffness: the shaft that twists"
     )
-    material: MaterialSection = STEEL
+    material: MaterialSection = Field(STEEL, description="of the shaft that the segments make")
     damping_ratio: float = Field(
         0.01, ge=0, le=0.5, description="of the two masses that the spring joins, by themselves"
     )

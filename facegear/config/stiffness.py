@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
-from facegear.config.csv_file import CsvFault, CsvRow, read_numbers
+from facegear.config.csv_file import CsvFault, CsvRow, column_names, read_numbers
 from facegear.harmonics.fit import fit_harmonics
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.request import StiffnessRequest
@@ -23,14 +23,30 @@ Amplitude = Annotated[float, Field(ge=-1e12, le=1e12)]
 
 
 class HarmonicSection(Section):
-    """One order of k(t) = sum a sin(order w t) + b cos(order w t); order 0 is the mean, its a is 0."""
+    """One order of k(t) = mean + sum of sin_n_per_m sin(order w t) + cos_n_per_m cos(order w t), w the mesh
+    frequency.
+    """
 
-    order: int = Field(ge=0, le=MAX_ORDER)
-    a_n_per_m: Amplitude = 0.0
-    b_n_per_m: Amplitude = 0.0
+    order: int = Field(ge=0, le=MAX_ORDER, description="multiple of the mesh frequency; 0: the mean")
+    sin_n_per_m: Amplitude = Field(
+        default=0.0,
+        description="factor of sin(order w t), the a of Dong et al.'s equation (8), which most texts call b; "
+        "0 for order 0",
+    )
+    cos_n_per_m: Amplitude = Field(
+        default=0.0,
+        description="factor of cos(order w t), the b of Dong et al.'s equation (8), which most texts call a; "
+        "the mean for order 0",
+    )
 
 
 COLUMNS = tuple(HarmonicSection.model_fields)
+UNREAD = (
+    *("amplitude_n_per_m", "truncation_error_n_per_m", "sampling_error_n_per_m"),
+    *("e_sin_um", "e_cos_um", "e_peak_to_peak_um", "e_truncation_error_um"),
+    *("mean_average_n_per_m", "mean_local_n_per_m"),
+)
+"""Further columns of the table `stiffness/harmonics.csv`, which is read back as it was written."""
 CURVE = ("pinion_angle_deg", "k_n_per_m")
 """Columns of a csv that holds k over the pinion's angle instead, as `StiffnessResult.over_angle` gives it."""
 EVEN = 1e-6
@@ -47,14 +63,14 @@ class MeshStiffness(Section):
     )
     mean_n_per_m: float | None = Field(
         default=None,
-        gt=0,
+        ge=1,
         le=1e12,
         description="fem_scaled: required; harmonics: required unless order 0 gives it; fem: for the modes "
         "only, which take the computed mean without it",
     )
     torque_n_m: float | None = Field(
         default=None,
-        gt=0,
+        ge=1e-6,
         le=1e7,
         description="load on the pinion per mesh at which k is taken, within contact.torques_n_m; null: the "
         "largest of them",
@@ -68,7 +84,9 @@ class MeshStiffness(Section):
     definition: Literal["average", "local"] = Field(
         default="average", description="F / deflection, or its slope dF / d deflection at that load"
     )
-    harmonics_kept: int = Field(default=8, ge=0, le=MAX_ORDER)
+    harmonics_kept: int = Field(
+        default=8, ge=0, le=MAX_ORDER, description="largest order of k(t) that is kept"
+    )
     variation: float = Field(
         default=1.0, ge=0, le=100, description="factor on k(t) about its mean; 1: as computed or given"
     )
@@ -78,13 +96,14 @@ class MeshStiffness(Section):
     csv: str | None = Field(
         default=None,
         min_length=1,
-        description="for source harmonics, instead of table: a file with the columns order, a_n_per_m, "
-        "b_n_per_m, or pinion_angle_deg, k_n_per_m over one pitch of the pinion; its path counts from this "
+        description="for source harmonics, instead of table: a file with the columns order, sin_n_per_m, "
+        "cos_n_per_m, or pinion_angle_deg, k_n_per_m over one pitch of the pinion; its path counts from this "
         "file's folder",
     )
     csv_pitch_deg: float | None = Field(
         default=None,
         gt=0,
+        le=1e6,
         exclude=True,
         description="left out: the pitch that the angles of a csv cover, which must be that of the pinion",
     )
@@ -137,18 +156,18 @@ class MeshStiffness(Section):
     @property
     def mean(self) -> float | None:
         """The mean that is given, N/m: by its key, or by order 0 of the harmonics."""
-        zeroth = self.table[0].b_n_per_m if self.table and self.table[0].order == 0 else None
+        zeroth = self.table[0].cos_n_per_m if self.table and self.table[0].order == 0 else None
         return self.mean_n_per_m if zeroth is None else zeroth
 
 
 def given_series(section: MeshStiffness) -> Harmonics:
     """The series written in the config (N/m), its mean included."""
     order = max((row.order for row in section.table), default=0)
-    a, b = np.zeros(order + 1), np.zeros(order + 1)
+    sine, cosine = np.zeros(order + 1), np.zeros(order + 1)
     for row in section.table:
-        a[row.order], b[row.order] = row.a_n_per_m, row.b_n_per_m
-    b[0] = section.mean or 0.0
-    return Harmonics(a, b)
+        sine[row.order], cosine[row.order] = row.sin_n_per_m, row.cos_n_per_m
+    cosine[0] = section.mean or 0.0
+    return Harmonics(sine, cosine)
 
 
 def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
@@ -178,23 +197,19 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
         if mean is None:
             refuse("mean_n_per_m", None, "given, as the harmonics have no order 0, which is the mean")
         return
-    if first.a_n_per_m != 0.0 or first.b_n_per_m <= 0.0:
-        given = [first.a_n_per_m, first.b_n_per_m]
-        refuse("table", given, "0 for a_n_per_m of order 0, and the mean, above 0, for its b_n_per_m")
-    if mean is not None and abs(mean / first.b_n_per_m - 1.0) > SAME_MEAN:
-        condition = f"the same as order 0 of the harmonics, {first.b_n_per_m:.10g}, or left out"
+    if first.sin_n_per_m != 0.0 or first.cos_n_per_m <= 0.0:
+        given = [first.sin_n_per_m, first.cos_n_per_m]
+        refuse("table", given, "0 for sin_n_per_m of order 0, and the mean, above 0, for its cos_n_per_m")
+    if mean is not None and abs(mean / first.cos_n_per_m - 1.0) > SAME_MEAN:
+        condition = f"the same as order 0 of the harmonics, {first.cos_n_per_m:.10g}, or left out"
         refuse("mean_n_per_m", mean, condition)
 
 
 def _given(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
     """Rows of `table` from a csv of orders, or from one over the pinion's angle with the pitch it covers."""
-    try:
-        return _harmonics(read_numbers(name, COLUMNS)), None
-    except CsvFault as fault:
-        try:
-            return _of_curve(read_numbers(name, CURVE))
-        except CsvFault as other:
-            raise fault if f"column {CURVE[0]} must" in str(other) else other from None
+    if CURVE[0] in column_names(name):
+        return _of_curve(read_numbers(name, CURVE))
+    return _harmonics(read_numbers(name, COLUMNS, UNREAD)), None
 
 
 def _of_curve(curve: Sequence[CsvRow]) -> tuple[tuple[dict[str, Any], ...], float]:
@@ -209,10 +224,11 @@ def _of_curve(curve: Sequence[CsvRow]) -> tuple[tuple[dict[str, Any], ...], floa
         raise CsvFault(
             f"line {line}: {CURVE[0]} must rise in even steps from 0, the end of the pitch left out"
         )
-    if np.abs(stiffness).max() > 1e12:
-        raise CsvFault(f"line {curve[int(np.argmax(np.abs(stiffness)))].line}: {CURVE[1]} is beyond 1e12")
+    for row, value in zip(curve, stiffness.tolist(), strict=True):
+        if not 0.0 < value <= 1e12:
+            raise CsvFault(f"line {row.line}: {CURVE[1]} = {value:g} must be above 0, at most 1e12")
     series = fit_harmonics(stiffness).series
-    terms = zip(range(series.order + 1), series.a.tolist(), series.b.tolist(), strict=True)
+    terms = zip(range(series.order + 1), series.sine.tolist(), series.cosine.tolist(), strict=True)
     return tuple(dict(zip(COLUMNS, row, strict=True)) for row in terms), float(step * len(curve))
 
 

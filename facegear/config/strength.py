@@ -24,9 +24,9 @@ BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
 class DutySection(Section):
     """One bin of the duty cycle: the pinion's torque in this mesh, its speed, and how long."""
 
-    torque_n_m: float = Field(gt=0, le=1e7)
-    speed_rpm: float = Field(gt=0, le=1e6)
-    hours: float = Field(ge=0, le=1e7)
+    torque_n_m: float = Field(ge=1e-6, le=1e7, description="on the pinion, in this mesh")
+    speed_rpm: float = Field(ge=1e-3, le=1e6, description="of the pinion")
+    hours: float = Field(ge=0, le=1e7, description="how long the load lasts")
 
 
 class BodyStrength(Section):
@@ -58,8 +58,8 @@ class BodyStrength(Section):
 class Strength(Section):
     """Safety and life of the pair under a duty cycle."""
 
-    pinion: BodyStrength
-    face_gear: BodyStrength
+    pinion: BodyStrength = Field(description="material and loading of the pinion's teeth")
+    face_gear: BodyStrength = Field(description="material and loading of the face gear's teeth")
     duty: tuple[DutySection, ...] = Field(default=(), max_length=10000, description="bins of the duty cycle")
     duty_csv: str | None = Field(
         default=None,
@@ -72,8 +72,12 @@ class Strength(Section):
     )
     dynamic_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_v")
     mesh_load_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_gamma of parallel meshes")
-    min_bending_safety: float = Field(default=1.4, ge=1, le=10)
-    min_pitting_safety: float = Field(default=1.0, ge=1, le=10)
+    min_bending_safety: float = Field(
+        default=1.4, ge=1, le=10, description="S_F min: smallest safety against bending that is accepted"
+    )
+    min_pitting_safety: float = Field(
+        default=1.0, ge=1, le=10, description="S_H min: smallest safety against pitting that is accepted"
+    )
 
     @model_validator(mode="before")
     @classmethod

@@ -1,29 +1,38 @@
 """Config section `studies`: the same machine with some keys changed, in one or two dimensions."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import combinations
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
+FigureNumber = Annotated[int, Field(ge=1, le=999)]
 
 
 class StudyPoint(Section):
     """One value of an axis: a label for the figures and the keys it sets."""
 
-    label: str = Field(min_length=1, max_length=160)
+    label: str = Field(min_length=1, max_length=160, description="name of the point in figures and tables")
     set: dict[str, Any] = Field(min_length=1, description="dotted config keys and their values")
+
+    @model_validator(mode="after")
+    def _each_key_once(self) -> "StudyPoint":
+        for first, second in combinations(self.set, 2):
+            if _same_place(first, second):
+                refuse("set", [first, second], "keys none of which holds another")
+        return self
 
 
 class Axis(Section):
     """One dimension of a study: either one `key` with its `values`, or `points` that set several keys."""
 
-    label: str = Field(min_length=1, max_length=60)
+    label: str = Field(min_length=1, max_length=60, description="name of the axis in figures and tables")
     key: str | None = Field(None, description="dotted config key, such as transmission.backlash_um")
-    values: tuple[Any, ...] = ()
-    points: tuple[StudyPoint, ...] = ()
+    values: tuple[Any, ...] = Field((), description="of the key, a point each")
+    points: tuple[StudyPoint, ...] = Field((), description="instead of key and values")
 
     @model_validator(mode="after")
     def _one_form(self) -> "Axis":
@@ -50,11 +59,27 @@ class Axis(Section):
         }
         return {key: column for key, column in columns.items() if _all_differ(column)}
 
+    @property
+    def keys(self) -> set[str]:
+        """Dotted keys that some point sets."""
+        return {key for point in self.resolved() for key, _ in _leaves(point.set)}
+
+
+def common_key(first: Iterable[str], second: Iterable[str]) -> str | None:
+    """Return a dotted key of `second` that is, holds or stands in one of `first`; None if there is none."""
+    first = sorted(first)
+    return next((key for key in sorted(second) if any(_same_place(key, other) for other in first)), None)
+
+
+def _same_place(key: str, other: str) -> bool:
+    """Whether one dotted key is the other or holds it."""
+    return f"{key}.".startswith(f"{other}.") or f"{other}.".startswith(f"{key}.")
+
 
 def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Dotted keys and values, also of whole sections."""
     for key, value in values.items():
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and value:
             yield from ((f"{key}.{inner}", leaf) for inner, leaf in _leaves(value))
         else:
             yield key, value
@@ -68,10 +93,20 @@ def _all_differ(column: tuple[Any, ...]) -> bool:
 class Study(Section):
     """Cases over one axis, or over the product of two."""
 
-    name: str = Field(pattern=NAME)
-    title: str = Field(min_length=1, max_length=120)
-    axes: tuple[Axis, ...] = Field(min_length=1, max_length=2)
-    figures: tuple[int, int] | None = Field(
+    name: str = Field(pattern=NAME, description="names the study's folder and files")
+    title: str = Field(min_length=1, max_length=120, description="title of the study's figures")
+    axes: tuple[Axis, ...] = Field(
+        min_length=1, max_length=2, description="one axis, or two for every combination of their points"
+    )
+    figures: tuple[FigureNumber, FigureNumber] | None = Field(
         None,
         description="numbers of these figures in the publication that the config reproduces: inputs, idlers",
     )
+
+    @model_validator(mode="after")
+    def _different_keys(self) -> "Study":
+        for first, second in combinations(self.axes, 2):
+            if (key := common_key(first.keys, second.keys)) is not None:
+                allowed = "keys that the other axis does not set, as one of the two values would be lost"
+                refuse("axes", key, allowed)
+        return self

@@ -20,22 +20,30 @@ MAX_MAPPED = 200_000
 """Machines of a map of loads, which is one job."""
 TAKEN = ("sample", "error")
 """Columns of a table of samples beside causes and quantities."""
+SMALLEST, LARGEST = 1e-15, 1e15
+"""Bounds on deviations, in the unit of any key: no more than a guard against mistakes in an exponent."""
+Deviation = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 
 
 class CauseSection(Section):
     """Something that varies from machine to machine, and the numbers of the config that it moves."""
 
-    name: str = Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")
-    shape: Literal["normal", "uniform", "rayleigh", "choice"] = "normal"
-    centre: float = Field(0.0, description="of a normal distribution")
-    spread: float | None = Field(
-        None, gt=0, description="standard deviation; of one component where the shape is rayleigh"
+    name: str = Field(pattern=r"^[a-z][a-z0-9_]{0,39}$", description="names its column in tables")
+    shape: Literal["normal", "uniform", "rayleigh", "choice"] = Field(
+        "normal", description="of its distribution"
     )
-    limits: tuple[float, float] | None = Field(
+    centre: float = Field(0.0, ge=-LARGEST, le=LARGEST, description="of a normal distribution")
+    spread: float | None = Field(
+        None,
+        ge=SMALLEST,
+        le=LARGEST,
+        description="standard deviation; of one component where the shape is rayleigh",
+    )
+    limits: tuple[Deviation, Deviation] | None = Field(
         None, description="of a uniform distribution; where a normal or rayleigh one is cut"
     )
-    values: tuple[float, ...] = Field((), description="of shape choice, each as likely")
-    moves: dict[str, float] = Field(
+    values: tuple[Deviation, ...] = Field((), description="of shape choice, each as likely")
+    moves: dict[str, Deviation] = Field(
         min_length=1,
         description="dotted key of a number of `transmission`, `lubrication`, dynamics.speed_rpm, or of "
         "the tooth pair's assembly, reliefs, crowning and moduli -> what one unit of the cause adds to it",
@@ -75,14 +83,14 @@ class CauseSection(Section):
 class RankCorrelation(Section):
     """Two causes that come together."""
 
-    between: tuple[str, str]
+    between: tuple[str, str] = Field(description="names of the two causes")
     coefficient: float = Field(gt=-1, lt=1, description="correlation of their normal scores")
 
 
 class LoadMap(Section):
     """Torques and speeds at which percentiles are asked for too, of the same samples everywhere."""
 
-    torque_factors: tuple[Annotated[float, Field(gt=0, le=10)], ...] = Field(
+    torque_factors: tuple[Annotated[float, Field(ge=1e-6, le=10)], ...] = Field(
         (0.25, 0.5, 1.0, 1.5), min_length=1, max_length=50, description="times all torques of `transmission`"
     )
     speeds_rpm: tuple[Annotated[float, Field(ge=1, le=1e5)], ...] = Field(
@@ -116,7 +124,7 @@ class Tolerances(Section):
     """Samples of one machine with its tolerances, and what they say."""
 
     causes: tuple[CauseSection, ...] = Field(max_length=200, description="at least one")
-    correlations: tuple[RankCorrelation, ...] = ()
+    correlations: tuple[RankCorrelation, ...] = Field((), description="causes that come together")
     model: Literal["quasi_static", "dynamic"] = Field(
         "quasi_static", description="load sharing over the hunting cycle, or of the motion at the speed"
     )
@@ -125,8 +133,8 @@ class Tolerances(Section):
         0, ge=0, le=MAX_SAMPLES, description="of the design for Sobol indices, a power of two; 0: none"
     )
     chunk_samples: int = Field(256, ge=1, le=100_000, description="samples of one job")
-    seed: int = Field(0, ge=0, le=2**31)
-    confidence: float = Field(0.95, gt=0.5, lt=1.0)
+    seed: int = Field(0, ge=0, le=2**31, description="of the samples")
+    confidence: float = Field(0.95, gt=0.5, lt=1.0, description="level of the intervals")
     tooth_contact: bool = Field(
         False,
         description="pressure, root stress and transmission error of every machine as well; causes that move "

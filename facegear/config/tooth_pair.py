@@ -37,43 +37,62 @@ from facegear.geometry.validate import check
 class ReliefSection(Section):
     """A modification of a flank, removed along the normal."""
 
-    amount_um: float = Field(default=0.0, ge=0, le=500)
+    amount_um: float = Field(default=0.0, ge=0, le=500, description="depth taken off, largest at its end")
     start_mm: float = Field(
         default=0.0,
         ge=0,
+        le=1e4,
         description="tip, root, end: length from the end with the full amount; crowning: plain half width",
     )
-    length_mm: float = Field(default=0.0, ge=0, description="over which it grows from nothing to the amount")
+    length_mm: float = Field(
+        default=0.0, ge=0, le=1e4, description="over which it grows from nothing to the amount"
+    )
 
 
 class PinionSection(Section):
     """Spur pinion cut by a rack."""
 
-    width_mm: float = Field(gt=0, le=2000)
-    addendum_modules: float = Field(default=1.0, gt=0, le=2)
-    dedendum_modules: float = Field(default=1.25, gt=0, le=2.5)
-    rack_tip_radius_modules: float = Field(default=0.1, ge=0, le=0.6)
-    profile_shift_modules: float = Field(default=0.0, ge=-1, le=1)
-    thinning_um: float = Field(
-        default=0.0, ge=0, description="off both flanks together: nominal normal backlash"
+    width_mm: float = Field(ge=0.01, le=2000, description="face width, along the pinion's axis")
+    addendum_modules: float = Field(
+        default=1.0, ge=0.01, le=2, description="from the pitch circle to the tip circle, without shift"
     )
-    tip_chamfer_mm: float = Field(default=0.0, ge=0, description="radial height of a 45 degree chamfer")
-    bore_radius_mm: float = Field(gt=0)
-    tip_relief: ReliefSection = ReliefSection()
-    root_relief: ReliefSection = ReliefSection()
-    lead_crowning: ReliefSection = ReliefSection()
-    flanks: FlanksSection = FlanksSection()
+    dedendum_modules: float = Field(
+        default=1.25, ge=0.01, le=2.5, description="from the pitch circle to the root circle, without shift"
+    )
+    rack_tip_radius_modules: float = Field(
+        default=0.1, ge=0, le=0.6, description="rounding of the rack's tip, which cuts the fillet"
+    )
+    profile_shift_modules: float = Field(
+        default=0.0, ge=-1, le=1, description="shift of the rack; positive: away from the pinion's axis"
+    )
+    thinning_um: float = Field(
+        default=0.0, ge=0, le=1e5, description="off both flanks together: nominal normal backlash"
+    )
+    tip_chamfer_mm: float = Field(
+        default=0.0, ge=0, le=1000, description="radial height of a 45 degree chamfer"
+    )
+    bore_radius_mm: float = Field(ge=1e-3, le=1e4, description="of the bore, which contact analysis holds")
+    tip_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the tip")
+    root_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the root")
+    lead_crowning: ReliefSection = Field(
+        ReliefSection(), description="taken off towards both ends of the face"
+    )
+    flanks: FlanksSection = Field(FlanksSection(), description="deviations of the flanks as measured")
     material: MaterialSection | None = Field(default=None, description="if not the pair's")
 
 
 class GearModificationsSection(Section):
     """What is taken off both flanks of the face gear along the normal, as docs/geometry.md draws it."""
 
-    tip_relief: ReliefSection = ReliefSection()
-    root_relief: ReliefSection = ReliefSection()
-    end_relief: ReliefSection = ReliefSection()
-    profile_crowning: ReliefSection = ReliefSection()
-    lead_crowning: ReliefSection = ReliefSection()
+    tip_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the tip")
+    root_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the root")
+    end_relief: ReliefSection = Field(ReliefSection(), description="taken off towards both ends of the face")
+    profile_crowning: ReliefSection = Field(
+        ReliefSection(), description="taken off towards tip and root alike"
+    )
+    lead_crowning: ReliefSection = Field(
+        ReliefSection(), description="taken off towards both ends of the face, from its middle on"
+    )
     lead_slope_um: float = Field(
         default=0.0, ge=-500, le=500, description="off the outer end, onto the inner"
     )
@@ -88,12 +107,18 @@ class GearModificationsSection(Section):
 class FaceGearSection(Section):
     """Face gear blank."""
 
-    inner_radius_mm: float = Field(gt=0, le=10000)
-    outer_radius_mm: float = Field(gt=0, le=10000)
-    addendum_modules: float = Field(default=1.0, gt=0, le=2)
-    rim_thickness_mm: float = Field(gt=0, description="from the root land to the back, which is clamped")
-    modifications: GearModificationsSection = GearModificationsSection()
-    flanks: FlanksSection = FlanksSection()
+    inner_radius_mm: float = Field(ge=0.01, le=10000, description="at which the face begins")
+    outer_radius_mm: float = Field(ge=0.01, le=10000, description="at which the face ends")
+    addendum_modules: float = Field(
+        default=1.0, ge=0.01, le=2, description="height of the teeth above the pitch plane"
+    )
+    rim_thickness_mm: float = Field(
+        ge=0.01, le=10000, description="from the root land to the back, which is clamped"
+    )
+    modifications: GearModificationsSection = Field(
+        GearModificationsSection(), description="reliefs, crowning and slopes of both flanks"
+    )
+    flanks: FlanksSection = Field(FlanksSection(), description="deviations of the flanks as measured")
     material: MaterialSection | None = Field(default=None, description="if not the pair's")
 
 
@@ -101,7 +126,9 @@ class ShaperSection(Section):
     """The tool that generates the face gear."""
 
     teeth: int = Field(ge=5, le=500, description="from the pinion's number (line contact) to three more")
-    addendum_modules: float = Field(default=1.25, gt=0, le=2.5)
+    addendum_modules: float = Field(
+        default=1.25, ge=0.01, le=2.5, description="height of its teeth above its pitch circle"
+    )
     tip_rounding_modules: float = Field(
         default=0.0, ge=0, le=0.6, description="radius between flank and tip land; 0: a sharp edge"
     )
@@ -110,24 +137,32 @@ class ShaperSection(Section):
 class AssemblySection(Section):
     """Assembly errors; signs as in docs/geometry.md."""
 
-    offset_um: float = Field(default=0.0, ge=-5000, le=5000, description="dE")
-    shaft_angle_error_deg: float = Field(default=0.0, ge=-2, le=2, description="dgamma")
+    offset_um: float = Field(default=0.0, ge=-5000, le=5000, description="dE: offset of the axes")
+    shaft_angle_error_deg: float = Field(
+        default=0.0, ge=-2, le=2, description="dgamma: error of the angle between the axes"
+    )
     axial_shift_um: float = Field(default=0.0, ge=-5000, le=5000, description="dq, gear away from the pinion")
 
 
 class ToothPair(Section):
     """A spur pinion and the face gear generated for it."""
 
-    pinion_teeth: int = Field(ge=5, le=500)
-    face_gear_teeth: int = Field(ge=10, le=2000)
-    module_mm: float = Field(gt=0, ge=0.1, le=100)
-    pressure_angle_deg: float = Field(ge=10, le=40)
-    material: MaterialSection = MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3)
+    pinion_teeth: int = Field(ge=5, le=500, description="number of teeth of each pinion")
+    face_gear_teeth: int = Field(ge=10, le=2000, description="number of teeth of each face gear")
+    module_mm: float = Field(ge=0.1, le=100, description="pitch diameter of the pinion over its teeth")
+    pressure_angle_deg: float = Field(ge=10, le=40, description="at the pitch circle of the pinion")
+    material: MaterialSection = Field(
+        MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3), description="of both gears"
+    )
     pinion: PinionSection | None = Field(
         default=None, description="bodies are needed by geometry and contact"
     )
-    face_gear: FaceGearSection | None = None
-    shaper: ShaperSection | None = None
+    face_gear: FaceGearSection | None = Field(
+        default=None, description="blank of the face gear; goes with pinion and shaper"
+    )
+    shaper: ShaperSection | None = Field(
+        default=None, description="tool that cuts the face gear; goes with both bodies"
+    )
     assembly: AssemblySection = AssemblySection()
 
     @model_validator(mode="before")

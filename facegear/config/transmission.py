@@ -11,12 +11,17 @@ from facegear.config.transmission_error import TransmissionError
 
 MAX_PINIONS = 60
 
+GEAR_NAMES = ("lower face gear", "upper face gear")
+"""Names of the face gears among the bodies of every table; no pinion may share one of them."""
+
 
 class PinionPlace(Section):
     """One pinion: where it stands, what it does, and its torque if not the role's."""
 
-    name: str = Field(min_length=1, max_length=40)
-    role: Literal["input", "idler", "tail"]
+    name: str = Field(min_length=1, max_length=40, description="names the pinion in tables and keys")
+    role: Literal["input", "idler", "tail"] = Field(
+        description="input: brings torque in; tail: takes its share out; idler: passes power on"
+    )
     angle_pitches: float | None = Field(
         None, ge=-2000, le=2000, description="distribution angle in angular pitches of the face gear"
     )
@@ -31,16 +36,16 @@ class PinionPlace(Section):
 
 
 class DampingSection(Section):
-    """Equation (21) and the mesh damping of equation (20)."""
+    """Damping of meshes, equation (20) of the paper, and of bodies and bearings, its equation (21)."""
 
-    mesh_n_s_per_m: float = Field(ge=0, le=1e7)
+    mesh_n_s_per_m: float = Field(ge=0, le=1e7, description="damper along the line of action of each mesh")
     mass_per_s: float = Field(
         ge=0,
         le=1e6,
         description="lambda: resists the vibration of every body against the ground, lambda times its mass; "
         "a stand-in for losses elsewhere",
     )
-    bearing_s: float = Field(ge=0, le=1e-2)
+    bearing_s: float = Field(ge=0, le=1e-2, description="damping of each bearing over its stiffness")
     open_flanks: Literal["always", "contact_only", "push_only"] = Field(
         "contact_only",
         description="where the mesh damper acts: always, across open flanks too (equation (20)); "
@@ -54,9 +59,13 @@ class SingleMesh(Section):
     error_um: float = Field(
         0.0, ge=-5000, le=5000, description="constant, positive where the drive flank comes late"
     )
-    backlash_um: float | None = Field(None, ge=0, le=1e5)
-    stiffness_factor: float = Field(1.0, gt=0, le=100)
-    transmission_error: TransmissionError | None = None
+    backlash_um: float | None = Field(
+        None, ge=0, le=1e5, description="2b along the line of action; null: that of all meshes"
+    )
+    stiffness_factor: float = Field(1.0, ge=1e-6, le=100, description="on the mesh stiffness k(t)")
+    transmission_error: TransmissionError | None = Field(
+        None, description="e(t) of this mesh; null: that of all meshes"
+    )
 
 
 LIKE_ALL_MESHES = SingleMesh()
@@ -66,15 +75,19 @@ LIKE_ALL_MESHES = SingleMesh()
 class Torque(Section):
     """Torque of each input pinion and the share of the input power that leaves at the tail pinions."""
 
-    per_input_n_m: float = Field(ge=-1e6, le=1e6)
-    tail_share: float = Field(ge=0, le=1)
+    per_input_n_m: float = Field(ge=-1e6, le=1e6, description="of each input pinion")
+    tail_share: float = Field(ge=0, le=1, description="part of the input power that the tails take out")
 
 
 class Transmission(Section):
     """The lumped model of any number of pinions between one or two face gears."""
 
-    pinions: tuple[PinionPlace, ...] = Field(min_length=1, max_length=MAX_PINIONS)
-    face_gears: tuple[Literal["lower", "upper"], ...] = Field(("lower", "upper"), min_length=1, max_length=2)
+    pinions: tuple[PinionPlace, ...] = Field(
+        min_length=1, max_length=MAX_PINIONS, description="the pinions, each between all face gears"
+    )
+    face_gears: tuple[Literal["lower", "upper"], ...] = Field(
+        ("lower", "upper"), min_length=1, max_length=2, description="which of the two gears there are"
+    )
     pinion: PinionBody
     face_gear: GearBody
     shafts: dict[str, ShaftSection] = Field(
@@ -98,7 +111,11 @@ class Transmission(Section):
         description="static: every mesh has the contact of its teeth where bearings, tilts and loads put "
         "them at rest; none: that of the pair as assembled",
     )
-    phase_convention: Literal["geometric", "printed"] = "geometric"
+    phase_convention: Literal["geometric", "printed"] = Field(
+        "geometric",
+        description="geometric: the half turn between both sides of a pinion counts for every pinion; "
+        "printed: for the first alone, as in equation (11) of the paper",
+    )
     torque: Torque
     single_meshes: dict[str, SingleMesh] = Field({}, description="by `pinion/lower` or `pinion/upper`")
     single_pinions: dict[str, SinglePinion] = Field({}, description="by the pinion's name")
@@ -228,6 +245,9 @@ class Transmission(Section):
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) < len(names):
             refuse("pinions", names, "names that differ from pinion to pinion")
+        for number, name in enumerate(names):
+            if name in GEAR_NAMES:
+                refuse(f"pinions.{number}.name", name, f"another name than {' or '.join(GEAR_NAMES)}")
         if len(set(self.face_gears)) < len(self.face_gears):
             refuse("face_gears", list(self.face_gears), "lower, upper, or both once")
         output = "upper" if "upper" in self.face_gears else self.face_gears[0]

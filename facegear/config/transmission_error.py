@@ -19,9 +19,9 @@ Lag = Annotated[float, Field(ge=0, lt=1)]
 class ErrorHarmonic(Section):
     """One harmonic of the transmission error, amplitude * cos(order * angle + phase)."""
 
-    order: int = Field(ge=1, le=64)
-    amplitude_um: float = Field(ge=0, le=5000)
-    phase_deg: float = Field(0.0, ge=-360, le=360)
+    order: int = Field(ge=1, le=64, description="multiple of the mesh frequency")
+    amplitude_um: float = Field(ge=0, le=5000, description="half of its range")
+    phase_deg: float = Field(0.0, ge=-360, le=360, description="of amplitude * cos(order * angle + phase)")
 
 
 class TransmissionError(Section):
@@ -37,14 +37,20 @@ class TransmissionError(Section):
     amplitude_um: float | None = Field(
         None, ge=0, le=5000, description="required where source is given, else left out"
     )
-    meaning: Literal["amplitude", "range"] = "amplitude"
-    phase_deg: float = Field(0.0, ge=-360, le=360)
+    meaning: Literal["amplitude", "range"] = Field(
+        "amplitude", description="what amplitude_um is; range: twice the amplitude"
+    )
+    phase_deg: float = Field(
+        0.0, ge=-360, le=360, description="of the first harmonic, amplitude * cos(angle + phase)"
+    )
     phasing: Literal["mesh", "in_step"] | dict[str, Lag] = Field(
         "mesh",
         description="mesh: like the stiffness; in_step: all together; or lags in mesh periods by "
         "`pinion/side` or `role/side`, all others in step",
     )
-    more_harmonics: tuple[ErrorHarmonic, ...] = ()
+    more_harmonics: tuple[ErrorHarmonic, ...] = Field(
+        (), description="beside the first, which is given above"
+    )
 
     @model_validator(mode="before")
     @classmethod

@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from facegear.arrays import Array, Integers
 from facegear.contact.bodies.compliance import FlankCompliance
@@ -71,8 +70,7 @@ def loaded_contact(
     """Solve all torques (N m) at all positions (0..1 of a pitch, 0.5 where phi1 = 0), position by position.
 
     `known`: the contact of a pair that differs little, at the same positions and torques.
-    One thread works on it: the matrices of a position are small, and threads of BLAS that wait for one
-    another take several times the work. Raises NotConverged naming the position and the torque.
+    Raises NotConverged naming the position and the torque.
     """
     options = options or ContactOptions()
     design, face = model.design, model.design.face_gear
@@ -87,25 +85,16 @@ def loaded_contact(
         for row, position in enumerate(positions)
     ]
     contacts, turned = [], 0.0
-    with _libraries().limit(limits=1):
-        for row, pair in enumerate(pairs):
-            turn = turned if turned > 0.0 else first  # fillets in the way turn the pinion back
-            if known is not None:
-                turn = known.turn[row] * (turned / known.turn[row - 1] if turned > 0.0 else 1.0)
-            contacts.append(contact_at(pair, torques, searched.margin(row) * turn))
-            turned = float(contacts[-1].rotation[0])
-            progress.step()
+    for row, pair in enumerate(pairs):
+        turn = turned if turned > 0.0 else first  # fillets in the way turn the pinion back
+        if known is not None:
+            turn = known.turn[row] * (turned / known.turn[row - 1] if turned > 0.0 else 1.0)
+        contacts.append(contact_at(pair, torques, searched.margin(row) * turn))
+        turned = float(contacts[-1].rotation[0])
+        progress.step()
     # all at once: each finds what Python needs in the processor's cache, where a solution has cleared it
     solved = [results_of(*each, torques) for each in zip(pairs, contacts, strict=True)]
     return [result for of_position in solved for result in of_position]
-
-
-@cache
-def _libraries() -> ThreadpoolController:
-    """Those of threads that a contact uses: to look for them takes longer than a position."""
-    import scipy.linalg.cython_lapack  # noqa: F401, what compiled functions call
-
-    return ThreadpoolController()
 
 
 @dataclass(eq=False)

@@ -32,6 +32,9 @@ Teeth = Sequence[DeviationGrid | None]
 PLANES = 121
 """Planes across the pinion's axis in which the flanks' gaps are looked at: on 25 mm of face within 2 nm."""
 
+CLOSER_LOOKS, LOOKS = (6, 2, 2), 9
+"""Places about which each closer look at an extreme is taken, and positions about each of them."""
+
 
 def at_places(teeth: Teeth, places: tuple[Array, Array]) -> Array:
     """Deviations (teeth, ...) m at places along face and profile (m) as in `DeviationGrid`."""
@@ -97,9 +100,24 @@ class PairGaps:
     places: Mapping[Body, tuple[Array, Array]]
 
 
-def pair_gaps(design: PairDesign, positions: int, planes: int = PLANES) -> PairGaps:
-    """Gaps at even positions of a pitch, at the unloaded transmission error. Raises NotConverged."""
-    phi1 = pinion_angle(design, np.arange(positions) / positions)
+def pair_gaps(design: PairDesign, places: Array, planes: int = PLANES) -> PairGaps:
+    """Compute the gaps at the unloaded transmission error, at some positions of the mesh cycle.
+
+    Parameters
+    ----------
+    design
+        The pair with its mean flanks.
+    places : (positions,)
+        In pitches, from 0 to below 1.
+    planes
+        Planes across the pinion's axis, and points of the gear's tip edge.
+
+    Raises
+    ------
+    NotConverged
+        Where the flanks' touch is not found.
+    """
+    positions, phi1 = len(places), pinion_angle(design, places)
     phi2, error = unloaded_motion(design, phi1)
     gear, half = design.face_gear, design.pinion.width / 2
     first = max(gear.inner_radius, design.mean_radius - half)
@@ -153,6 +171,39 @@ def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) ->
             ahead = values["pinion"][first, number] + values["face_gear"][second, number] - gaps.gap[number]
             best[cycle] = np.maximum(best[cycle], ahead.max(axis=(1, 2)))
     return gaps.mean + best
+
+
+def located_range(design: PairDesign, teeth: Mapping[Body, Teeth], errors: Array) -> tuple[float, float]:
+    """Locate the extremes of the unloaded transmission error between even positions.
+
+    Around the positions with the largest and with the smallest values all mesh cycles are looked at again,
+    more closely each time.
+
+    Parameters
+    ----------
+    design, teeth
+        As for unloaded_errors().
+    errors : (cycles, positions)
+        unloaded_errors() at even positions, m.
+
+    Returns
+    -------
+    peak_to_peak, left
+        Largest less smallest value, and by how much the last closer look changed it, m.
+    """
+    cycles, positions = errors.shape
+    peak_to_peak, left = 0.0, 0.0
+    for sign in (1.0, -1.0):
+        values, places, step = (sign * errors).max(axis=0), np.arange(positions) / positions, 1.0 / positions
+        largest = before = float(values.max())
+        for kept in CLOSER_LOOKS:
+            centres = places[np.argsort(values)[-kept:]]
+            places = np.unique((centres[:, None] + step * np.linspace(-1.0, 1.0, LOOKS)).ravel() % 1.0)
+            values = (sign * unloaded_errors(pair_gaps(design, places), teeth, cycles)).max(axis=0)
+            largest, before = max(largest, float(values.max())), largest
+            step *= 2.0 / (LOOKS - 1)
+        peak_to_peak, left = peak_to_peak + largest, left + largest - before
+    return peak_to_peak, left
 
 
 def orders(error: Array, length: int, count: int) -> Array:

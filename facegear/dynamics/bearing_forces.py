@@ -121,9 +121,9 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
     """BEARING_COLUMNS, four rows a body: along x, y, z, and the magnitude of x and y together. Below them the
     same of each bearing of a pinion's shaft, `right input bearing A`.
 
-    static: at rest under the mean torques; peak: the largest magnitude of the samples; interval: 95 %
-    half-width, 0 for a periodic motion. A pinion's x is tangential and y along the gears' axis, both radial
-    for its bearing; a face gear's axis is z.
+    static: at rest under the mean torques; peak: the largest magnitude, located between the samples;
+    interval: 95 % half-width, 0 for a periodic motion. A pinion's x is tangential and y along the gears'
+    axis, both radial for its bearing; a face gear's axis is z.
     """
     machine = model.machine
     history, resting = bearing_history(model, response), static_bearing_forces(at_rest(machine))[None]

@@ -2,6 +2,9 @@
 
 import pandas as pd
 
+from facegear.dynamics.between_samples import located_extremes
+from facegear.dynamics.response_tables import shows_a_period
+
 LAW_LOAD_COLUMNS = (
     *("last_level_n", "smallest_n", "mean_n", "largest_n", "past_fraction"),
     *("sweep_largest_n", "sweep_past_fraction"),
@@ -14,7 +17,8 @@ def law_loads_table(
     """A row a mesh: mesh, flank, and LAW_LOAD_COLUMNS.
 
     - last_level_n: mean force at the last level of the table of the flank that carries the load
-    - smallest_n, mean_n, largest_n: elastic force at the nominal speed, counted on that flank
+    - smallest_n, mean_n, largest_n: elastic force at the nominal speed, counted on that flank; extremes are
+      located between the samples
     - past_fraction: largest fraction of the samples past the last level there
     - sweep_largest_n, sweep_past_fraction: the largest of both over the sweep
 
@@ -23,18 +27,20 @@ def law_loads_table(
     """
     last = levels.groupby(["gear", "flank"])["force_n"].max()
     sides = {name.rpartition("/")[2] for name in response["mesh"]}
-    rows = []
+    rows, whole = [], shows_a_period(response, summary)
     for mesh, forces in response.groupby("mesh", sort=False)["elastic_force_n"]:
         sign = 1.0 if forces.mean() >= 0.0 else -1.0
         side = str(mesh).rpartition("/")[2] if len(sides) > 1 else "upper"
         flank = "drive" if sign > 0.0 else "back"
         carried = sign * forces
+        located = located_extremes(carried.to_numpy()[:, None], whole)
+        smallest, largest = (float(extreme[0]) for extreme in located)
         rows.append(
             (
                 mesh,
                 flank,
                 last[side, flank],
-                *(carried.min(), carried.mean(), carried.max()),
+                *(smallest, carried.mean(), largest),
                 _largest(summary, "past_law_fraction", mesh),
                 _largest(sweep, "largest_elastic_force_n", mesh),
                 _largest(sweep, "past_law_fraction", mesh),

@@ -34,6 +34,15 @@ def response_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
     return pd.concat(frames, ignore_index=True)
 
 
+def shows_a_period(response: pd.DataFrame, summary: pd.DataFrame) -> bool:
+    """Whether the history in the table of the response at one speed is one period of a periodic motion.
+
+    `summary`: the table beside it, whose column `class` names the motion.
+    """
+    cycles = int(response["mesh_cycle"].max()) + 1
+    return bool((summary["class"] == f"period-{cycles}").any())
+
+
 def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float) -> dict[str, float]:
     """Mean loss (W) of each mesh by name, of a machine with friction; `response`: its response_table()."""
     layout, friction = machine.layout, machine.friction

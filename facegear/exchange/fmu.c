@@ -211,6 +211,8 @@ EXPORT Status fmi3DoStep(void *instance, double time, double step, bool unused, 
     Instance *at = instance;
     (void)unused;
     *event = *terminate = *early = false;
+    *last = at->time;
+    if (!(step > 0.0) || !isfinite(time + step) || time + step <= at->time) return ERROR;
     Status status = advance(at, time + step);
     *last = at->time;
     return status;

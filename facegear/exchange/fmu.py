@@ -3,8 +3,9 @@
 import hashlib
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
+from itertools import count
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
@@ -16,6 +17,7 @@ from facegear.dynamics.steady_state.simulate import Model, build_model, static_s
 from facegear.errors import FacegearError
 from facegear.io.atomic import atomic_path
 from facegear.mesh_law.linear import LinearLaw
+from facegear.transmission.flanks import mesh_contacts
 from facegear.transmission.machine import Machine
 
 TOLERANCE = 1e-12
@@ -24,6 +26,11 @@ IDENTIFIER = "facegear_machine"
 UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}, "N.m": {"kg": "1", "m": "2", "s": "-2"}}
 """Units by their exponents of base units; rpm has a factor."""
 LETTERS = "xyz"
+SHOWN_PERIODS, STEPS_PER_PERIOD = 64, 64
+"""Mesh periods and communication steps in each that an importing program is offered as its experiment.
+
+The motion does not depend on them: the FMU integrates with steps of its own.
+"""
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,9 @@ def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
     token = hashlib.sha256(header.encode()).hexdigest()[:32]
     header += f'#define TOKEN "{token}"\n'
     contents = {
-        "modelDescription.xml": _description(_variables(machine, speed_rpm), token),
+        "modelDescription.xml": _description(
+            _variables(machine, speed_rpm), _mesh_period(machine, speed_rpm), token
+        ),
         "sources/buildDescription.xml": _build_description(),
         "sources/fmu.c": (files("facegear.exchange") / "fmu.c").read_text(encoding="utf-8"),
         "sources/model.h": header,
@@ -79,35 +88,61 @@ def _require_plain(model: Model) -> None:
             raise FacegearError(f"an FMU cannot hold {what}: leave it out to export this machine")
 
 
-def _contact_names(machine: Machine) -> list[str]:
-    layout = machine.layout
+def _contacts(machine: Machine) -> list[tuple[str, str]]:
+    """Name of each contact, and where its flank or flanks touch, in the words of a variable's description."""
+    layout, contacts = machine.layout, mesh_contacts(machine)
     if not layout.kinematics.flanks_apart:
-        return [_word(name) for name in layout.mesh_names]
-    return [f"{_word(name)}_{flank}" for flank in ("drive", "back") for name in layout.mesh_names]
-
-
-def _word(name: str) -> str:
-    return re.sub(r"\W+", "_", name)
+        return [
+            (name, f"of the mesh; flanks touch above {upper!r} m and below {lower!r} m")
+            for name, lower, upper in zip(
+                layout.mesh_names, contacts.lower.tolist(), contacts.upper.tolist(), strict=True
+            )
+        ]
+    flanks = [(mesh, flank) for flank in ("drive", "back") for mesh in layout.mesh_names]
+    return [
+        (f"{mesh}_{flank}", f"of the {flank} flank, which touches above {edge!r} m")
+        for (mesh, flank), edge in zip(flanks, contacts.upper.tolist(), strict=True)
+    ]
 
 
 def _variables(machine: Machine, speed_rpm: float) -> list[Variable]:
     """All variables but the time, in the order of their references, which begin at 1."""
     bodies = machine.layout.body_names
-    contacts = _contact_names(machine)
-    return [
+    contacts = _contacts(machine)
+    variables = [
         Variable("speed", "Speed of the pinions", "rpm", speed_rpm),
         *(
-            Variable(f"torque_{_word(body)}", f"Torque on {body}", "N.m", float(torque))
+            Variable(f"torque_{body}", f"Torque on {body}", "N.m", float(torque))
             for body, torque in zip(bodies, machine.torques, strict=True)
         ),
-        *(Variable(f"deflection_{name}", "Deflection along the line of action", "m") for name in contacts),
-        *(Variable(f"force_{name}", "Elastic force along the line of action", "N") for name in contacts),
+        *(Variable(f"deflection_{name}", f"Deflection {edges}", "m") for name, edges in contacts),
+        *(Variable(f"force_{name}", "Elastic force along the line of action", "N") for name, _ in contacts),
         *(
-            Variable(f"bearing_{_word(body)}_{letter}", f"Force of {body} on its bearing along {letter}", "N")
+            Variable(f"bearing_{body}_{letter}", f"Force of {body} on its bearing along {letter}", "N")
             for body in bodies
             for letter in LETTERS
         ),
     ]
+    names = unique_words([variable.name for variable in variables])
+    return [replace(variable, name=name) for variable, name in zip(variables, names, strict=True)]
+
+
+def unique_words(names: Sequence[str]) -> list[str]:
+    """Return each name with `_` for all but letters and digits; words that become equal are numbered.
+
+    FMI asks for unique names of variables. The first of equal words stays as it is; the others end in the
+    smallest number from 2 on that no other variable has.
+    """
+    words = [re.sub(r"\W+", "_", name) for name in names]
+    taken = set(words)
+    numbered_words: list[str] = []
+    for word in words:
+        unique = word
+        if word in numbered_words:
+            unique = next(candidate for n in count(2) if (candidate := f"{word}_{n}") not in taken)
+            taken.add(unique)
+        numbered_words.append(unique)
+    return numbered_words
 
 
 def _header(model: Model, speed_rpm: float) -> str:
@@ -169,7 +204,12 @@ def _c_values(values: Array) -> str:
     return "{" + ", ".join(_c_values(part) for part in values) + "}"
 
 
-def _description(variables: Sequence[Variable], token: str) -> str:
+def _mesh_period(machine: Machine, speed_rpm: float) -> float:
+    """Time (s) in which a pinion turns by one pitch."""
+    return 60.0 / (machine.layout.pinion_teeth * speed_rpm)
+
+
+def _description(variables: Sequence[Variable], mesh_period: float, token: str) -> str:
     root = Xml.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -186,6 +226,13 @@ def _description(variables: Sequence[Variable], token: str) -> str:
         Xml.SubElement(Xml.SubElement(units, "Unit", name=name), "BaseUnit", exponents)
     rpm = {"s": "-1", "rad": "1", "factor": repr(np.pi / 30)}
     Xml.SubElement(Xml.SubElement(units, "Unit", name="rpm"), "BaseUnit", rpm)
+    experiment = {
+        "startTime": 0.0,
+        "stopTime": SHOWN_PERIODS * mesh_period,
+        "tolerance": TOLERANCE,
+        "stepSize": mesh_period / STEPS_PER_PERIOD,
+    }
+    Xml.SubElement(root, "DefaultExperiment", {key: repr(value) for key, value in experiment.items()})
     listed = Xml.SubElement(root, "ModelVariables")
     Xml.SubElement(
         listed, "Float64", name="time", valueReference="0", causality="independent", variability="continuous"

@@ -5,6 +5,7 @@ REXS has no face gear: what is lost stands in LOST, and in a comment of every fi
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isfinite, nan
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
@@ -122,23 +123,43 @@ def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -
 def read_rexs(path: str | Path) -> Unit:
     """The gear unit of a file, whoever wrote it: every shaft, with its first cylindrical gear and bearing.
 
-    Raises FacegearError for what is no REXS file, and for a gear without number of teeth or module.
+    Raises FacegearError for what is no REXS file, for an attribute that is no number, for a part that a
+    relation names and that is not there, and for a gear without number of teeth or module.
     """
     try:
         root = Xml.parse(path).getroot()
-    except (OSError, Xml.ParseError) as error:
+    except (OSError, ValueError, LookupError, Xml.ParseError) as error:
         raise FacegearError(f"{path}: not a readable REXS file ({error})") from None
     if root.tag != "model":
         raise FacegearError(f"{path}: a REXS file begins with model, not {root.tag}")
-    parts = {part.attrib["id"]: part for part in root.iter("component")}
+    try:
+        return _unit(root)
+    except _Fault as fault:
+        raise FacegearError(f"{path}: {fault}") from None
+
+
+class _Fault(Exception):
+    """Why a REXS file cannot be used, in one line without its name."""
+
+
+def _unit(root: Xml.Element) -> Unit:
+    parts = {_attribute(part, "id"): part for part in root.iter("component")}
+    for part in parts.values():
+        _attribute(part, "type")
     relations = [
         (
-            relation.attrib["type"],
-            {member.attrib["role"]: member.attrib["id"] for member in relation.iter("ref")},
+            _attribute(relation, "type"),
+            {_attribute(member, "role"): _attribute(member, "id") for member in relation.iter("ref")},
         )
         for relation in root.iter("relation")
     ]
-    shafts = [_shaft(path, number, parts, relations) for number in _of_kind(parts, "shaft")]
+    for kind, members in relations:
+        for number in members.values():
+            if number not in parts:
+                raise _Fault(
+                    f"a relation of type {kind[:40]!r} names component {number[:40]!r}, which is absent"
+                )
+    shafts = [_shaft(number, parts, relations) for number in _of_kind(parts, "shaft")]
     material = next((parts[number] for number in _of_kind(parts, "material")), None)
     young, poisson = (_value(material, key) for key in ("elastic_modulus", "poisson_ratio"))
     return Unit(tuple(shafts), young, poisson)
@@ -152,15 +173,25 @@ def _of_kind(parts: Parts, *types: str) -> Iterable[str]:
     return (number for number, part in parts.items() if part.attrib["type"] in types)
 
 
-def _shaft(path: str | Path, number: str, parts: Parts, relations: Relations) -> Shaft:
+def _attribute(element: Xml.Element, name: str) -> str:
+    """An attribute that every element of its kind must have."""
+    if name not in element.attrib:
+        known = ", ".join(f"{key}={value[:40]!r}" for key, value in element.attrib.items()) or "no attribute"
+        raise _Fault(f"an element {element.tag} ({known}) has no attribute {name}")
+    return element.attrib[name]
+
+
+def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
     gears = [
         members["part"]
         for kind, members in relations
-        if kind == "assembly" and members.get("assembly") == number
+        if kind == "assembly" and members.get("assembly") == number and "part" in members
     ]
     teeth = next((gear for gear in gears if parts[gear].attrib["type"] == "cylindrical_gear"), None)
     held = [
-        members["assembly"] for kind, members in relations if kind == "side" and number in members.values()
+        members["assembly"]
+        for kind, members in relations
+        if kind == "side" and number in members.values() and "assembly" in members
     ]
     bearing = next(
         (parts[member] for member in held if parts[member].attrib["type"] == "concept_bearing"), None
@@ -170,14 +201,16 @@ def _shaft(path: str | Path, number: str, parts: Parts, relations: Relations) ->
         mass=_value(parts[number], "mass_of_component"),
         radial=_value(bearing, "radial_stiffness"),
         axial=_value(bearing, "axial_stiffness"),
-        spur=None if teeth is None else _spur(path, teeth, parts, relations),
+        spur=None if teeth is None else _spur(teeth, parts, relations),
     )
 
 
-def _spur(path: str | Path, gear: str, parts: Parts, relations: Relations) -> Spur:
+def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
     count, module = (_value(parts[gear], key) for key in ("number_of_teeth", "normal_module"))
     if count is None or module is None:
-        raise FacegearError(f"{path}: gear {gear} has no number of teeth or no normal module")
+        raise _Fault(f"gear {gear} has no number of teeth or no normal module")
+    if count != round(count):
+        raise _Fault(f"gear {gear}: number_of_teeth = {count:g}: must be a whole number")
     flanks = [
         number
         for kind, members in relations
@@ -196,6 +229,15 @@ def _spur(path: str | Path, gear: str, parts: Parts, relations: Relations) -> Sp
 
 
 def _value(part: Xml.Element | None, key: str) -> float | None:
-    """A number of a component; None where it is not given."""
+    """A finite number of a component; None where it is not given."""
     text = None if part is None else part.findtext(f"attribute[@id='{key}']")
-    return float(text) if text and text.strip() else None
+    if part is None or text is None or not text.strip():
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = nan
+    if not isfinite(value):
+        name = part.attrib["id"]
+        raise _Fault(f"component {name}: {key} = {text.strip()[:40]!r}: must be a finite number")
+    return value

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.errors import extras_named
 from facegear.gear_body.compliance import (
     mean_compliance,
     modal_compliance,
@@ -18,9 +17,6 @@ from facegear.gear_body.mesh import BodyMesh, body_mesh
 from facegear.gear_body.modes import FIRST_TRY, OrderModes, held_solver, order_modes
 from facegear.gear_body.patch import Patch
 from facegear.gear_body.section import Section
-
-with extras_named():
-    from threadpoolctl import threadpool_limits
 
 STATIC_ORDERS = 60
 """Orders that a local load is made of; those above add 2e-4 of a mesh's own compliance."""
@@ -80,11 +76,7 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
     for a section that cannot be meshed, NotConverged.
     """
     last_static = min(STATIC_ORDERS, (teeth - 1) // 2)
-    with threadpool_limits(1):
-        return _solved(section, max_frequency, min(last_order, last_static), last_static)
-
-
-def _solved(section: Section, max_frequency: float, last_order: int, last_static: int) -> SolvedBody:
+    last_order = min(last_order, last_static)
     mesh = body_mesh(section)
     body = body_matrices(section, mesh)
     modes: list[OrderModes] = []

@@ -7,13 +7,10 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from facegear.arrays import Array
-from facegear.errors import NotConverged, extras_named
+from facegear.errors import NotConverged
 from facegear.gear_body.elements import V
 from facegear.gear_body.factor import Solve, solver
 from facegear.gear_body.matrices import BodyMatrices, around, rigid_motions
-
-with extras_named():
-    from threadpoolctl import threadpool_limits
 
 FIRST_TRY = 6
 """Modes of an order that are looked for at first."""
@@ -129,8 +126,7 @@ def _smallest(
     operator = LinearOperator(stiffness.shape, matvec=inverse, dtype=float)
     start = np.ones(stiffness.shape[0])
     try:
-        with threadpool_limits(1):
-            squared, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-11)
+        squared, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-11)
     except ArpackNoConvergence as error:
         raise NotConverged(
             "gear body", f"order {order}", f"{len(error.eigenvalues)} of {count} modes"

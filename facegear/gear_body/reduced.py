@@ -31,7 +31,9 @@ class ReducedBody:
     static : (orders, 2, 2)
         Compliance H_n below a mesh of W_p and V_p with all modes there are, m/N, from order 0.
     damping_ratio : ()
-        Of every mode, in the steel.
+        Part of the critical damping that every mode has, in the steel.
+    stiffness_damping : ()
+        Factor beta of the stiffness in the damping D = beta K of the steel, s, beside the former.
     pitch_height : ()
         Of the pitch plane over height 0, m.
     slope : (m,)
@@ -57,11 +59,13 @@ class ReducedBody:
     leaning: Array = field(default_factory=lambda: np.zeros(()))
     mass: Array = field(default_factory=lambda: np.zeros(()))
     moment: Array = field(default_factory=lambda: np.zeros(()))
+    stiffness_damping: Array = field(default_factory=lambda: np.zeros(()))
 
     @property
     def damping(self) -> Array:
-        """Damping of every mode for unit modal mass, (m,), 1/s."""
-        return np.asarray(4.0 * np.pi * self.damping_ratio * self.frequency)
+        """Damping of every mode for unit modal mass, 2 zeta w + beta w^2, (m,), 1/s."""
+        w = 2.0 * np.pi * self.frequency
+        return np.asarray(2.0 * self.damping_ratio * w + self.stiffness_damping * w**2)
 
     @property
     def slopes(self) -> Array:
@@ -98,9 +102,14 @@ class ReducedBody:
         """All of it by names that begin with the gear's."""
         return {f"{gear}_{own.name}": getattr(self, own.name) for own in fields(self)}
 
-    def own_residual(self, direction: Array) -> float:
-        """What a flank gives way under its own force beyond the modes, m/N; direction (2,) of the force.
+    def residual_of_flanks(self, directions: Array) -> Array:
+        """Return the compliance (f, f) between flanks of one mesh that the modes leave out, m/N.
+
+        Parameters
+        ----------
+        directions : (f, 2)
+            Axial and tangential part of a unit force on each flank.
 
         Motions along the axis and round it are a quarter wave apart, so that they do not mix.
         """
-        return float(direction**2 @ np.diagonal(self.residual.sum(axis=0)))
+        return np.asarray((directions * np.diagonal(self.residual.sum(axis=0))) @ directions.T)

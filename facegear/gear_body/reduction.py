@@ -10,8 +10,13 @@ from facegear.gear_body.reduced import ReducedBody
 from facegear.gear_body.section import section_properties
 
 
-def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> ReducedBody:
-    """The modes of a body, and its static compliance below a mesh."""
+def reduced_body(
+    body: SolvedBody, patch: Patch, damping_ratio: float, stiffness_damping: float = 0.0
+) -> ReducedBody:
+    """Return the modes of a body and its static compliance below a mesh.
+
+    damping_ratio: part of the critical damping of every mode; stiffness_damping: beta (s) of D = beta K.
+    """
     orders = body.orders
     order = np.concatenate([np.full(modes.frequencies.size, modes.order) for modes in orders])
     zero = orders[0]
@@ -32,6 +37,7 @@ def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> Reduce
         leaning=body.leaning(patch),
         mass=np.array(mass),
         moment=np.array(moment),
+        stiffness_damping=np.array(stiffness_damping),
     )
 
 

@@ -1,4 +1,4 @@
-"""The section of a gear body out of a STEP file: a solid of revolution or its half section."""
+"""Section of a gear body from a STEP file: a solid of revolution or its half section."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -36,10 +36,11 @@ class StepFault(Exception):
 
 
 def read_section(path: str | Path) -> list[tuple[float, float]]:
-    """Corners (r, z) in mm of the body in a STEP file, anticlockwise from the one nearest to the axis.
+    """Return the corners (r, z) in mm of the body in a STEP file, anticlockwise from the innermost one.
 
-    The axis is that of z through the origin. The file names its own unit. Curves become straight edges within
-    CHORD. Raises StepFault for anything but one solid of revolution or one face at y = 0, x > 0, with a bore.
+    The axis is that of z through the origin. A half section may lie in any half plane through it: r is the
+    distance from the axis. The file names its own unit. Curves become straight edges within CHORD. Raises
+    StepFault for anything but one solid of revolution or one face in such a half plane, with a bore.
     """
     _require_file(Path(path))
     with gmsh_session("section"):

@@ -9,7 +9,7 @@ from facegear.arrays import Array
 from facegear.gear_body.body import SolvedBody
 from facegear.gear_body.compliance import flank_direction, influence
 from facegear.gear_body.excitation import HARMONICS, phase_factors
-from facegear.gear_body.modes import resonant_speeds, wave_frequencies
+from facegear.gear_body.modes import OrderModes, resonant_speeds, wave_frequencies
 from facegear.gear_body.patch import Patch
 from facegear.gear_body.section import section_properties
 
@@ -17,18 +17,23 @@ RPM = 30.0 / np.pi
 DRAWN_MODES = 2
 """Modes of each order whose shapes are stored."""
 DRAWN_ORDERS = 7
+COUPLINGS = ("hub_axial_sqrt_kg", "hub_spin_sqrt_kg_m", "hub_sideways_sqrt_kg", "hub_tilt_sqrt_kg_m")
+"""Columns of Q with the hub's motion along the axis, round it, sideways, and tilting about a diameter at
+height 0."""
 
 
 def body_table(
     gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array
 ) -> pd.DataFrame:
     """One row: mass (kg) and inertia (kg m2) of the section, coordinates that its modes make, own compliance
-    along the line of action (m/N), the part of it that the modes hold, the largest compliance between two
-    flanks at angles (n,) rad that they do not hold (m/N), and the largest relative change of a frequency from
-    a coarser mesh.
+    along the line of action (m/N), the part of it that the modes hold, compliances that they leave out (m/N,
+    magnitudes): between the drive and the back flank of one mesh, and the largest one between flanks of two
+    meshes at angles (n,) rad, NaN for a single mesh; and the largest relative change of a frequency from a
+    coarser mesh.
     """
     mass, polar, diametral, _ = section_properties(body.section)
-    drive = flank_direction(pressure_angle)
+    drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
+    missing = body.static(patch) - body.modal(patch)
     whole = influence(body.static(patch), 0.0, drive, drive)
     changes = np.concatenate([*body.changes, np.zeros(1)])
     waves = sum(modes.frequencies.size * (2 if modes.order else 1) for modes in body.orders)
@@ -42,24 +47,36 @@ def body_table(
             "coordinates": [waves],
             "own_compliance_m_per_n": [whole],
             "modal_fraction": [influence(body.modal(patch), 0.0, drive, drive) / whole],
-            "left_out_between_m_per_n": [_left_out(body, patch, pressure_angle, angles)],
+            "left_out_between_flanks_m_per_n": [abs(influence(missing, 0.0, drive, back))],
+            "left_out_between_meshes_m_per_n": [_left_out(missing, drive, back, angles)],
             "frequency_change": [float(changes.max())],
         }
     )
 
 
-def _left_out(body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array) -> float:
-    """Largest influence between two flanks, of one mesh or of two, that the modes do not hold, m/N."""
-    missing = body.static(patch) - body.modal(patch)
-    drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
+def _left_out(missing: Array, drive: Array, back: Array, angles: Array) -> float:
+    """Return the largest influence (m/N) between flanks of two meshes by compliances (orders, 2, 2).
+
+    drive, back (2,): directions of a force on either flank; angles (n,) of the meshes, rad.
+    """
     apart = (angles[:, None] - angles)[~np.eye(angles.size, dtype=bool)]
-    pairs = [(0.0, back), *((angle, other) for angle in apart.tolist() for other in (drive, back))]
-    return max(abs(influence(missing, angle, drive, other)) for angle, other in pairs)
+    pairs = [(angle, other) for angle in apart.tolist() for other in (drive, back)]
+    return max((abs(influence(missing, angle, drive, other)) for angle, other in pairs), default=np.nan)
 
 
-def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: float) -> pd.DataFrame:
+def mode_table(
+    gear: str,
+    body: SolvedBody,
+    speed: float,
+    teeth: int,
+    ratio: float,
+    damping: tuple[float, float] = (0.0, 0.0),
+) -> pd.DataFrame:
     """One row a mode, hub held: frequencies in Hz at rest and of waves in space at the body's speed (rad/s),
     and speeds of the pinions (rpm, `ratio` times the body's) at which the mesh frequency meets each wave.
+
+    Coefficients of a mode of unit modal mass are c (gyroscopic_factor), B (stiffening_factor), the damping
+    ratio and the four Q (COUPLINGS). damping: ratio of every mode, and beta (s) of D = beta K.
     """
     parts = []
     for modes, changes in zip(body.orders, body.changes, strict=True):
@@ -75,6 +92,8 @@ def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: flo
                     "round_fraction": modes.torsional,
                     "gyroscopic_factor": modes.gyroscopic_factors,
                     "stiffening_factor": modes.stiffening_factors,
+                    "damping_ratio": damping[0] + np.pi * damping[1] * modes.frequencies,
+                    **hub_couplings(modes),
                     "speed_rpm": ratio * RPM * speed,
                     "forward_hz": forward,
                     "backward_hz": backward,
@@ -85,6 +104,20 @@ def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: flo
             )
         )
     return pd.concat(parts, ignore_index=True)
+
+
+def hub_couplings(modes: OrderModes) -> dict[str, Array]:
+    """Return Q of every mode (m,) by COUPLINGS: mass between the mode and a motion of the hub.
+
+    Q = int rho X . R over the body, X the shape for unit modal mass and R the body moved as a rigid whole by
+    1 m or 1 rad. Modes of two nodal diameters and more have none.
+    """
+    couplings = np.zeros((4, modes.frequencies.size))
+    if modes.order == 0:
+        couplings[:2] = modes.hub
+    elif modes.order == 1:
+        couplings[2:] = modes.hub
+    return dict(zip(COUPLINGS, couplings, strict=True))
 
 
 def crossing_table(

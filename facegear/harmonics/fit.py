@@ -43,14 +43,14 @@ def fit_harmonics(samples: Array) -> Fit:
     angle = 2.0 * np.pi * np.arange(samples.size) / samples.size
     truncation, rest = np.empty(series.order + 1), samples.copy()
     for h in range(series.order + 1):
-        rest -= series.a[h] * np.sin(h * angle) + series.b[h] * np.cos(h * angle)
+        rest -= series.sine[h] * np.sin(h * angle) + series.cosine[h] * np.cos(h * angle)
         truncation[h] = np.abs(rest).max()
     halves = [_transform(samples[start::2]) for start in (0, 1)] if samples.size >= 8 else []
     sampling = np.full(series.order + 1, np.nan)
     for half, shift in zip(halves, (0.0, 1.0 / samples.size), strict=False):
         moved = half.shifted(shift)
         count = half.order + 1
-        change = np.hypot(moved.a - series.a[:count], moved.b - series.b[:count])
+        change = np.hypot(moved.sine - series.sine[:count], moved.cosine - series.cosine[:count])
         sampling[:count] = np.fmax(sampling[:count], change)
     return Fit(series, truncation, sampling, float(np.ptp(samples)))
 

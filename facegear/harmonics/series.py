@@ -12,73 +12,76 @@ from facegear.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Harmonics:
-    """k(t) = sum_j a[j] sin(j w t) + b[j] cos(j w t), equation (8) of the paper; w is the mesh frequency.
+    """k(t) = sum_j sine[j] sin(j w t) + cosine[j] cos(j w t); w is the mesh frequency.
 
-    `a` and `b` have shape (H+1,) and the unit N/m. a[0] is zero and b[0] is the mean.
+    Both have shape (H+1,) and the unit N/m. sine[0] is zero and cosine[0] is the mean. Equation (8) of the
+    paper calls them a and b; most texts call the cosine a.
     """
 
-    a: Array
-    b: Array
+    sine: Array
+    cosine: Array
 
     def __post_init__(self) -> None:
-        a = np.array(self.a, dtype=float)
-        b = np.array(self.b, dtype=float)
-        if a.ndim != 1 or a.shape != b.shape or a.size == 0:
-            raise ValueError(f"a and b must have one shape (H+1,), not {a.shape} and {b.shape}")
-        if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        sine = np.array(self.sine, dtype=float)
+        cosine = np.array(self.cosine, dtype=float)
+        if sine.ndim != 1 or sine.shape != cosine.shape or sine.size == 0:
+            raise ValueError(
+                f"sine and cosine must have one shape (H+1,), not {sine.shape} and {cosine.shape}"
+            )
+        if not (np.isfinite(sine).all() and np.isfinite(cosine).all()):
             raise ValueError("harmonics must be finite")
-        if a[0] != 0.0:
-            raise ValueError(f"a[0] multiplies sin(0) and must be 0, not {a[0]}")
-        a.flags.writeable = False
-        b.flags.writeable = False
-        object.__setattr__(self, "a", a)
-        object.__setattr__(self, "b", b)
+        if sine[0] != 0.0:
+            raise ValueError(f"sine[0] multiplies sin(0) and must be 0, not {sine[0]}")
+        sine.flags.writeable = False
+        cosine.flags.writeable = False
+        object.__setattr__(self, "sine", sine)
+        object.__setattr__(self, "cosine", cosine)
 
     @property
     def order(self) -> int:
         """Largest order H."""
-        return self.a.size - 1
+        return self.sine.size - 1
 
     @property
     def mean(self) -> float:
-        """Mean stiffness b[0], N/m."""
-        return float(self.b[0])
+        """Mean stiffness cosine[0], N/m."""
+        return float(self.cosine[0])
 
     @cached_property
     def minimum(self) -> float:
         """Smallest value at 64 (H+1) even points of a period, N/m."""
         points = 64 * (self.order + 1)
-        halves = 0.5 * (self.b - 1j * self.a)
-        halves[0] = self.b[0]
+        halves = 0.5 * (self.cosine - 1j * self.sine)
+        halves[0] = self.cosine[0]
         return float(np.fft.irfft(points * halves, points).min())
 
     @cached_property
     def amplitudes(self) -> Array:
         """Amplitude of each order, shape (H+1,), N/m, read-only; the first entry is the mean."""
-        sizes = np.hypot(self.a, self.b)
+        sizes = np.hypot(self.sine, self.cosine)
         sizes.flags.writeable = False
         return sizes
 
     def __call__(self, cycles: ArrayLike) -> Array:
         """Stiffness at `cycles` = w t / 2 pi (mesh periods since the start), any shape, N/m."""
         angle = 2.0 * np.pi * np.multiply.outer(np.asarray(cycles, dtype=float), np.arange(self.order + 1))
-        return np.sin(angle) @ self.a + np.cos(angle) @ self.b
+        return np.sin(angle) @ self.sine + np.cos(angle) @ self.cosine
 
     def shifted(self, cycles: float) -> "Harmonics":
         """The series of k(t - cycles T)."""
         angle = 2.0 * np.pi * cycles * np.arange(self.order + 1)
         cos, sin = np.cos(angle), np.sin(angle)
-        a = self.a * cos + self.b * sin
-        a[0] = 0.0
-        return Harmonics(a, self.b * cos - self.a * sin)
+        sine = self.sine * cos + self.cosine * sin
+        sine[0] = 0.0
+        return Harmonics(sine, self.cosine * cos - self.sine * sin)
 
     def kept(self, order: int) -> "Harmonics":
         """The series cut after `order`."""
-        return Harmonics(self.a[: order + 1], self.b[: order + 1])
+        return Harmonics(self.sine[: order + 1], self.cosine[: order + 1])
 
     def scaled(self, factor: float) -> "Harmonics":
         """The series times `factor`."""
-        return Harmonics(self.a * factor, self.b * factor)
+        return Harmonics(self.sine * factor, self.cosine * factor)
 
     def softened(self, compliance: float) -> "Harmonics":
         """The series of 1 / (1 / k + compliance) up to the same order; compliance in m/N."""
@@ -86,22 +89,22 @@ class Harmonics:
         stiff = self(np.arange(points) / points)
         spectrum = np.fft.rfft(stiff / (1.0 + compliance * stiff))[: self.order + 1] / points
         spectrum[1:] *= 2.0
-        a = -spectrum.imag
-        a[0] = 0.0
-        return Harmonics(a, spectrum.real)
+        sine = -spectrum.imag
+        sine[0] = 0.0
+        return Harmonics(sine, spectrum.real)
 
     def varied(self, factor: float) -> "Harmonics":
         """The series with the same mean and `factor` times its variation about it."""
-        b = self.b * factor
-        b[0] = self.b[0]
-        return Harmonics(self.a * factor, b)
+        cosine = self.cosine * factor
+        cosine[0] = self.cosine[0]
+        return Harmonics(self.sine * factor, cosine)
 
 
 def stacked(series: Sequence[Harmonics]) -> Array:
     """Fourier series as rows (series, 2, harmonics + 1), sine part first, padded to the longest."""
     rows = np.zeros((len(series), 2, max(harmonics.order for harmonics in series) + 1))
     for row, harmonics in zip(rows, series, strict=True):
-        row[0, : harmonics.order + 1], row[1, : harmonics.order + 1] = harmonics.a, harmonics.b
+        row[0, : harmonics.order + 1], row[1, : harmonics.order + 1] = harmonics.sine, harmonics.cosine
     return rows
 
 

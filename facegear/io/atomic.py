@@ -1,9 +1,10 @@
-"""Files appear whole or not at all."""
+"""Files appear whole or not at all, and folders that cannot be written are refused in one line."""
 
 import errno
 import os
+import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from facegear.errors import FacegearError
@@ -16,10 +17,11 @@ NO_SPACE_HINT = "no space left on the disk; free some and run again"
 def atomic_path(path: str | Path) -> Iterator[Path]:
     """Yield a temporary path in the folder of `path` (same suffix) and rename it at the end.
 
-    Raises FacegearError with one line if the disk is full; the temporary file is removed on any error.
+    Raises FacegearError with one line if the disk is full or the path cannot be written; the temporary file
+    is removed on any error.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    _make(path.parent)
     temporary = path.with_name(f".{os.getpid()}.{path.name}")
     try:
         yield temporary
@@ -29,6 +31,47 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     except OSError as error:
         if error.errno in NO_SPACE:
             raise FacegearError(f"{path}: {NO_SPACE_HINT}") from None
+        if error.filename is not None and Path(os.fsdecode(error.filename)) == temporary:
+            raise FacegearError(f"{path}: {_cannot_be_written(error)}") from None
         raise
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def require_writable(folder: str | Path) -> None:
+    """Make a folder and check that files can be made in it, before work is done whose result goes there.
+
+    Raises FacegearError with one line where that is not possible.
+    """
+    folder = Path(folder)
+    _make(folder)
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise FacegearError(f"{folder}: {_cannot_be_written(error)}") from None
+
+
+def require_writable_file(path: str | Path) -> None:
+    """Check before work is done that its result can become a file. Raises FacegearError with one line."""
+    path = Path(path)
+    require_writable(path.parent)
+    if path.is_dir():
+        raise FacegearError(f"{path}: is a folder, not a file; give another name")
+
+
+def _make(folder: Path) -> None:
+    """Make a folder. Raises FacegearError with one line where a file stands in its way or it may not be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError):
+        file = next((above for above in (folder, *folder.parents) if above.is_file()), folder)
+        raise FacegearError(f"{file}: is a file, not a folder; move it, or choose another folder") from None
+    except OSError as error:
+        raise FacegearError(f"{folder}: {_cannot_be_written(error)}") from None
+
+
+def _cannot_be_written(error: OSError) -> str:
+    reason = NO_SPACE_HINT if error.errno in NO_SPACE else (error.strerror or str(error)).lower()
+    return f"cannot be written ({reason})"

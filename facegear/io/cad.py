@@ -1,6 +1,7 @@
 """Write solids made of patches: STEP (B-spline surfaces through every point) and STL (triangles)."""
 
 import os
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -21,6 +22,8 @@ with extras_named():
 DEGREE = 3
 NANOMETRES = 6
 """Decimals of a coordinate in mm that a triangle's corners are rounded to, so that equal ones are equal."""
+PRODUCT = re.compile(r"\bPRODUCT\(\s*'(?:[^']|'')*'\s*,\s*'(?:[^']|'')*'")
+"""A product's identifier and name in a STEP file (ISO 10303-21), which OpenCASCADE fills with its own."""
 SEWN = 1e-6
 """Largest gap in mm that is sewn up; patches meet to rounding."""
 
@@ -36,13 +39,15 @@ def write_stl(path: str | Path, corners: Array) -> None:
 
 
 def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
-    """One solid in mm, sewn of a bicubic B-spline through each patch (n, m, 3) in m.
+    """Write one solid in mm, sewn of a bicubic B-spline through each patch (n, m, 3) in m.
 
-    Returns its volume in m3 as OpenCASCADE integrates it, to about 2e-5. Raises NotConverged if the patches
-    do not close.
+    The solid is the file's only product and has the name `name`, ASCII without apostrophes. Returns its
+    volume in m3 as OpenCASCADE integrates it, to about 2e-5. Raises NotConverged if the patches do not close.
     """
     with gmsh_session(name):
         gmsh.option.setNumber("Geometry.ToleranceBoolean", SEWN)
+        gmsh.option.setString("Geometry.OCCSTEPModelName", name)
+        gmsh.option.setString("Geometry.OCCSTEPOriginatingSystem", "facegear")
         tags = [_surface(1e3 * patch) for patch in patches]
         loop = gmsh.model.occ.addSurfaceLoop(tags, sewing=True)
         solid = gmsh.model.occ.addVolume([loop])
@@ -52,9 +57,19 @@ def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
         sides = [len(gmsh.model.getAdjacencies(1, edge)[0]) for _, edge in gmsh.model.getEntities(1)]
         if set(sides) != {2}:
             raise NotConverged("STEP", name, f"{len(patches)} patches do not close")
-        with atomic_path(path) as temporary, _silent():
-            gmsh.write(str(temporary))
+        with atomic_path(path) as temporary:
+            with _silent():
+                gmsh.write(str(temporary))
+            named, count = _with_product(temporary.read_text(encoding="ascii"), name)
+            if count != 1:
+                raise NotConverged("STEP", name, f"{count} products in place of one solid")
+            temporary.write_text(named, encoding="ascii")
         return volume
+
+
+def _with_product(content: str, name: str) -> tuple[str, int]:
+    """Return a STEP file whose products have a name, and their number."""
+    return PRODUCT.subn(lambda _: f"PRODUCT('{name}','{name}'", content)
 
 
 @contextmanager
@@ -83,7 +98,7 @@ def _surface(points: Array) -> int:
         degrees.append(degree)
     tags = [gmsh.model.occ.addPoint(*pole) for pole in poles.transpose(1, 0, 2).reshape(-1, 3)]
     (knots_u, times_u), (knots_v, times_v) = knots
-    return gmsh.model.occ.addBSplineSurface(
+    surface = gmsh.model.occ.addBSplineSurface(
         tags,
         poles.shape[0],
         degreeU=degrees[0],
@@ -93,3 +108,5 @@ def _surface(points: Array) -> int:
         multiplicitiesU=times_u,
         multiplicitiesV=times_v,
     )
+    gmsh.model.occ.remove([(0, tag) for tag in tags])  # poles are no points of the solid
+    return surface

@@ -43,8 +43,15 @@ def verify(path: str | Path) -> None:
     Raises CorruptFile where size or checksum differ, or the file is missing.
     """
     path = Path(path)
-    if not path.is_file():
-        raise CorruptFile(path, "the file is missing")
+    try:
+        with open(path, "rb"):
+            pass
+    except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
+        raise CorruptFile(path, "the file is missing") from None
+    except OSError as error:
+        raise CorruptFile(
+            path, f"the file cannot be read ({(error.strerror or str(error)).lower()})"
+        ) from None
     for manifest in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
         try:
             document = json.loads(manifest.read_text(encoding="utf-8"))

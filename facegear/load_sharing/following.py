@@ -1,10 +1,13 @@
 """Load sharing of the running machine while its runouts turn, beside the quasi-static one."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
 
+from facegear.arrays import Array
+from facegear.dynamics.between_samples import located_extremes
 from facegear.dynamics.following import Followed, follow
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model
@@ -22,6 +25,11 @@ class Running(LoadHistory):
     speed_rpm: float
     lead: int
     memory: float
+
+    @cached_property
+    def largest_loads(self) -> Array:
+        """Largest load of each mesh (meshes,), N, located between the positions."""
+        return located_extremes(self.loads, False)[1]
 
 
 def running(
@@ -45,6 +53,12 @@ def running_mesh_table(moving: Running) -> pd.DataFrame:
     table = mesh_table(moving)
     table.insert(table.columns.get_loc("k_gamma") + 1, "k_v", moving.dynamic_factors)
     return table
+
+
+RUNNING_COLUMNS = (
+    *("group", "kind", "speed_rpm", "mesh_cycles", "mean", "torque_n_m", "k_gamma", "k_v"),
+    *("k_gamma_static", "k_gamma_static_whole", "cut", "sampling", "lead_cycles", "memory"),
+)
 
 
 def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
@@ -84,7 +98,7 @@ def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
                 "memory": moving.memory,
             }
         )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=list(RUNNING_COLUMNS))
 
 
 def _dynamic_factor(moving: LoadHistory, group: LoadGroup) -> float:

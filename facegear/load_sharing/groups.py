@@ -9,12 +9,13 @@ from facegear.transmission.layout import Layout, Role, Side
 class GroupKind(StrEnum):
     """`inputs`: the meshes of one input pinion, equation (25); `idlers`: one gear's idlers, equation (26).
 
-    `drivers`: all input pinions on the only face gear, where a pinion has no second mesh to share with.
+    `independent`: pinions on the only face gear. The torque of each sets the load of its mesh, so that they
+    split nothing and have no load-sharing coefficient.
     """
 
     INPUTS = "inputs"
     IDLERS = "idlers"
-    DRIVERS = "drivers"
+    INDEPENDENT = "independent"
 
 
 @dataclass(frozen=True)
@@ -25,9 +26,19 @@ class LoadGroup:
     kind: GroupKind
     meshes: tuple[int, ...]
 
+    @property
+    def splits_load(self) -> bool:
+        """Whether the machine splits a load among the meshes, so that a load-sharing coefficient exists."""
+        return self.kind is not GroupKind.INDEPENDENT
+
+
+def split_groups(layout: Layout) -> tuple[LoadGroup, ...]:
+    """Return the groups among whose meshes the machine splits a load."""
+    return tuple(group for group in load_groups(layout) if group.splits_load)
+
 
 def load_groups(layout: Layout) -> tuple[LoadGroup, ...]:
-    """The groups of a layout with at least two meshes each; the tail pinion counts as an idler."""
+    """Return the groups of a layout with at least two meshes each; the tail pinion counts as an idler."""
     of_role: dict[bool, list[int]] = {True: [], False: []}
     for i, pinion in enumerate(layout.pinions):
         of_role[pinion.role is Role.INPUT].append(i)
@@ -39,8 +50,9 @@ def load_groups(layout: Layout) -> tuple[LoadGroup, ...]:
             groups.append(LoadGroup(layout.pinions[i].name, GroupKind.INPUTS, meshes))
     else:
         meshes = tuple(layout.mesh_index(i, sides[0]) for i in of_role[True])
-        groups.append(LoadGroup("inputs", GroupKind.DRIVERS, meshes))
+        groups.append(LoadGroup("inputs", GroupKind.INDEPENDENT, meshes))
     idler_side = Side.LOWER if Side.LOWER in sides else sides[0]
     idlers = tuple(layout.mesh_index(i, idler_side) for i in of_role[False])
-    groups.append(LoadGroup("idlers", GroupKind.IDLERS, idlers))
+    kind = GroupKind.IDLERS if len(sides) > 1 else GroupKind.INDEPENDENT
+    groups.append(LoadGroup("idlers", kind, idlers))
     return tuple(group for group in groups if len(group.meshes) > 1)

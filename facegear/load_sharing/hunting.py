@@ -32,13 +32,20 @@ class LoadHistory:
         drive, back = np.split(self.flank_forces, 2, axis=1)
         return np.maximum(drive, back)
 
+    @cached_property
+    def largest_loads(self) -> Array:
+        """Largest load of each mesh (meshes,), N, at the positions."""
+        return np.asarray(self.loads.max(axis=0))
+
     @property
     def groups(self) -> tuple[LoadGroup, ...]:
         """Meshes that share one load."""
         return load_groups(self.machine.layout)
 
     def coefficients(self, group: LoadGroup) -> Array:
-        """Largest load of a group over its mean (K,); nan where none carries any."""
+        """Largest load of a group over its mean (K,); nan where none carries any, or nothing is split."""
+        if not group.splits_load:
+            return np.full(len(self.loads), np.nan)
         return sharing_coefficient(self.loads[:, list(group.meshes)])
 
     @property
@@ -63,7 +70,7 @@ class LoadHistory:
     def dynamic_factors(self) -> Array:
         """K_v of each mesh (meshes,): its largest load over its largest mean of a mesh cycle; nan without."""
         largest = self.cycle_means.max(axis=0)
-        return self.loads.max(axis=0) / np.where(largest > 0.0, largest, np.nan)
+        return self.largest_loads / np.where(largest > 0.0, largest, np.nan)
 
     def path_factors(self, group: LoadGroup) -> Array:
         """K_gamma of each path of a group (meshes of the group,)."""
@@ -73,7 +80,9 @@ class LoadHistory:
         """Largest load of each path over the mean of the group's own loads (meshes of the group,)."""
         loads = self.loads[:, list(group.meshes)]
         even = loads.mean()
-        return loads.max(axis=0) / even if even > 0.0 else np.full(loads.shape[1], np.nan)
+        return (
+            self.largest_loads[list(group.meshes)] / even if even > 0.0 else np.full(loads.shape[1], np.nan)
+        )
 
 
 def largest(values: Array) -> float:

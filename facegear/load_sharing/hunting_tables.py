@@ -27,6 +27,12 @@ MESH_COLUMNS = (
 )
 
 
+GROUP_COLUMNS = (
+    *("group", "kind", "mean", "least", "largest", "k_gamma", "group_ratio", "undefined_fraction"),
+    *("torque_n_m", "mesh_cycles", "kkt_residual"),
+)
+
+
 def mesh_table(run: LoadHistory) -> pd.DataFrame:
     """One row a mesh: load, mesh load factor, fractions of the time on each flank, open, wedged (both).
 
@@ -49,7 +55,7 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
                 group[mesh],
                 load.mean(),
                 load.min(),
-                load.max(),
+                run.largest_loads[mesh],
                 even[mesh],
                 even[mesh] * layout.pinion_arm,
                 run.mesh_load_factors[mesh],
@@ -77,21 +83,21 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
             (defined.min(), defined.mean(), defined.max()) if defined.size else (np.nan, np.nan, np.nan)
         )
         rows.append(
-            {
-                "group": group.name,
-                "kind": group.kind.value,
-                "mean": mean,
-                "least": low,
-                "largest": high,
-                "k_gamma": largest(run.path_factors(group)),
-                "group_ratio": run.group_ratios(group).max(),
-                "undefined_fraction": np.isnan(coefficient).mean(),
-                "torque_n_m": run.largest_torque,
-                "mesh_cycles": len(run.cycles) // run.positions,
-                "kkt_residual": run.at_rest.residual.max(),
-            }
+            (
+                group.name,
+                group.kind.value,
+                mean,
+                low,
+                high,
+                largest(run.path_factors(group)),
+                run.group_ratios(group).max(),
+                np.isnan(coefficient).mean(),
+                run.largest_torque,
+                len(run.cycles) // run.positions,
+                run.at_rest.residual.max(),
+            )
         )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=list(GROUP_COLUMNS))
 
 
 def bearing_table(run: HuntingCycle, line: DriveLine | None = None) -> pd.DataFrame:

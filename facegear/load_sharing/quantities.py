@@ -54,7 +54,7 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
     largest = np.maximum(counted.largest, hardest.largest)
     values = (
         *(largest_mean / even)[shared],
-        *counted.coefficients,
+        *(value for value, group in zip(counted.coefficients, groups, strict=True) if group.splits_load),
         largest.max(),
         counted.open,
         counted.reversed,
@@ -86,7 +86,7 @@ def dynamic_quantities(
     values = (
         *(counted.largest_mean / even)[shared],
         *(counted.largest_load / loaded)[shared],
-        *counted.coefficients,
+        *(value for value, group in zip(counted.coefficients, groups, strict=True) if group.splits_load),
         counted.largest.max(),
         counted.open,
         counted.reversed,

@@ -64,12 +64,19 @@ def quantity_names(
     the operating speed to the nearest jump (`facegear.dynamics.sweeps.jump_margin`).
     """
     # Those who only check names, as a config does, need not load what a machine is made of.
-    from facegear.load_sharing.groups import load_groups
+    from facegear.load_sharing.groups import load_groups, split_groups
 
     groups = load_groups(layout)
     shared = [layout.mesh_names[mesh] for group in groups for mesh in group.meshes]
     paths = [f"{factor} {mesh}" for factor in (K_GAMMA, K_V)[: 1 + dynamic] for mesh in shared]
-    names = [*paths, *(f"coefficient {group.name}" for group in groups), PEAK, OPEN, REVERSED, BEARINGS]
+    names = [
+        *paths,
+        *(f"coefficient {group.name}" for group in split_groups(layout)),
+        PEAK,
+        OPEN,
+        REVERSED,
+        BEARINGS,
+    ]
     names += [PAST_LAW] if law else []
     names += [ERROR_RANGE, ERROR_HARMONIC, PRESSURE] if contact else []
     names += ROOTS.values() if contact and gauges else []

@@ -11,7 +11,7 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.sweeps.sweep import carried_over
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
-from facegear.load_sharing.groups import load_groups
+from facegear.load_sharing.groups import split_groups
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.run import WATCHED, followed, group_average, watched_for
 from facegear.load_sharing.sampling import densely_sampled
@@ -73,7 +73,7 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
 
     No rows, and no run, where no meshes share a load.
     """
-    if not load_groups(machine.layout):
+    if not split_groups(machine.layout):
         return pd.DataFrame(columns=list(SPEED_COLUMNS))
     speeds = np.linspace(options.speeds.first, options.speeds.last, options.speeds.points)
     progress = Progress("load sharing over speed", speeds.size)
@@ -88,7 +88,7 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
     )
     for speed, response in zip(speeds, responses, strict=True):
         motion = densely_sampled(response)
-        for group in load_groups(machine.layout):
+        for group in split_groups(machine.layout):
             sharing_average = group_average(motion, group, options.confidence)[2]
             rows.append(
                 {
@@ -108,7 +108,7 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
 
 def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
-    for group in load_groups(machine.layout):
+    for group in split_groups(machine.layout):
         own = forces[..., group.meshes]
         mesh_average = average(sharing_coefficient(own), lost_contact(own), periodic=True)
         rows.append(

@@ -23,7 +23,7 @@ from facegear.dynamics.steady_state.simulate import (
     static_start,
 )
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
-from facegear.load_sharing.groups import LoadGroup, load_groups
+from facegear.load_sharing.groups import LoadGroup, split_groups
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statistics import Average, average, defined_mean, held_over_starts
@@ -125,7 +125,7 @@ class _Run:
 
     def sharing(self, response: SteadyState, others: list[SteadyState | None]) -> Sharing:
         """What the motion that counts and those from the other starts say."""
-        groups = load_groups(self.model.machine.layout)
+        groups = split_groups(self.model.machine.layout)
         elsewhere = [other for other in others if other is not None and not same_orbit(response, other)]
         means = [_means(densely_sampled(other), groups) for other in elsewhere]
         again = [

@@ -7,9 +7,8 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.dynamics.steady_state.averages import mean_interval
+from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
 
-BATCHES = 10
 SIGNIFICANCE = 0.05
 """Chance at which means from several starts are wrongly taken to differ by more than batches say."""
 

@@ -13,6 +13,7 @@ from facegear.lubrication.columns import (
     MAP_COLUMNS,
     POSITION_COLUMNS,
 )
+from facegear.lubrication.friction import LIMIT_SOURCES
 from facegear.lubrication.heat import Running, TooHot, mean_flash, running
 from facegear.lubrication.loss import loss_factors
 from facegear.lubrication.machine_loss import LoadedPair
@@ -70,6 +71,7 @@ def _torque_row(
         "flash_axial_mm": 1e3 * places.y[hottest] if on.any() else np.nan,
         "contact_temperature_c": temperatures,
         "allowed_contact_temperature_c": allowed,
+        "allowed_contact_temperature_source": limits.contact_temperature_source,
         "scuffing_safety": float(temperature_safety(allowed, known.oil_temperature, temperatures)),
         "scuffing_margin_k": allowed - temperatures,
         "mean_flash_k": mean,
@@ -115,7 +117,7 @@ def limit_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
         heat = state.friction * places.line_load * places.length * places.sliding
         for limit, within in model.within(state.rubbing).items():
             outside = 100 * heat[~within].sum() / heat.sum() if heat.sum() > 0 else 0.0
-            rows.append((model.name, limit, contact.torque, outside))
+            rows.append((model.name, limit, LIMIT_SOURCES[model.name, limit], contact.torque, outside))
     return pd.DataFrame(rows, columns=list(LIMIT_COLUMNS))
 
 

@@ -21,6 +21,7 @@ BY_TORQUE_COLUMNS = (
     "flash_axial_mm",
     "contact_temperature_c",
     "allowed_contact_temperature_c",
+    "allowed_contact_temperature_source",
     "scuffing_safety",
     "scuffing_margin_k",
     "mean_flash_k",
@@ -65,7 +66,7 @@ EXCITATION_COLUMNS = (
 )
 """Friction over the force of the mesh: forces on the pinion, moments on pinion and face gear."""
 
-LIMIT_COLUMNS = ("friction_model", "limit", "torque_n_m", "loss_outside_percent")
+LIMIT_COLUMNS = ("friction_model", "limit", "limit_source", "torque_n_m", "loss_outside_percent")
 
 MAP_COLUMNS = (
     "torque_n_m",

@@ -16,10 +16,23 @@ from facegear.arrays import Array, Mask
 Numbers = float | Array
 
 MIN_LINE_LOAD = 150e3
-"""N/m, of the gear tests behind Schlenk's formula and those of the standards."""
+"""Smallest line load, N/m, of the gear tests behind Schlenk's formula and those of the standards."""
 
 LARGEST_SPEED = 50.0
-"""Pitch line velocity (m/s) of the same."""
+"""Largest pitch line velocity, m/s, of the same gear tests."""
+
+LINE_LOAD, PITCH_SPEED = "line load at least 150 N/mm", "pitch line velocity at most 50 m/s"
+SLIDING, SLIDE_TO_ROLL = "sliding above 0.1 % of the rolling velocities", "slide to roll ratio at most 1"
+LIMIT_SOURCES = {
+    ("schlenk", LINE_LOAD): "ISO/TR 14179-2, unverified: the document was not at hand",
+    ("schlenk", PITCH_SPEED): "ISO/TR 14179-2, unverified: the document was not at hand",
+    ("iso_6336_22", LINE_LOAD): "ISO/TR 13989-2, by a public worked example that raises the line load to it",
+    ("iso_6336_22", PITCH_SPEED): "ISO/TR 13989-2, unverified: the document was not at hand",
+    ("iso_6336_20", PITCH_SPEED): "ISO/TR 13989-1, equations (25) to (28), by a public implementation",
+    ("benedict_kelley", SLIDING): "this program: the logarithm of the formula has no bound on the pitch line",
+    ("xu", SLIDE_TO_ROLL): "Xu (2005), by a public implementation",
+}
+"""Where each limit of each model is from, and whether its document was seen."""
 
 SMALLEST_SLIDE = 1e-3
 """Sliding over u1 + u2 below which Benedict and Kelley's logarithm, infinite on the pitch line, is cut."""
@@ -109,8 +122,8 @@ class GearTested:
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
         """Line load and speed of the gear tests."""
         return {
-            "line load at least 150 N/mm": at.line_load >= MIN_LINE_LOAD,
-            "pitch line velocity at most 50 m/s": _slow(at),
+            LINE_LOAD: at.line_load >= MIN_LINE_LOAD,
+            PITCH_SPEED: _slow(at),
         }
 
 
@@ -136,7 +149,7 @@ class Iso633620(GearTested):
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
         """The speed of the gear tests."""
-        return {"pitch line velocity at most 50 m/s": _slow(at)}
+        return {PITCH_SPEED: _slow(at)}
 
 
 @dataclass(frozen=True)
@@ -152,7 +165,7 @@ class BenedictKelley:
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
         """Where the logarithm is not cut."""
-        return {"sliding above 0.1 % of the rolling velocities": at.sliding > SMALLEST_SLIDE * at.rolled}
+        return {SLIDING: at.sliding > SMALLEST_SLIDE * at.rolled}
 
 
 @dataclass(frozen=True)
@@ -168,7 +181,7 @@ class Xu:
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
         """Slide to roll ratio of the tests."""
-        return {"slide to roll ratio at most 1": 2 * np.abs(at.u1 - at.u2) <= np.abs(at.rolled)}
+        return {SLIDE_TO_ROLL: 2 * np.abs(at.u1 - at.u2) <= np.abs(at.rolled)}
 
 
 @dataclass(frozen=True)

@@ -91,10 +91,12 @@ class Limits:
     """What is allowed; None where it is not known.
 
     `contact_temperature` (C) of tests, else it follows from `fzg_stage` with the steel's `structure_factor`
-    and the oil's `lubricant_factor`. `film_ratio` of ISO/TS 6336-22.
+    and the oil's `lubricant_factor`. `contact_temperature_source` says in words where it is from.
+    `film_ratio` of ISO/TS 6336-22.
     """
 
     contact_temperature: float | None
+    contact_temperature_source: str
     fzg_stage: float | None
     structure_factor: float
     lubricant_factor: float

@@ -22,15 +22,19 @@ _DIGEST = hashlib.sha256().digest_size
 
 
 def folder() -> Path:
-    """Where machine code is kept: nothing is made here yet."""
-    named = os.environ.get(VARIABLE)
-    return (Path(named) if named else platformdirs.user_cache_path("facegear")) / "machine_code"
+    """Where machine code is kept: nothing is made here yet. Raises OSError for a user without a home."""
+    if named := os.environ.get(VARIABLE):
+        return Path(named) / "machine_code"
+    try:
+        return platformdirs.user_cache_path("facegear") / "machine_code"
+    except RuntimeError as error:
+        raise OSError(str(error)) from None
 
 
 def read(name: str) -> bytes | None:
     """The content of a file as it was written; None if it is absent or damaged."""
-    path = folder() / name
     try:
+        path = folder() / name
         stored = path.read_bytes()
         os.utime(path)
     except OSError:
@@ -52,9 +56,14 @@ def write(name: str, content: bytes) -> None:
 
 
 def trim(limit: int) -> None:
-    """Remove the files that were used least lately until the others hold `limit` bytes at most."""
-    files = []
-    for path in folder().glob("*"):
+    """Remove the files that were used least lately until the others hold `limit` bytes at most.
+
+    A folder that may not be entered or listed is left as it is.
+    """
+    files, entries = [], []
+    with suppress(OSError):
+        entries = list(folder().iterdir())
+    for path in entries:
         with suppress(OSError):
             stat = path.stat()
             files.append((stat.st_mtime_ns, stat.st_size, path))

@@ -6,21 +6,20 @@ Made of numba's private parts: `compiler.py` lets only known versions of numba c
 import hashlib
 import pickle
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import llvmlite
 import numba
+from filelock import FileLock, Timeout
 from numba import njit, types
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 from numba.core.typing.templates import infer, infer_global, make_overload_template
 
-from facegear.io.run_lock import hold
 from facegear.machine_code import addresses, kept, shipped
 from facegear.machine_code.errors import NotStored
 from facegear.machine_code.pipelines import AsWritten, ForCallers, Whole
@@ -54,12 +53,14 @@ class SourcesCache(_Cache):
         self._function = function
         self._text = text
         self._announced = announced
-        self._locks: dict[str, TextIO] = {}
+        self._locks: dict[str, FileLock] = {}
 
     @property
     def cache_path(self) -> str:
-        """The folder of all machine code."""
-        return str(kept.folder())
+        """The folder of all machine code; empty for a user without a home."""
+        with suppress(OSError):
+            return str(kept.folder())
+        return ""
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """What was compiled for a signature; None if the caller is to compile it, for others too."""
@@ -125,19 +126,16 @@ class SourcesCache(_Cache):
 
     def _release(self, name: str) -> None:
         if (lock := self._locks.pop(name, None)) is not None:
-            with suppress(OSError):
-                Path(lock.name).unlink()
-            lock.close()
+            lock.release()
 
 
-def _wait(name: str) -> TextIO | None:
+def _wait(name: str) -> FileLock | None:
     """The lock that one process may hold; None after PATIENCE and where nothing can be written."""
-    end = time.monotonic() + PATIENCE
-    with suppress(OSError):
-        while time.monotonic() < end:
-            if (lock := hold(kept.folder() / f"{name}.lock")) is not None:
-                return lock
-            time.sleep(0.02)
+    lock = FileLock(kept.folder() / f"{name}.lock", timeout=PATIENCE, poll_interval=0.02)
+    with suppress(OSError, Timeout):
+        kept.folder().mkdir(parents=True, exist_ok=True)
+        lock.acquire()
+        return lock
     return None
 
 

@@ -120,6 +120,11 @@ def machine(case: Case) -> bool:
     return case.values["transmission"] is not None
 
 
+def contact_or_machine(case: Case) -> bool:
+    """Whether a contact analysis is made or section transmission is given."""
+    return contact(case) or machine(case)
+
+
 def side_by_side(case: Case) -> bool:
     """Whether section transmission is given, with a linear law of mesh forces and no friction in motion."""
     return machine(case) and not load_dependent(case) and not friction_in_motion(case)
@@ -180,15 +185,22 @@ def branches(case: Case) -> bool:
 
 
 def shares_load(case: Case) -> bool:
-    """Whether some meshes share a load."""
-    from facegear.config.sharing_groups import group_kinds
+    """Whether the machine splits a load among some of its meshes."""
+    from facegear.config.sharing_groups import split_kinds
 
-    return machine(case) and bool(group_kinds(case.values))
+    return machine(case) and bool(split_kinds(case.values))
+
+
+def grouped(case: Case) -> bool:
+    """Whether several pinions do the same."""
+    from facegear.config.sharing_groups import has_groups
+
+    return machine(case) and has_groups(case.values)
 
 
 def hunting(case: Case) -> bool:
-    """Whether some meshes share a load, with geometric kinematics."""
-    return shares_load(case) and case.values["transmission"]["mesh_kinematics"] == "geometric"
+    """Whether several pinions do the same, with geometric kinematics."""
+    return grouped(case) and case.values["transmission"]["mesh_kinematics"] == "geometric"
 
 
 def following(case: Case) -> bool:
@@ -260,6 +272,11 @@ def islands(case: Case) -> list[Wildcards]:
 def both_bodies(case: Case) -> list[Wildcards]:
     """Pinion and face gear."""
     return [{"body": body} for body in BODIES]
+
+
+def config_name(case: Case) -> str:
+    """Return the name of the config, which the points of its studies share."""
+    return str(case.values["case"]).partition("/")[0]
 
 
 def without_gaps(case: Case) -> Any:

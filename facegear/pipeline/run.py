@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from facegear.blas_threads import one_blas_thread
 from facegear.config.arguments import typed_arguments
 from facegear.config.keys import keys_named
 from facegear.io.files import write_part
@@ -47,9 +48,10 @@ def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[
 def call(stage: Stage, given: Mapping[str, Any], **more: Any) -> "Outcome":
     """The stage with arguments `given`, plain values of the config as the sections that it asks for.
 
-    What it refuses is named by the key of the config.
+    What it refuses is named by the key of the config. It runs on one thread of BLAS, in a job as through the
+    Python door.
     """
     function = load(stage.function)
-    with keys_named():
+    with keys_named(), one_blas_thread():
         outcome: Outcome = function(**typed_arguments(function, given), **more)
     return outcome

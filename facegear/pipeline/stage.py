@@ -15,7 +15,7 @@ Wildcards = Mapping[str, str]
 NONE: Mapping[str, Any] = MappingProxyType({})
 READABLE = {".csv", ".npz", ".parquet", ".json"}
 FIGURES = "_figures"
-"""Ending of the name of a rule that draws a stage's figures."""
+"""Ending of the name of a rule that draws the figures of a chapter."""
 NUMBER = r"\d+"
 """A wildcard that stands for a number is handed to the stage as one."""
 
@@ -150,7 +150,7 @@ class Stage:
       or where its file is asked for by name
     - section: optional section of the config without which there is nothing to do
     - resumable: file beside which finished parts are kept, so that a killed job goes on after the last
-    - runs: stages whose machine code its jobs run
+    - together: cases of studies that one job makes, where a case takes about a second
     - local: short enough for the computer that submits jobs to a cluster
     - priority: long jobs, and those that long ones wait for, start first; figures (0) wait for all of them
     """
@@ -168,7 +168,7 @@ class Stage:
     folder: str = ""
     memory_mb: int | None = None
     minutes: int | None = None
-    runs: tuple[str, ...] = ()
+    together: int = 1
     local: bool = False
     priority: int = 10
 

@@ -80,10 +80,10 @@ def sharing_figures(case: Case) -> list[str]:
 
 
 def kinds_of_groups(case: Case) -> list[str]:
-    """Kinds of groups that share a load; none without a machine."""
-    from facegear.config.sharing_groups import group_kinds
+    """Kinds of groups that split a load; none without a machine."""
+    from facegear.config.sharing_groups import split_kinds
 
-    return group_kinds(case.values) if asked.machine(case) else []
+    return split_kinds(case.values) if asked.machine(case) else []
 
 
 def titles(case: Case) -> list[str]:
@@ -202,8 +202,8 @@ def contact_torque(case: Case) -> float:
 
 
 def studied(case: Case) -> bool:
-    """Whether there are studies of a machine that shares loads."""
-    return asked.shares_load(case) and bool(case.values["studies"])
+    """Whether there are studies of a machine with several pinions that do the same."""
+    return asked.grouped(case) and bool(case.values["studies"])
 
 
 def _id(case: Case, study: str, point: str) -> str:

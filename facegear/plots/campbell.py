@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from facegear.arrays import Array
+from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.plots.style import NARROW, styled
 
 ORDER_LINES = (1.0, 2.0, 3.0)
@@ -19,7 +20,9 @@ CLASS_COLOURS = {"pinion": "tab:blue", "face gear": "tab:orange", "pinion couple
 def campbell(
     frequencies: pd.DataFrame, resonances: pd.DataFrame, jumps: pd.DataFrame, teeth: int, last_rpm: float
 ) -> Figure:
-    """Natural frequencies, multiples of the mesh frequency, and what the sweep found: peaks and jumps."""
+    """Natural frequencies, multiples of the mesh frequency, and what the sweep found: peaks, jumps, and where
+    irregular motion begins or ends.
+    """
     elastic = frequencies[frequencies["class"] != "rigid body"]
     top = 1.1 * elastic["frequency_hz"].max()
     marked = pd.concat([resonances["order"], jumps["order"]]).astype(float)
@@ -37,7 +40,9 @@ def campbell(
             beyond = (2, 0) if height < 0.99 * top else (0, 2)
             axis.annotate(f"{order:g}x", (end, height), beyond, textcoords="offset points", color="0.3")
         _mark(axis, resonances, "speed_rpm", teeth, "o", "peaks")
-        _mark(axis, jumps, "speed_after_rpm", teeth, "x", "jumps")
+        irregular = jumps["kind"] == JumpKind.IRREGULAR
+        _mark(axis, jumps[~irregular], "speed_after_rpm", teeth, "x", "jumps")
+        _mark(axis, jumps[irregular], "speed_after_rpm", teeth, "+", "irregular motion begins or ends")
         axis.set_xlim(0, last_rpm)
         axis.set_ylim(0, top)
         axis.set_xlabel("input rotation speed (rpm)")

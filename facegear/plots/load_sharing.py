@@ -15,7 +15,6 @@ COLOURS = ("black", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:orang
 YLABEL = {
     "inputs": "Load sharing coefficient of\n upper and lower face gear",
     "idlers": "Load sharing coefficient of\n idler pinions and tail rotor idler",
-    "drivers": "Load sharing coefficient of\n the input pinions",
 }
 CAPTION_WIDTH, CAPTION_LINES = 62, 6
 LINE_HEIGHT = 0.16

@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.plots.style import NARROW, styled
 
 DIRECTION_STYLES = {"up": ("tab:red", "-"), "down": ("tab:blue", "--")}
@@ -50,7 +51,9 @@ def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Fi
 def mesh_sweeps(
     sweep: pd.DataFrame, jumps: pd.DataFrame, pinions: Sequence[str], sides: Sequence[str]
 ) -> Figure:
-    """RMS (without mean) of mesh deflections up and down, a panel for each mesh; jumps marked."""
+    """RMS (without mean) of mesh deflections up and down, a panel for each mesh; jumps are marked, and where
+    irregular motion begins or ends.
+    """
     with styled():
         rows = [(pinion, side) for side in sides for pinion in pinions]
         figure, axes = plt.subplots(
@@ -68,13 +71,19 @@ def mesh_sweeps(
         handles = axes[0, 0].get_legend_handles_labels()
         figure.legend(*handles, loc="outside lower center", ncols=2, title="sweep")
         figure.suptitle(
-            "RMS of the displacement along the line of action\nwithout its mean; ticks: jumps", fontsize=9
+            "RMS of the displacement along the line of action without its mean\n"
+            "ticks: jumps; dotted: irregular motion begins or ends",
+            fontsize=9,
         )
     return figure
 
 
 def mark_jumps(axis: Axes, jumps: pd.DataFrame) -> None:
-    """Short ticks on the speed axis where the response jumps, in the direction's colour."""
+    """Short ticks on the speed axis where the response jumps, in the direction's colour; dotted ones where
+    irregular motion begins or ends.
+    """
     for jump in jumps.itertuples():
         colour, _ = DIRECTION_STYLES[jump.direction]
-        axis.axvline(jump.speed_after_rpm, ymax=0.04, color=colour, lw=1.2)
+        irregular = jump.kind == JumpKind.IRREGULAR
+        style = {"ymax": 0.12, "lw": 1.2, "ls": ":"} if irregular else {"ymax": 0.04, "lw": 1.2}
+        axis.axvline(jump.speed_after_rpm, color=colour, **style)

@@ -31,14 +31,21 @@ def current_manifest(
         inputs = {path.parent / name: digest for name, digest in manifest["inputs"].items()}
     except (KeyError, TypeError, AttributeError):
         return None
-    same = all(name.is_file() and sha256(name) == digest for name, digest in inputs.items())
+    try:
+        same = all(name.is_file() and sha256(name) == digest for name, digest in inputs.items())
+    except OSError:
+        return None
     made = [name for name in inputs if same and _manifest(name) is not None]
     return manifest if same and all(current_manifest(name, needs, code) for name in made) else None
 
 
 def _manifest(path: Path) -> Manifest | None:
-    """The readable manifest that covers a file."""
-    for candidate in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
+    """The readable manifest that covers a file; None where its folder cannot be read."""
+    try:
+        candidates = sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}"))
+    except OSError:
+        return None
+    for candidate in candidates:
         try:
             manifest = json.loads(candidate.read_text(encoding="utf-8"))
             if path.name in manifest["files"]:

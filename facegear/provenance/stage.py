@@ -1,14 +1,18 @@
-"""The frame around every workflow script: log, one-line errors, summary, manifest of the outputs."""
+"""The frame around every workflow script: lock, log, one-line errors, summary, manifest of the outputs."""
 
+import glob
 import shlex
+import signal
 import sys
 import time
 import traceback
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
+from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, BinaryIO
+
+from filelock import FileLock, Timeout
 
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io.atomic import NO_SPACE, NO_SPACE_HINT
@@ -17,6 +21,8 @@ from facegear.provenance.manifest import write_manifest
 
 RESULTS = "results"
 """Folder of what stages write, each file with its manifest; inputs elsewhere are the user's."""
+Paths = Mapping[str, Any]
+"""Paths by name, a list where there are several."""
 
 
 class StageRun:
@@ -31,44 +37,137 @@ class StageRun:
         print(f"{self.name}: {text}", file=sys.stderr, flush=True)
 
 
+@dataclass(frozen=True)
+class Part:
+    """What one manifest covers: a whole job, or one case of a job that makes several.
+
+    - rule: what the manifest calls it
+    - wildcards: values of its wildcards, behind its name on the terminal
+    - rebuild: command that makes a target again
+    """
+
+    rule: str
+    wildcards: tuple[str, ...]
+    input: Paths
+    output: Paths
+    params: Mapping[str, Any]
+    rebuild: str
+
+    @property
+    def inputs(self) -> list[str]:
+        """Paths of all inputs."""
+        return _all(self.input)
+
+    @property
+    def manifest(self) -> Path | None:
+        """Path of the manifest, if the rule writes one."""
+        return next((Path(path) for path in _all(self.output) if path.endswith(MANIFEST_SUFFIX)), None)
+
+    @property
+    def files(self) -> list[Path]:
+        """Paths of all outputs but the manifest."""
+        return [Path(path) for path in _all(self.output) if not path.endswith(MANIFEST_SUFFIX)]
+
+
+def _all(paths: Paths) -> list[str]:
+    given = [[path] if isinstance(path, str) else [*path] for path in paths.values()]
+    return [str(path) for several in given for path in several]
+
+
+def parts_of(snakemake: Any) -> list[Part]:
+    """Parts of a job of a stage: one, or one for each of `cases`, whose number ends its names."""
+    params, rebuild = snakemake.params, snakemake.config["rebuild_command"]
+    given, made = dict(snakemake.input.items()), dict(snakemake.output.items())
+    own = {"needs": params.needs, "code": params.code}
+    if params.get("cases") is None:
+        wildcards = tuple(dict(snakemake.wildcards.items()).values())
+        return [Part(params.stage, wildcards, given, made, own, rebuild)]
+    return [
+        Part(
+            params.stage,
+            (case,),
+            *(
+                {key.removesuffix(f"__{n}"): path for key, path in all_.items() if key.endswith(f"__{n}")}
+                for all_ in (given, made)
+            ),
+            {**own, "needs": params.needs[n]},
+            rebuild,
+        )
+        for n, case in enumerate(params.cases)
+    ]
+
+
 @contextmanager
 def stage(snakemake: Any) -> Iterator[StageRun]:
-    """Run a script's body: copy standard error to the rule's log and write the manifest at the end.
+    """Run the body of a script whose rule has one manifest, which covers all other outputs."""
+    whole = Part(
+        snakemake.rule,
+        tuple(dict(snakemake.wildcards.items()).values()),
+        {"": list(snakemake.input)},
+        {"": list(snakemake.output)},
+        dict(snakemake.params.items()),
+        snakemake.config["rebuild_command"],
+    )
+    with job(snakemake), recorded(whole) as run:
+        yield run
+
+
+@contextmanager
+def job(snakemake: Any) -> Iterator[None]:
+    """Copy standard error to the rule's log while a script works, and let no second job write its files.
 
     A FacegearError or a full disk ends the script with one line, the log's path and exit code 1, without a
-    traceback. The manifest goes to the output whose name ends in `.provenance.json` and covers all others.
+    traceback. Ctrl-C ends it at once and without a word: the run that has started it says what is to be said.
     """
-    run, start = (
-        StageRun(" ".join([snakemake.rule, *dict(snakemake.wildcards.items()).values()])),
-        time.perf_counter(),
-    )
-    outputs = [Path(output) for output in snakemake.output]
-    manifests = [output for output in outputs if output.name.endswith(MANIFEST_SUFFIX)]
     log = Path(snakemake.log[0])
-    with _one_line_errors(snakemake, log):
+    with _one_line_errors(snakemake, log), ExitStack() as held:
+        held.callback(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.SIG_DFL))
         log.parent.mkdir(parents=True, exist_ok=True)
-        with open(log, "wb", buffering=0) as stream, _Copied(stream), _one_line_errors(snakemake, log):
-            for manifest in manifests:
-                manifest.unlink(missing_ok=True)
-            for path in snakemake.input:
-                if Path(path).parts[0] == RESULTS:
-                    require_manifest(path)
-            yield run
-            if not run.text:
-                run.summary(
-                    "wrote " + ", ".join(output.name for output in outputs if output not in manifests)
-                )
-            for manifest in manifests:
-                write_manifest(
-                    manifest,
-                    [output for output in outputs if output not in manifests],
-                    list(snakemake.input),
-                    dict(snakemake.params.items()),
-                    snakemake.rule,
-                    time.perf_counter() - start,
-                    run.text,
-                    snakemake.config["rebuild_command"],
-                )
+        _hold(held, log.with_suffix(".lock"), snakemake.rule)
+        with open(log, "wb", buffering=0) as stream, _copied(stream), _one_line_errors(snakemake, log):
+            yield
+
+
+def _hold(held: ExitStack, path: Path, rule: str) -> None:
+    """Take a lock that is given back at the end; wait for a job that a killed run has left working."""
+    lock = FileLock(path)
+    with suppress(OSError):  # a disk without locks
+        try:
+            lock.acquire(blocking=False)
+        except Timeout:
+            print(
+                f"{rule}: waiting for a job that a killed run has left working", file=sys.stderr, flush=True
+            )
+            lock.acquire()
+        held.callback(lock.release)
+
+
+@contextmanager
+def recorded(part: Part) -> Iterator[StageRun]:
+    """Check the inputs of a part, have it made, and write its manifest."""
+    run, start = StageRun(" ".join([part.rule, *part.wildcards])), time.perf_counter()
+    if part.manifest:
+        part.manifest.unlink(missing_ok=True)
+    for path in part.files:
+        for left in path.parent.glob(f".[0-9]*.{glob.escape(path.name)}"):  # by a job that was killed
+            left.unlink(missing_ok=True)
+    for path in part.inputs:
+        if Path(path).parts[0] == RESULTS:
+            require_manifest(path)
+    yield run
+    if not run.text:
+        run.summary("wrote " + ", ".join(path.name for path in part.files))
+    if part.manifest:
+        write_manifest(
+            part.manifest,
+            part.files,
+            part.inputs,
+            part.params,
+            part.rule,
+            time.perf_counter() - start,
+            run.text,
+            part.rebuild,
+        )
 
 
 @contextmanager
@@ -93,28 +192,27 @@ def _rebuilt(error: FacegearError, snakemake: Any) -> FacegearError:
 
 
 class _Copied:
-    """Standard error also goes to a log."""
+    """Standard error that also goes to a log."""
 
     def __init__(self, log: BinaryIO) -> None:
         self.log, self.terminal = log, sys.stderr
 
-    def __enter__(self) -> None:
-        sys.stderr = self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        sys.stderr = self.terminal
-        if kind is not None and kind is not SystemExit:
-            self._keep("".join(traceback.format_exception(kind, error, trace)))
-
     def write(self, text: str) -> int:
-        self._keep(text)
+        with suppress(OSError):  # a full disk must not keep the message from the terminal
+            self.log.write(text.encode())
         return self.terminal.write(text)
 
     def flush(self) -> None:
         self.terminal.flush()
 
-    def _keep(self, text: str) -> None:
-        with suppress(OSError):  # a full disk must not keep the message from the terminal
-            self.log.write(text.encode())
+
+@contextmanager
+def _copied(log: BinaryIO) -> Iterator[None]:
+    """Copy standard error to a log, and a traceback to the log alone: Python prints it to the terminal."""
+    try:
+        with redirect_stderr(_Copied(log)):  # type: ignore[type-var]
+            yield
+    except Exception:
+        with suppress(OSError):
+            log.write(traceback.format_exc().encode())
+        raise

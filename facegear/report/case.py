@@ -11,6 +11,7 @@ from facegear.report.glance import glance_chapter
 from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
 from facegear.report.poses import pose_tables, pose_text
+from facegear.ties import first_largest_rows
 
 BY_TORQUE = (
     "One row for each torque on the pinion, over a pitch. ste peak to peak: the largest transmission error "
@@ -95,7 +96,10 @@ MODE_CONTACTS = (
 NEAR_RESONANCE = 0.3
 """Largest relative distance of a jump from the linear resonance that it may belong to."""
 JUMPS = (
-    "Jumps of the motion. moves most: the linear mode with the largest fraction of the energy just "
+    "Abrupt changes of the motion. kind: a jump from one periodic motion, which ends or loses its "
+    "stability, to another; a step of the sweep that left a stable motion because it was too large; or "
+    "irregular motion that begins or ends. error: how far the speed may lie from that of the change. "
+    "moves most: the linear mode with the largest fraction of the energy just "
     "beside the "
     "jump, and the multiple of the mesh frequency at which it moves most. linear resonance: the "
     "speed at which "
@@ -232,7 +236,7 @@ def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     listed = [Table(SAFETY, shown, 4), Table(RATING, tables["rating"], 4, folded=True)]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
-        hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]
+        hardest = first_largest_rows(loads, "largest_force_n", ["bin"], sort=True)
         listed += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
     return listed
 
@@ -266,7 +270,7 @@ def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Ta
         return []
     table = tables["stress_over_speed"]
     nearest = table["speed_rpm"].iloc[(table["speed_rpm"] - speed_rpm).abs().argmin()]
-    hardest = table.loc[table.groupby("motion", sort=False)["largest_force_n"].idxmax()]
+    hardest = first_largest_rows(table, "largest_force_n", ["motion"])
     shown = pd.concat([table[table["speed_rpm"] == nearest], hardest]).drop_duplicates()
     return [Table(OVER_SPEED, shown, 4)]
 
@@ -278,7 +282,8 @@ def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     jumps = tables["jumps"]
     linear = jumps["resonance_rpm"].astype(float)
     away = (jumps["speed_before_rpm"].astype(float) / linear - 1.0).abs()
-    shown = jumps[["direction", "speed_before_rpm", "mesh", "class_before", "class_after"]].assign(
+    columns = ["direction", "kind", "speed_before_rpm", "error_rpm", "mesh", "class_before", "class_after"]
+    shown = jumps[columns].assign(
         moves_most=jumps["resonance"],
         energy_fraction=jumps["energy_fraction"],
         linear_resonance_rpm=linear.where(away <= NEAR_RESONANCE),

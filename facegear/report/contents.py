@@ -54,7 +54,8 @@ CAPTIONS = {
     "mesh_deflections": "Mesh deflections at the nominal speed and their spectra.",
     "pinion_sweep": "RMS of the pinions' translations over speed.",
     "gear_sweep": "RMS of the face gears' translations over speed.",
-    "mesh_sweep": "RMS of the mesh deflections, speed rising and falling; ticks mark jumps.",
+    "mesh_sweep": "RMS of the mesh deflections, speed rising and falling; ticks mark jumps, "
+    "dotted ones where irregular motion begins or ends.",
     "waterfall": "Spectrum of a mesh deflection over speed.",
     "machine": "The machine to scale: directions of rotation, and mean forces of meshes at rest.",
     "layout": "The machine to scale: directions of rotation, mean forces of meshes and on bearings, at rest.",
@@ -81,7 +82,7 @@ PAPER_NUMBERS = {
 }
 """Which figure of the reproduced paper a figure stands for; those of studies stand in the config."""
 
-KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions", "drivers": "pinions on one gear"}
+KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions"}
 """Kinds of load-sharing groups in words."""
 
 

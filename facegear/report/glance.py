@@ -11,6 +11,8 @@ from facegear.report.page import Chapter, Picture, Table, scientific
 from facegear.report.warnings import warnings
 
 GREEN, AMBER, RED = "green", "amber", "red"
+IRREGULAR = "irregular"
+"""Kind of the rows of table `jumps` at which irregular motion begins or ends."""
 
 
 class Finding(NamedTuple):
@@ -86,15 +88,32 @@ def findings(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
             f"K_gamma, {row.group}",
             f"{row.k_gamma:.3f} (K_v {row.k_v:.3f}) at {row.speed_rpm:.0f} rpm and {row.torque_n_m:g} N m, "
             f"{row.k_gamma_static:.3f} at rest, over "
-            f"{row.mesh_cycles} mesh cycles while the runouts turn",
+            f"{row.mesh_cycles} mesh cycles while the runouts turn; {_meaning_of_k_gamma(row.k_gamma)}",
         )
     if "jumps" in tables:
-        speeds = tables["jumps"].groupby("direction")["speed_after_rpm"].unique()
-        counts = [f"{len(at)} {name} ({_range(at.min(), at.max())} rpm)" for name, at in speeds.items()]
-        yield Finding("jumps in the sweep", ", ".join(counts) or "none")
+        irregular = tables["jumps"]["kind"] == IRREGULAR
+        yield Finding("jumps in the sweep", _counted_speeds(tables["jumps"][~irregular]))
+        if irregular.any():
+            about = "irregular motion begins or ends abruptly in the sweep"
+            yield Finding(about, _counted_speeds(tables["jumps"][irregular]))
     if "scorecard" in tables:
         counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
         yield Finding("claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items()))
+
+
+def _meaning_of_k_gamma(k_gamma: float) -> str:
+    """Definition of K_gamma in words, and why it can be below 1."""
+    meaning = "largest mean load of a mesh over its nominal even share"
+    if k_gamma < 1.0:
+        meaning += "; below 1, less load takes this path than an even split would send through it"
+    return meaning
+
+
+def _counted_speeds(jumps: pd.DataFrame) -> str:
+    """The number of jumps in each direction with the range of their speeds."""
+    speeds = jumps.groupby("direction")["speed_after_rpm"].unique()
+    counts = [f"{len(at)} {name} ({_range(at.min(), at.max())} rpm)" for name, at in speeds.items()]
+    return ", ".join(counts) or "none"
 
 
 def _nearest(rating: pd.DataFrame | None) -> pd.DataFrame:

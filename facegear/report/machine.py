@@ -42,6 +42,8 @@ NUMBERS = {
     "mesh_frequency_hz": ("Mesh frequency", "Hz", 6),
     "power_in_kw": ("Power brought in", "kW", 5),
     "power_out_kw": ("Power taken out", "kW", 5),
+    "power_out_without_friction_kw": ("Power taken out, without friction", "kW", 5),
+    "power_out_with_friction_kw": ("Power taken out, less the friction loss of the meshes", "kW", 5),
     "contact_ratio": ("Contact ratio, unloaded", "", 4),
     "face_width_mm": ("Face width of the gear", "mm", 5),
     "face_limits_mm": ("Radii without undercut and pointed teeth", "mm", 6),
@@ -73,7 +75,7 @@ def machine_chapter(
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
     """Columns quantity, value, unit, as text; only what is known."""
-    known = _signed(tables) | rated(tables) | ({} if pair is None else _teeth(pair))
+    known = _less_friction(_signed(tables) | rated(tables)) | ({} if pair is None else _teeth(pair))
     rows = []
     for name, (words, unit, digits) in NUMBERS.items():
         if name in known:
@@ -81,6 +83,19 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
             parts = value if isinstance(value, tuple) else (value,)
             rows.append((words, " to ".join(number(part, digits) for part in parts), unit))
     return pd.DataFrame(rows, columns=["quantity", "value", "unit"])
+
+
+def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """The numbers with the power out with and without the friction loss, where both are known."""
+    if not {"loss_percent", "power_in_kw", "power_out_kw"} <= numbers.keys():
+        return dict(numbers)
+    without = numbers["power_out_kw"]
+    loss = numbers["power_in_kw"] * numbers["loss_percent"] / 100.0
+    return {
+        **{name: value for name, value in numbers.items() if name != "power_out_kw"},
+        "power_out_without_friction_kw": without,
+        "power_out_with_friction_kw": without - loss,
+    }
 
 
 def _signed(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
@@ -187,7 +202,14 @@ def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
         return ""
     missing = numbers["power_imbalance"]
     if abs(missing) <= BALANCED:
-        return "\n\nThe power brought in equals the power taken out: at rest, bearings and meshes lose none."
+        text = "\n\nThe power brought in equals the power taken out: at rest, bearings and meshes lose none."
+        loss = _signed(tables).get("loss_percent")
+        if loss is None:
+            return text
+        return (
+            f"{text} Friction is not in these torques and powers. It takes {loss:.3g} % of the power brought "
+            "in at the nominal load, so that the output gives this much less."
+        )
     return (
         f"\n\nThe power brought in, less the power taken out, is {100 * missing:.3g} % of the larger. Bodies "
         "turn as their teeth say, but the lever arms of equation (13) as printed are not those of the teeth; "

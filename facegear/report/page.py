@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import floor, isfinite, log10
 from pathlib import Path
 from typing import Any, Literal
@@ -14,7 +15,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray
-from facegear.io import pages
+from facegear.io import documents, pages
+from facegear.io.pictures import read_svg
 from facegear.report.stills import data_uri
 from facegear.report.units import UNITS, ending_of
 
@@ -43,11 +45,15 @@ class Picture:
     path: Path
     caption: str
 
+    @cached_property
+    def still(self) -> str:
+        """Text of the svg. Raises CorruptFile where the file is not whole."""
+        return read_svg(self.path)
+
     @property
     def width_px(self) -> int:
         """Width at which the text has the size it was drawn with."""
-        start = self.path.read_text(encoding="utf-8")[:4000]
-        match = re.search(r'<svg[^>]* width="([\d.]+)(pt|px)?"', start)
+        match = re.search(r'<svg[^>]* width="([\d.]+)(pt|px)?"', self.still[:4000])
         return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
 
     @property
@@ -55,16 +61,19 @@ class Picture:
         """Name of the figure inside the page."""
         return f"figure-{self.path.stem}"
 
-    @property
+    @cached_property
     def interactive(self) -> Any:
-        """What plotly.js draws in its place, from the file beside it; nothing where it has no such form."""
+        """What plotly.js draws in its place, from the file beside it; nothing where it has no such form.
+
+        Raises CorruptFile where that file is not whole.
+        """
         stored = self.path.with_suffix(".json")
-        content = json.loads(stored.read_text(encoding="utf-8")) if stored.exists() else {}
+        content = documents.read(stored) if stored.exists() else {}
         return content if content.get("data") else None
 
     def data_uri(self) -> str:
         """The picture as a data URI."""
-        return data_uri(self.path)
+        return data_uri(self.still)
 
 
 @dataclass(frozen=True)

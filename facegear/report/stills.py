@@ -1,7 +1,6 @@
 """Stored pictures as text inside a page."""
 
 import re
-from pathlib import Path
 from string import ascii_letters, digits
 from urllib.parse import quote
 
@@ -13,12 +12,12 @@ GAPS = re.compile(r"\s+")
 NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
 
 
-def data_uri(path: Path) -> str:
-    """A stored svg as a data URI that holds no single quote, for an attribute between such quotes.
+def data_uri(still: str) -> str:
+    """The text of a svg as a data URI that holds no single quote, for an attribute between such quotes.
 
     A drawing keeps its text and colours; its coordinates are rounded to DECIMALS.
     """
-    drawing = shortened(path.read_text(encoding="utf-8")).replace("%", quote("%"))
+    drawing = shortened(still).replace("%", quote("%"))
     for letter in set(drawing) - KEPT - {"%"}:
         drawing = drawing.replace(letter, quote(letter, safe=""))
     return f"data:image/svg+xml,{drawing}"

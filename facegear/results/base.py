@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+import pandas as pd
+
 from facegear.errors import extras_named
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.table import STAGES
@@ -55,9 +57,12 @@ class Result:
         """
         from facegear.io.workbook import write
 
-        tables = {name: part for name, part in self.content.items() if hasattr(part, "columns")}
         with extras_named():
-            return write(path, tables)
+            return write(path, self._sheets())
+
+    def _sheets(self) -> dict[str, pd.DataFrame]:
+        """Return the tables of a workbook by the names of its sheets."""
+        return {name: part for name, part in self.content.items() if isinstance(part, pd.DataFrame)}
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.source}: {self.summary})"

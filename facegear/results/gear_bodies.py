@@ -19,6 +19,30 @@ class GearBodiesResult(Result):
         """One row a mode: gear, nodal diameters, frequency at rest, waves in space, resonant speeds."""
         return self.content["modes"].copy()
 
+    def coefficients(self) -> pd.DataFrame:
+        """One row a mode: what its equation of motion has, hub held, for unit modal mass.
+
+        In the frame of the body, which turns at W (rad/s), two modes z of one order obey
+
+            z'' + 2 zeta w z' - 2 i c W z' + [w^2 + W^2 B] z = f
+
+        - frequency_hz: w / 2 pi, at rest.
+        - gyroscopic_factor: c = int 2 rho U V over the modal mass, from the Coriolis force; a pure number.
+        - stiffening_factor: B = (S - P) / M, what the centrifugal stress stiffens less what the centrifugal
+          force softens; a pure number.
+        - damping_ratio: zeta, which rises with the frequency where `stiffness_damping_s` is given.
+        - hub_axial_sqrt_kg, hub_spin_sqrt_kg_m (no nodal diameter), hub_sideways_sqrt_kg and
+          hub_tilt_sqrt_kg_m (one nodal diameter): Q, the mass by which an acceleration of the hub along the
+          axis, round it, sideways, or tilting about a diameter at height 0 drives the mode; zero elsewhere.
+
+        c and B of a mode are diagonals of full matrices over the modes of an order; `bodies/reduced.npz` has
+        these.
+        """
+        modes = self.content["modes"]
+        columns = ["gear", "nodal_diameters", "mode", "frequency_hz", "gyroscopic_factor"]
+        couplings = [column for column in modes.columns if column.startswith("hub_")]
+        return modes[[*columns, "stiffening_factor", "damping_ratio", *couplings]].copy()
+
     def bodies(self) -> pd.DataFrame:
         """One row a gear: mass and inertia of its section, compliance at a mesh, numerical error."""
         return self.content["bodies"].copy()

@@ -26,6 +26,10 @@ class GeometryResult(Result):
         ]
         return pd.DataFrame(rows, columns=["quantity", "value"])
 
+    def _sheets(self) -> dict[str, pd.DataFrame]:
+        """Return the table of all quantities: the stage writes a record and arrays, but no table."""
+        return {"geometry": self.table()}
+
     def plot(self, what: str = "pair") -> "Figure":
         """`pair`: both gears in mesh; `sections` of both teeth; `separation` around the contact path."""
         from facegear.plots.tooth_pair import separation, tooth_pair, tooth_sections

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
+from facegear.errors import FacegearError
 from facegear.results.base import Result
 
 if TYPE_CHECKING:
@@ -24,8 +25,14 @@ class ShaftOrdersResult(Result):
         return self.content["over_speed"].copy()
 
     def plot(self) -> "Figure":
-        """Forces at all orders at the nominal speed, and the largest orders over speed."""
+        """Forces at all orders at the nominal speed, and the largest orders over speed.
+
+        Raises FacegearError for a machine without anything that turns with its gears.
+        """
         from facegear.plots.shaft_orders import shaft_order_figure
 
+        if self.content["orders"].empty:
+            message = "no runout, pitch deviation or single tooth is given, there is nothing to draw"
+            raise FacegearError(f"{self.values['case']}: {message}")
         speed = self.values["dynamics"]["speed_rpm"]
         return shaft_order_figure(self.content["orders"], self.content["over_speed"], speed)

@@ -19,7 +19,9 @@ class StiffnessResult(Result):
     STAGE: ClassVar = "stiffness"
 
     def table(self) -> pd.DataFrame:
-        """Orders kept of k = sum a sin(j w t) + b cos(j w t), with the errors of cutting and sampling."""
+        """Orders kept of k = sum of sin_n_per_m sin(j w t) + cos_n_per_m cos(j w t), with the errors of
+        cutting and sampling.
+        """
         return self.content["harmonics"].copy()
 
     def curve(self) -> pd.DataFrame:

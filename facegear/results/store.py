@@ -1,6 +1,7 @@
 """Where the results of a machine come from: known in this session, else stored and current, else computed."""
 
 import json
+import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -100,9 +101,11 @@ class Store:
 
 
 def case_folder(folders: Iterable[Path], results: str | Path, case: str) -> Path | None:
-    """The case's folder below `results`, which a relative one is looked for in `folders`; None without."""
+    """The case's folder below `results`, which a relative one is looked for in `folders`; None without one
+    that may be entered.
+    """
     stored = [folder / results / case for folder in folders]
-    return next((folder for folder in stored if folder.is_dir()), None)
+    return next((folder for folder in stored if os.access(folder, os.R_OK | os.X_OK)), None)
 
 
 def _unless_corrupt(read: Callable[[], Value]) -> Value | None:

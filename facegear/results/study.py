@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import combinations as pairs
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
 from facegear.config.load import plain
+from facegear.config.studies import common_key
 from facegear.errors import FacegearError
 from facegear.results.base import Result
 
@@ -71,10 +73,16 @@ class Study:
 
 
 def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any]]:
-    """Label -> keys and values, in every combination. Raises FacegearError for a key without values."""
+    """Label -> keys and values, in every combination.
+
+    Raises FacegearError for a key without values, and for a key that holds another.
+    """
     axes = {key: plain(list(given)) for key, given in values.items()}
     for key, given in axes.items():
         if not given:
             raise FacegearError(f"study: {key} = []: must hold at least one value")
+    for first, second in pairs(axes, 2):
+        if common_key([first], [second]):
+            raise FacegearError(f"study: {second}: must not be set beside {first}, as one holds the other")
     points = [dict(zip(axes, point, strict=True)) for point in product(*axes.values())]
     return {", ".join(f"{key} = {value}" for key, value in point.items()): point for point in points}

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
+from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.errors import FacegearError, chosen
 from facegear.results.base import Result
 
@@ -30,8 +31,23 @@ class SweepResult(Result):
         return sweep_dataset(self.content["sweep"])
 
     def jumps(self) -> pd.DataFrame:
-        """One row a jump: its bracket of speeds (rpm), classes of motion, the resonance it belongs to."""
-        return self.content["jumps"].copy()
+        """One row for each jump from one periodic motion to another.
+
+        Columns are its bracket of speeds and their error (rpm), `kind`, classes of motion and the resonance
+        it belongs to. `kind` is `jump` where the motion before it ends or loses its stability, and `step`
+        where the sweep left a stable motion because its own step was too large. The true speed of a jump lies
+        in the bracket or at most `error_rpm` beside it.
+        """
+        jumps = self.content["jumps"]
+        return jumps[jumps["kind"] != JumpKind.IRREGULAR].reset_index(drop=True)
+
+    def irregular_ends(self) -> pd.DataFrame:
+        """One row for each abrupt change at which irregular motion begins or ends; columns as of `jumps`.
+
+        Where irregular motion ends is a matter of chance: there `error_rpm` is the step of the sweep.
+        """
+        jumps = self.content["jumps"]
+        return jumps[jumps["kind"] == JumpKind.IRREGULAR].reset_index(drop=True)
 
     def resonances(self) -> pd.DataFrame:
         """One row a peak of the RMS without mean, with the mode it belongs to."""

@@ -28,6 +28,7 @@ def sweep_dataset(table: pd.DataFrame) -> xr.Dataset:
         "class": _filled(speeds, "class", axes, ""),
         "periodic": _filled(speeds, "periodic", axes, ""),
         "after_irregular": _filled(speeds, "after_irregular", axes, ""),
+        "symmetry_broken": _filled(speeds, "symmetry_broken", axes, ""),
     }
     for quantity, rows in table.groupby("quantity", sort=False):
         kind = _kind(rows["body_or_mesh"].iloc[0])

@@ -10,7 +10,7 @@ from typing import Any
 from facegear.config.arguments import typed_arguments
 from facegear.config.notes import notes
 from facegear.errors import FacegearError, extras_named
-from facegear.io.atomic import atomic_path
+from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.pipeline.asked import machine_loads
 from facegear.pipeline.needs import resolved_needs
 from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair, table_name
@@ -41,6 +41,7 @@ class WholeCase:
         path = Path(path)
         if path.suffix != ".html":
             raise FacegearError(f"{path}: must end in .html")
+        require_writable_file(path)
         with extras_named(), TemporaryDirectory() as folder:
             stages = [stage for stage in self._asked() if _is_reported(stage)]
             text = self._page(Path(folder), stages)
@@ -55,6 +56,7 @@ class WholeCase:
         Returns the path of the report.
         """
         folder = Path(folder)
+        require_writable(folder)
         for stage in self._asked():
             content = self._output(stage).content
             paths = {

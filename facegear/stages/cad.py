@@ -12,8 +12,10 @@ from facegear.io.cad import write_step, write_stl
 from facegear.stages.outcome import Outcome
 
 
-def cad(body: Body, tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
+def cad(body: Body, tooth_pair: ToothPair, mesh: Mesh, case: str) -> Outcome:
     """`step` and `stl` (bytes of a file) of as many teeth of a body as mesh files hold.
+
+    case: name of the config, by which the STEP file's product is called.
 
     Raises ConfigError for a pair without bodies.
     """
@@ -21,14 +23,21 @@ def cad(body: Body, tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
     patches = solid(design, body, min(mesh.exported_teeth, teeth_of(design, body)))
     with TemporaryDirectory() as folder:
         step, stl = Path(folder, "body.step"), Path(folder, "body.stl")
-        volume = write_step(step, patches, body)
+        volume = write_step(step, patches, product_name(case, body))
         write_stl(stl, triangles(patches))
         content = {"step": step.read_bytes(), "stl": stl.read_bytes()}
     return Outcome(content, f"{len(patches)} surfaces around {1e9 * volume:.2f} mm3")
 
 
-def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair) -> Path:
+def product_name(case: str, body: Body) -> str:
+    """Return the name of a body's product in a STEP file: `paper, face gear`."""
+    return f"{case}, {body.replace('_', ' ')}"
+
+
+def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair, case: str) -> Path:
     """Write teeth of a body, or the whole gear, as STEP or STL by the ending of `path`; returns the path.
+
+    case: name of the config, by which the STEP file's product is called.
 
     Raises FacegearError for another ending, body or number of teeth, ConfigError for a pair without bodies.
     """
@@ -42,5 +51,5 @@ def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair
     if ending == ".stl":
         write_stl(path, triangles(patches))
     else:
-        write_step(path, patches, gear)
+        write_step(path, patches, product_name(case, gear))
     return path

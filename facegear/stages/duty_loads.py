@@ -13,6 +13,7 @@ from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
 from facegear.strength.columns import DUTY_LOAD_COLUMNS, DUTY_SPECTRUM_COLUMNS
 from facegear.strength.duty_loads import history_of, load_rows, spectrum_rows
+from facegear.ties import first_largest_row
 from facegear.variants.loads import at_mesh_torque
 
 
@@ -62,7 +63,7 @@ def duty_loads(
 
 
 def _summary(table: pd.DataFrame) -> str:
-    worst = table.loc[table["largest_force_n"].idxmax()]
+    worst = first_largest_row(table, "largest_force_n")
     where = f"{worst['mesh']} in bin {worst['bin']} of {worst['torque_n_m']:g} N m"
     factors = f"K_gamma {worst['mesh_load_factor']:.3f}, K_v {worst['dynamic_factor']:.3f}"
     text = f"largest force {worst['largest_force_n']:.0f} N, {where}: {factors}"

@@ -19,6 +19,7 @@ from facegear.dynamics.response_tables import (
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.sweeps.summary import response_summary
 from facegear.stages.outcome import Outcome
+from facegear.transmission.loaded_modes import wedged_motion_text
 
 
 def dynamics_response(
@@ -48,4 +49,5 @@ def dynamics_response(
         "multipliers": multiplier_table(response),
         "bearings": bearing_table(model, response),
     }
-    return Outcome(content, response_summary(response))
+    wedged = wedged_motion_text(model.machine)
+    return Outcome(content, f"{response_summary(response)}{'; ' * bool(wedged)}{wedged}")

@@ -80,7 +80,7 @@ def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout
 
 
 def _reduced(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
-    return reduced_body(body, contact_patch(section, tooth_pair), section.damping_ratio)
+    return reduced_body(body, contact_patch(section, tooth_pair), *section.damping)
 
 
 def _solved(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
@@ -114,7 +114,7 @@ def _parts(
     angle = machine.pressure_angle
     return {
         "bodies": tables.body_table(gear, body, patch, angle, machine.angles),
-        "modes": tables.mode_table(gear, body, speed, tooth_pair.face_gear_teeth, ratio),
+        "modes": tables.mode_table(gear, body, speed, tooth_pair.face_gear_teeth, ratio, section.damping),
         "crossings": tables.crossing_table(
             gear, body, tooth_pair.face_gear_teeth, ratio, speeds_rpm[1], machine.angles
         ),

@@ -10,6 +10,7 @@ from facegear.load_sharing.hunting import hunting_cycle
 from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
 from facegear.stages.outcome import Outcome
+from facegear.ties import first_largest_row
 from facegear.transmission.flanks import past_law
 from facegear.transmission.static_gears import at_rest
 
@@ -43,6 +44,6 @@ def hunting(
         return Outcome(content, "no path shares a load")
     past = float(past_law(machine, cycle.cycles, cycle.flank_forces).max())
     beyond = f"; past the mesh law's last level at up to {100.0 * past:.2g} % of positions" if past else ""
-    worst = known.loc[known["k_gamma"].idxmax()]
+    worst = first_largest_row(known, "k_gamma")
     summary = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) at {worst['torque_n_m']:g} N m"
     return Outcome(content, f"{summary} over {worst['mesh_cycles']:.0f} mesh cycles{beyond}")

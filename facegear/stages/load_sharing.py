@@ -1,6 +1,5 @@
 """Load sharing of one machine at one speed."""
 
-import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
@@ -38,7 +37,7 @@ def load_sharing(
     forces = force_table(
         layout(transmission, teeth),
         response.mean_forces[1],
-        np.abs(sharing.motion.forces).max(axis=1),
+        response.largest_forces,
         response.label,
     )
     means = ", ".join(f"{row.group} {row.mean:.3f}" for row in summary.itertuples())

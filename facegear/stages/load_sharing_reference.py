@@ -1,6 +1,5 @@
 """Load sharing at rest, running slowly, and over a range of speeds."""
 
-import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
@@ -11,6 +10,7 @@ from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.load_sharing.reference import reference_table, speed_range_table
 from facegear.stages.outcome import Outcome
+from facegear.ties import first_largest_row
 
 
 def load_sharing_reference(
@@ -38,5 +38,5 @@ def load_sharing_reference(
 def _summary(speeds: pd.DataFrame) -> str:
     if not speeds["mean"].notna().any():
         return "no meshes share a load"
-    worst = speeds.iloc[int(np.nanargmax(speeds["mean"]))]
+    worst = first_largest_row(speeds, "mean")
     return f"largest mean {worst['mean']:.2f} ({worst['group']}) at {worst['speed_rpm']:.0f} rpm"

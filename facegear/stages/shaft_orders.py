@@ -8,6 +8,7 @@ from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
+from facegear.ties import first_largest, first_largest_row
 from facegear.transmission.machine import mesh_frequency
 from facegear.transmission.shaft_orders import TurnOrders, loaded_machine, mesh_amplitudes, turn_orders
 
@@ -44,10 +45,10 @@ def shaft_orders(
     orders, loaded = turn_orders(machine), loaded_machine(machine)
 
     def amplitudes(some: TurnOrders, speed: float) -> np.ndarray:
-        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.springs)
+        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.closed)
 
-    running, still = amplitudes(orders, speed_rpm), mesh_amplitudes(loaded.at_rest(orders), loaded.springs)
-    error = 1e6 * mesh_amplitudes(orders.error, loaded.springs)
+    running, still = amplitudes(orders, speed_rpm), mesh_amplitudes(loaded.at_rest(orders), loaded.closed)
+    error = 1e6 * mesh_amplitudes(orders.error, loaded.closed)
     nominal = mesh_frequency(layout, speed_rpm)
     rows = [
         (*_key(orders, row, nominal), name, error[row, mesh], running[row, mesh], still[row, mesh])
@@ -58,7 +59,7 @@ def shaft_orders(
     for speed in np.linspace(first_rpm, last_rpm, SPEEDS).tolist():
         for row, forces in enumerate(amplitudes(largest, speed)):
             key = _key(largest, row, mesh_frequency(layout, speed))
-            over_speed.append((speed, *key, names[int(forces.argmax())], float(forces.max())))
+            over_speed.append((speed, *key, names[first_largest(forces)], float(forces.max())))
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     content = {"orders": table, "over_speed": pd.DataFrame(over_speed, columns=list(OVER_SPEED))}
     return Outcome(content, _summary(table, speed_rpm))
@@ -86,7 +87,7 @@ def _largest(orders: TurnOrders) -> list[int]:
 def _summary(table: pd.DataFrame, speed_rpm: float) -> str:
     if table.empty:
         return "nothing differs from tooth to tooth"
-    row = table.loc[table["force_n"].idxmax()]
+    row = first_largest_row(table, "force_n")
     gear = row["turning"].replace("_", " ")
     return (
         f"{row['mesh']}: {row['force_n']:.0f} N at order {row['order']} of a turn of the {gear} "

@@ -9,6 +9,7 @@ from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.stages.outcome import Outcome
+from facegear.ties import first_largest_row
 from facegear.transmission.shaft_tables import (
     deflection_table,
     load_table,
@@ -53,7 +54,7 @@ def _summary(content: dict[str, pd.DataFrame]) -> str:
     parts, seats, bearings, torsion = [], content["seats"], content["bearings"], content["torsion"]
     if len(seats):
         sagged = np.hypot(seats["x_um"], seats["y_um"])
-        worst = bearings.loc[bearings["radial_n"].idxmax()]
+        worst = first_largest_row(bearings, "radial_n")
         parts.append(
             f"shafts give way by up to {sagged.max():.4g} um ({seats['pinion'][int(sagged.argmax())]}), "
             f"{worst['radial_n']:.5g} N on bearing {worst['bearing']} of {worst['pinion']}"

@@ -14,6 +14,7 @@ from facegear.stages.outcome import Outcome
 from facegear.strength.flank_contacts import flank_contacts
 from facegear.strength.posed_contacts import mesh_contacts, posed_of
 from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
+from facegear.ties import first_largest_row
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_equilibrium
 
@@ -52,7 +53,7 @@ def stress_over_speed(
     own = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
     radius = pair(tooth_pair).design.pinion_base_radius
     table = stress_table(forces, at_standstill, radius, own)
-    worst = table.loc[table["largest_force_n"].idxmax()]
+    worst = first_largest_row(table, "largest_force_n")
     where = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"
     stresses = f"face gear {worst['face_gear_mpa']:.0f} MPa, pinion {worst['pinion_mpa']:.0f} MPa"
     summary = f"largest dynamic factor {worst['dynamic_factor']:.2f} at {where}: {stresses}"

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from facegear.stages.outcome import Outcome
+from facegear.ties import first_largest_row
 
 
 def study_forces(
@@ -20,7 +21,7 @@ def study_forces(
         named = dict(zip(("study", "point", "axis", "beside", "key", "number"), point, strict=True))
         parts.append(pd.DataFrame({**{name: [value] * len(table) for name, value in named.items()}, **table}))
     forces = pd.concat(parts, ignore_index=True)
-    worst = forces.loc[forces["largest_n"].idxmax()]
+    worst = first_largest_row(forces, "largest_n")
     at = f"{worst['axis']} = {worst['number']:g}"
     text = f"largest force {worst['largest_n']:.5g} N, on {worst['mesh']} at {at}"
     return Outcome({"forces": forces}, text)

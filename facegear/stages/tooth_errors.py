@@ -9,13 +9,11 @@ from facegear.arrays import Array, Arrays
 from facegear.config.tooth_pair import ToothPair, pair_design, single_teeth
 from facegear.contact.gear_flank import from_arrays
 from facegear.contact.teeth import ContactSide
-from facegear.contact.tooth_errors import loaded_curves, orders, pair_gaps, unloaded_errors
+from facegear.contact.tooth_errors import loaded_curves, located_range, orders, pair_gaps, unloaded_errors
 from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.flank_errors import FLANKS, pair_at
 from facegear.stages.outcome import Outcome
 
-POSITIONS = 16
-"""Positions of a pitch at which gaps without load are looked at."""
 ORDERS = 6
 
 
@@ -43,7 +41,9 @@ def tooth_errors(
         curves |= {f"{body}_{side}_m": added[body] for body in BODIES}
     teeth = single_teeth(tooth_pair, "drive")
     turns = [len(own) if len(set(own)) > 1 else 1 for own in teeth.values()]
-    unloaded = unloaded_errors(pair_gaps(design, POSITIONS), teeth, lcm(*turns))
+    places = np.unique(loads["position"])
+    unloaded = unloaded_errors(pair_gaps(design, places), teeth, lcm(*turns))
+    peak_to_peak, left = located_range(design, teeth, unloaded)
     table = pd.DataFrame(
         [
             {"body": body, "order": order + 1, "unloaded_um": 1e6 * free, "loaded_um": 1e6 * loaded}
@@ -59,9 +59,10 @@ def tooth_errors(
         ],
         columns=["body", "order", "unloaded_um", "loaded_um"],
     )
+    loaded_range = sum(np.ptp(curves[f"{body}_drive_m"]) for body in BODIES)
     summary = (
-        f"tooth to tooth {1e6 * np.ptp(unloaded):.3g} um without load over {len(unloaded)} mesh cycles, "
-        f"{1e6 * sum(np.ptp(curves[f'{body}_drive_m']) for body in BODIES):.3g} um at {torque:g} N m"
+        f"tooth to tooth {1e6 * peak_to_peak:.4g} um (within {1e6 * left:.1g}) without load over "
+        f"{len(unloaded)} mesh cycles, {1e6 * loaded_range:.3g} um at {torque:g} N m"
     )
     return Outcome({"curves": curves, "orders": table}, summary)
 

@@ -9,7 +9,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.stiffness.curve import LoadTable
 from facegear.stiffness.unloaded import peak_to_peak
 
-HARMONICS_COLUMNS = ("order", "a_n_per_m", "b_n_per_m", "amplitude_n_per_m")
+HARMONICS_COLUMNS = ("order", "sin_n_per_m", "cos_n_per_m", "amplitude_n_per_m")
 
 
 def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> pd.DataFrame:
@@ -23,8 +23,8 @@ def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> p
     return pd.DataFrame(
         {
             "order": orders,
-            "a_n_per_m": series.a,
-            "b_n_per_m": series.b,
+            "sin_n_per_m": series.sine,
+            "cos_n_per_m": series.cosine,
             "amplitude_n_per_m": series.amplitudes,
             "truncation_error_n_per_m": truncation,
             "sampling_error_n_per_m": sampling,
@@ -36,8 +36,8 @@ def with_unloaded_error(table: pd.DataFrame, series: Harmonics, truncation: floa
     """A harmonics table with the pair's unloaded transmission error (m) beside k, order by order."""
     orders = table["order"].to_numpy()
     return table.assign(
-        e_a_um=1e6 * series.a[orders],
-        e_b_um=1e6 * series.b[orders],
+        e_sin_um=1e6 * series.sine[orders],
+        e_cos_um=1e6 * series.cosine[orders],
         e_peak_to_peak_um=1e6 * peak_to_peak(series),
         e_truncation_error_um=1e6 * truncation,
     )
@@ -45,9 +45,11 @@ def with_unloaded_error(table: pd.DataFrame, series: Harmonics, truncation: floa
 
 def unloaded_error(table: pd.DataFrame) -> Harmonics | None:
     """The unloaded transmission error (m) of a harmonics table; None where k was given without contact."""
-    if "e_a_um" not in table:
+    if "e_sin_um" not in table:
         return None
-    renamed = table[["order", "e_a_um", "e_b_um"]].set_axis(["order", "a_n_per_m", "b_n_per_m"], axis=1)
+    renamed = table[["order", "e_sin_um", "e_cos_um"]].set_axis(
+        ["order", "sin_n_per_m", "cos_n_per_m"], axis=1
+    )
     return series_of(renamed).scaled(1e-6)
 
 
@@ -75,14 +77,14 @@ def load_dependence(table: LoadTable) -> pd.DataFrame:
 
 
 def series_of(table: pd.DataFrame) -> Harmonics:
-    """The series of a table with the columns order, a_n_per_m, b_n_per_m; orders left out are zero.
+    """The series of a table with the columns order, sin_n_per_m, cos_n_per_m; orders left out are zero.
 
     Raises ValueError for orders that are not whole numbers from zero, or stand twice.
     """
     orders = table["order"].to_numpy()
     if (orders != np.round(orders)).any() or (orders < 0).any() or np.unique(orders).size != orders.size:
         raise ValueError("orders must be whole numbers from 0, each once")
-    a, b = np.zeros(int(orders.max()) + 1), np.zeros(int(orders.max()) + 1)
-    a[orders.astype(int)] = table["a_n_per_m"]
-    b[orders.astype(int)] = table["b_n_per_m"]
-    return Harmonics(a, b)
+    sine, cosine = np.zeros(int(orders.max()) + 1), np.zeros(int(orders.max()) + 1)
+    sine[orders.astype(int)] = table["sin_n_per_m"]
+    cosine[orders.astype(int)] = table["cos_n_per_m"]
+    return Harmonics(sine, cosine)

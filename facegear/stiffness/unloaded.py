@@ -22,9 +22,9 @@ def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
         return Harmonics(np.zeros(order + 1), np.zeros(order + 1)), 0.0
     fit = fit_harmonics(1e-6 * (samples - samples.mean()))
     series = fit.series.kept(order)
-    b = series.b.copy()
-    b[0] = 0.0
-    return Harmonics(series.a, b), float(fit.truncation[order])
+    cosine = series.cosine.copy()
+    cosine[0] = 0.0
+    return Harmonics(series.sine, cosine), float(fit.truncation[order])
 
 
 def unloaded_samples(ltca: pd.DataFrame) -> Array:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.between_samples import located_by_cycle
 from facegear.dynamics.following import FORGOTTEN, follow
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
@@ -28,12 +29,14 @@ class History:
     """Forces (cycles, positions, 2 meshes) on the flanks of a motion, drive flanks first, N.
 
     even_shares (meshes,): nominal even share of each mesh, N.
+    largest (cycles, flanks): largest force of each cycle, located between the positions, N.
     turning: the cycles are those of the hunting cycle, each with its own teeth.
     """
 
     layout: Layout
     even_shares: Array
     forces: Array
+    largest: Array
     turning: bool
     motion: str
     settled: bool
@@ -50,11 +53,14 @@ def history_of(machine: Machine, speed_rpm: float, known: Settings) -> History:
         run = follow(model, speed_rpm, 0, cycles, POSITIONS, known)
         kept = run.memory <= FORGOTTEN
         forces = run.flank_forces.reshape(-1, POSITIONS, flanks)
-        return History(layout, even, forces, True, "followed" if kept else "depends on its past", kept)
+        motion = "followed" if kept else "depends on its past"
+        return History(layout, even, forces, located_by_cycle(forces, False), True, motion, kept)
     response = simulate(model, speed_rpm, known)
     both = np.concatenate([np.maximum(response.forces, 0.0), np.maximum(-response.forces, 0.0)], axis=1)
     forces = both.reshape(response.periods, response.per_period, flanks)
-    return History(layout, even, forces, False, response.label, response.motion is not Motion.NOT_SETTLED)
+    largest = located_by_cycle(forces, response.motion is Motion.PERIODIC)
+    settled = response.motion is not Motion.NOT_SETTLED
+    return History(layout, even, forces, largest, False, response.label, settled)
 
 
 def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
@@ -63,7 +69,7 @@ def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
     K_gamma is the largest mean of a mesh cycle over the mesh's nominal even share, K_v the largest force over
     that mean.
     """
-    layout, largest = history.layout, history.forces.max(axis=(0, 1))
+    layout, largest = history.layout, history.largest.max(axis=0)
     means = history.forces.mean(axis=1)
     for flank in np.flatnonzero(largest > NO_LOAD * largest.max()):
         side, mesh = divmod(int(flank), len(layout.meshes))
@@ -78,7 +84,7 @@ def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
 
 def spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
     """Body, gear, flank, mesh, fraction and force of every class of passages."""
-    layout, passages = history.layout, passage_forces(history.forces)
+    layout, passages = history.layout, passage_forces(history.largest)
     pinions, floor = len(layout.pinions), NO_LOAD * passages.max()
     if history.turning:  # on to where the same two teeth meet again
         passages = np.tile(passages, (lcm(layout.pinion_teeth, layout.gear_teeth) // len(passages), 1))

@@ -12,13 +12,12 @@ STEEP = 10.0
 """Power of the force by which the hardest loaded tooth is chosen, about the slope of an S-N curve."""
 
 
-def passage_forces(forces: Array) -> Array:
+def passage_forces(largest: Array) -> Array:
     """Largest force in every mesh cycle and the one after it, (cycles, flanks).
 
-    forces (cycles, positions, flanks), N, not negative. A tooth is in mesh for about two mesh cycles; the
-    last one is followed by the first.
+    largest (cycles, flanks): largest force of each mesh cycle, N, not negative. A tooth is in mesh for about
+    two mesh cycles; the last one is followed by the first.
     """
-    largest = forces.max(axis=1)
     return np.maximum(largest, np.roll(largest, -1, axis=0))
 
 

@@ -9,6 +9,7 @@ from facegear.arrays import Array
 from facegear.geometry.bodies import BODIES
 from facegear.strength.columns import STRESS_OVER_SPEED_COLUMNS
 from facegear.strength.flank_contacts import FlankContact, largest_pressure
+from facegear.ties import first_largest_rows
 
 ALIKE = 1e-3
 """Motions whose largest forces differ by less, relative, are equally hard: most often they are one."""
@@ -20,7 +21,7 @@ FORCE_COLUMNS = ("motion", "class", "speed_rpm", "mesh", "largest_force_n")
 def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
     """The mesh with the largest force at each speed and direction of a sweep, columns FORCE_COLUMNS."""
     rows = sweep[sweep["quantity"] == "largest_elastic_force_n"].reset_index(drop=True)
-    worst = rows.loc[rows.groupby(["direction", "speed_rpm"], sort=False)["value"].idxmax()]
+    worst = first_largest_rows(rows, "value", ["direction", "speed_rpm"])
     worst = worst.assign(motion="sweep " + worst["direction"])
     named = worst.rename(columns={"body_or_mesh": "mesh", "value": "largest_force_n"})
     return named[list(FORCE_COLUMNS)]
@@ -33,7 +34,7 @@ def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
     """
     forces = []
     for (number, period), rows in branches.groupby(["branch", "period"], sort=False):
-        worst = rows.loc[rows.groupby("point", sort=True)["peak_force_n"].idxmax()]
+        worst = first_largest_rows(rows, "peak_force_n", ["point"], sort=True)
         speed = _without_rounding(worst["speed_rpm"].to_numpy(), speeds)
         force = worst["peak_force_n"].to_numpy()
         stable, meshes = worst["stable"].to_numpy(bool), worst["mesh"].to_numpy()

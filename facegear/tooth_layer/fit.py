@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import root
 
 from facegear.arrays import Array
-from facegear.errors import NotConverged, extras_named
+from facegear.errors import NotConverged
 from facegear.gear_body.elements import elements_of
 from facegear.gear_body.matrices import elastic_stiffness
 from facegear.gear_body.mesh import BodyMesh
@@ -19,9 +19,6 @@ from facegear.gear_body.section import Layer, Section, rectangle
 from facegear.geometry.design import PairDesign
 from facegear.tooth_layer.rim import rim_below
 from facegear.tooth_layer.sector import energies, tooth_energies
-
-with extras_named():
-    from threadpoolctl import threadpool_limits
 
 ORDER = 4
 """Nodal diameters of the waves; three to six give the same numbers to 1 %."""
@@ -38,11 +35,6 @@ def fitted_teeth(section: Section, design: PairDesign) -> Section:
     layer = section.layer
     if layer is None:
         return section
-    with threadpool_limits(1):
-        return _fitted(section, layer, design)
-
-
-def _fitted(section: Section, layer: Layer, design: PairDesign) -> Section:
     rim = rim_below(section)
     wanted = tooth_energies(design, section.material, rim, ORDER)
 

@@ -187,11 +187,15 @@ class ElasticGears:
     bodies: Mapping[int, ReducedBody]
 
     def softening(self) -> Array:
-        """What each mesh gives beyond the modes, (meshes,), m/N: a spring in series with its teeth."""
-        angle = self.layout.pressure_angle
-        drive = np.array([-np.sin(angle), np.cos(angle)])
-        given = {gear: body.own_residual(drive) for gear, body in self.bodies.items()}
-        return np.array([given.get(gear, 0.0) for _, gear in self.layout.meshes])
+        """Return the compliance of each mesh that the modes leave out, (meshes, 2, 2), m/N.
+
+        Entry [m, i, j] is the motion of flank i against its own force by a unit force on flank j; 0 is the
+        drive flank, 1 the back flank. It is the residual of MacNeal 1971, without mass.
+        """
+        sine, cosine = np.sin(self.layout.pressure_angle), np.cos(self.layout.pressure_angle)
+        directions = np.array([[-sine, cosine], [-sine, -cosine]])
+        given = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
+        return np.array([given.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
     def __call__(self, lumped: LinearModel) -> LinearModel:
         """The model with the coordinates of every gear behind its own.

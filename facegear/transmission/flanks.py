@@ -96,7 +96,7 @@ def _flank_law(machine: Machine) -> MeshLaw:
     if machine.tables is None:
         return _linear_law(machine.mesh_stiffness, machine.phases)
     gears, own = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
-    return _law_of_tables(machine.tables, gears, own, machine.softening, tuple(_lags(machine)))
+    return _law_of_tables(machine.tables, gears, own, machine.own_softening, tuple(_lags(machine)))
 
 
 def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
@@ -266,7 +266,7 @@ def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Arra
 
 def mirrored(series: Harmonics) -> Harmonics:
     """The series of f(-t)."""
-    return Harmonics(-series.a, series.b)
+    return Harmonics(-series.sine, series.cosine)
 
 
 @kept_by_content(8)

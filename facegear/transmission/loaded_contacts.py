@@ -40,6 +40,8 @@ class LoadedContacts:
         Forces, N, drive flanks first.
     stiffness : (2 meshes,)
         Slope of each flank's force there, N/m, or what it would be in contact.
+    pressed : (2 meshes,)
+        How far each flank is pressed in by its law, m; 0 for one that is open.
     past_law : (2 meshes,)
         Whether it is pressed in past the last level of its law.
     rings : (pinions,)
@@ -50,6 +52,7 @@ class LoadedContacts:
 
     flanks: Array
     stiffness: Array
+    pressed: Array
     past_law: Mask
     rings: Array
     places: Array
@@ -80,7 +83,8 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
     forces = forces_by_active_sets(standing)
     constant = np.tile(machine.mean_stiffness, 2)
     if forces is not None:
-        return LoadedContacts(forces, constant, np.zeros(constant.size, bool), rings, positions)
+        none = np.zeros(constant.size, bool)
+        return LoadedContacts(forces, constant, forces / constant, none, rings, positions)
     from facegear.transmission.statics import bearing_forces, mean_equilibrium  # compiled
 
     equilibrium = mean_equilibrium(standing)
@@ -90,13 +94,12 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
     over = (
         standing.linear.rows @ equilibrium.displacements[0] - constant_errors(machine) - flank_gaps(machine)
     )
-    if machine.softening is not None:
-        over += np.tile(machine.softening, 2) * equilibrium.flank_forces[0]
-    law, pressed = flank_law(machine).mean(), np.maximum(over, 0.0)[None]
-    stiffness = constant if machine.constant_stiffness else law.slope(np.zeros(1), pressed)[0]
-    return LoadedContacts(
-        equilibrium.flank_forces[0], stiffness, past_levels(law, pressed) > 0.0, rings, positions
-    )
+    if machine.own_softening is not None:
+        over += np.tile(machine.own_softening, 2) * equilibrium.flank_forces[0]
+    law, pressed = flank_law(machine).mean(), np.maximum(over, 0.0)
+    stiffness = constant if machine.constant_stiffness else law.slope(np.zeros(1), pressed[None])[0]
+    past = past_levels(law, pressed[None]) > 0.0
+    return LoadedContacts(equilibrium.flank_forces[0], stiffness, pressed, past, rings, positions)
 
 
 def forces_by_active_sets(machine: Machine) -> Array | None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Mask
+from facegear.transmission.flank_springs import coupled_meshes, flank_springs
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_contacts import Contact, LoadedContacts, loaded_contacts
 from facegear.transmission.machine import Machine
@@ -52,15 +53,41 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
     return VibratingMachine(modes, contacts, np.abs(other - modes.frequencies) <= SAME * other)
 
 
+def wedged_motion_text(machine: Machine) -> str:
+    """Return a sentence on wedged meshes whose flanks the equations of motion do not couple, or "".
+
+    In motion each flank has its own part of `Machine.softening` alone. The sentence names the meshes and the
+    largest relative change of a natural frequency by the rest of it, at standstill. Raises NotConverged.
+    """
+    if machine.softening is None or not machine.layout.kinematics.flanks_apart:
+        return ""
+    contacts = loaded_contacts(machine)
+    closed = np.array([state is Contact.CLOSED for state in contacts.flank_states()])
+    meshes = coupled_meshes(machine, closed).tolist()
+    if not meshes:
+        return ""
+    uncoupled = replace(machine, softening=machine.softening * np.eye(2))
+    moving, whole = (_modes(each, contacts, (Contact.CLOSED,), 0.0) for each in (uncoupled, machine))
+    vibrates = whole.frequencies > SAME * whole.frequencies.max()
+    change = np.abs(moving.frequencies[vibrates] / whole.frequencies[vibrates] - 1.0).max()
+    names = ", ".join(machine.layout.mesh_names[mesh] for mesh in meshes)
+    return (
+        f"both flanks press in {names}; motion leaves out the compliance between them that the modes do not "
+        f"hold, which moves its natural frequencies by up to {100.0 * change:.2g} %"
+    )
+
+
 def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...], speed: float) -> Modes:
     """Modes with the contacts whose state is among `holding`."""
     linear, pressed = _pressed(machine, contacts, holding)
-    return modes_of(linear, (pressed * linear.rows.T) @ linear.rows, speed)
+    return modes_of(linear, linear.rows.T @ pressed @ linear.rows, speed)
 
 
 def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
-    """The linear model with its bearings as they are pressed, and the stiffness (2 meshes,) of the flanks
-    that carry load, 0 for the others; of geometric meshes. Raises NotConverged.
+    """Return the linear model with its bearings as they are pressed, and the stiffness of the flanks.
+
+    The stiffness (2 meshes, 2 meshes), N/m, is that of `flank_springs`: zero for flanks that carry no load.
+    The meshes must be geometric. Raises NotConverged.
     """
     return _pressed(machine, loaded_contacts(machine), (Contact.CLOSED,))
 
@@ -68,9 +95,8 @@ def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
 def _pressed(
     machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]
 ) -> tuple[LinearModel, Array]:
-    closed = [state in holding for state in contacts.flank_states()]
-    linear = _pressed_bearings(machine, contacts, holding)
-    return linear, np.where(closed, contacts.stiffness, 0.0)
+    closed = np.array([state in holding for state in contacts.flank_states()])
+    return _pressed_bearings(machine, contacts, holding), flank_springs(machine, contacts, closed)
 
 
 def _pressed_bearings(

@@ -89,8 +89,9 @@ class Machine:
         Of the meshes; it disturbs the motion, and nothing at rest.
     bodies
         What makes more of them than rigid masses on springs.
-    softening : (meshes,)
-        What each mesh gives in series with its teeth, m/N; nothing by default.
+    softening : (meshes, 2, 2)
+        Compliance in series with the teeth of each mesh, m/N: motion of the drive and the back flank (rows)
+        by a unit force on either (columns); nothing by default. Motion takes its diagonal alone.
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
     directions
@@ -177,9 +178,19 @@ class Machine:
     def mesh_stiffness(self) -> tuple[Harmonics, ...]:
         """Stiffness of each mesh over the reference's mesh cycle with its factor and its softening, N/m."""
         own = [self.stiffness.scaled(float(factor)) for factor in self.imperfections.stiffness]
-        if self.softening is None:
+        if self.own_softening is None:
             return tuple(own)
-        return tuple(series.softened(float(soft)) for series, soft in zip(own, self.softening, strict=True))
+        return tuple(
+            series.softened(float(soft)) for series, soft in zip(own, self.own_softening, strict=True)
+        )
+
+    @property
+    def own_softening(self) -> Array | None:
+        """Compliance in series with a flank under its own force, (meshes,), m/N; both flanks have the same.
+
+        Motion takes this part of `softening` alone.
+        """
+        return None if self.softening is None else self.softening[:, 0, 0]
 
     @property
     def mean_stiffness(self) -> Array:

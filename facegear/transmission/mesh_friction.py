@@ -82,5 +82,5 @@ def flank_ratios(ratios: Array, phases: Array) -> Array:
     shifted = np.empty_like(both)
     for flank, lag in zip(np.ndindex(both.shape[:2]), np.repeat(np.tile(phases, 2), len(PARTS)), strict=True):
         series = Harmonics(*both[flank]).shifted(float(lag))
-        shifted[flank] = series.a, series.b
+        shifted[flank] = series.sine, series.cosine
     return shifted

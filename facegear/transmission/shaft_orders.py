@@ -7,7 +7,8 @@ flanks at one frequency w gives
     (K + rows^T k rows + i w (D + rows^T c rows) - w^2 M) q = rows^T (k + i w c) e
     F = k (rows q - e)
 
-with W N, W^2 P and W G of bodies that turn. Flanks that part and the mesh stiffness' own variation, which
+with W N, W^2 P and W G of bodies that turn. k is a matrix that couples the two flanks of a wedged mesh on a
+gear that bends (`flank_springs`). Flanks that part and the mesh stiffness' own variation, which
 spreads each order to its sidebands about the mesh frequency, are left out; sidebands that the errors have by
 themselves, as their curves differ within a mesh cycle, are in.
 """
@@ -17,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Array, ComplexArray, Integers
+from facegear.arrays import Array, ComplexArray, Integers, Mask
 from facegear.transmission.flanks import slow_errors
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_modes import pressed_springs
@@ -107,16 +108,31 @@ def _flat(curves: tuple[Array, Array]) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class LoadedMachine:
-    """Its linear model about its static load, with the stiffness and damping of its flanks (2 meshes,)."""
+    """Linear model of a machine about its static load.
+
+    Attributes
+    ----------
+    linear
+        Bodies and bearings.
+    springs : (2 meshes, 2 meshes)
+        Stiffness of the flanks, N/m; the two flanks of a wedged mesh may be coupled.
+    dampers : (2 meshes,)
+        Damping of the flanks, N s/m.
+    """
 
     linear: LinearModel
     springs: Array
     dampers: Array
 
+    @property
+    def closed(self) -> Mask:
+        """Which flanks carry, (2 meshes,)."""
+        return np.asarray(np.diagonal(self.springs) > 0.0)
+
     def forces(self, orders: TurnOrders, speed_rpm: float, pinion_teeth: int) -> ComplexArray:
         """Elastic forces (n, 2 meshes) N of the flanks that carry, at a speed of the pinions."""
         linear, rows, speed = self.linear, self.linear.rows, speed_rpm * np.pi / 30.0
-        stiffness = linear.stiffness + (self.springs * rows.T) @ rows
+        stiffness = linear.stiffness + rows.T @ self.springs @ rows
         damping = linear.damping + (self.dampers * rows.T) @ rows
         if linear.spin is not None:
             stiffness = stiffness + speed * linear.spin.circulatory + speed**2 * linear.spin.centrifugal
@@ -124,33 +140,33 @@ class LoadedMachine:
         forces = np.zeros_like(orders.error)
         for row, of_mesh in enumerate(orders.of_mesh):
             omega = speed * pinion_teeth * of_mesh
-            flank = self.springs + 1j * omega * self.dampers
+            flank = self.springs + 1j * omega * np.diag(self.dampers)
             dynamic = stiffness + 1j * omega * damping - omega**2 * linear.mass
-            moved = np.linalg.solve(dynamic, rows.T @ (flank * orders.error[row]))
-            forces[row] = self.springs * (rows @ moved - orders.error[row])
+            moved = np.linalg.solve(dynamic, rows.T @ (flank @ orders.error[row]))
+            forces[row] = self.springs @ (rows @ moved - orders.error[row])
         return forces
 
     def at_rest(self, orders: TurnOrders) -> ComplexArray:
         """The same turned slowly."""
         rows = self.linear.rows
-        stiffness = self.linear.stiffness + (self.springs * rows.T) @ rows
-        pushed = rows.T @ (self.springs[:, None] * orders.error.T)
+        stiffness = self.linear.stiffness + rows.T @ self.springs @ rows
+        pushed = rows.T @ (self.springs @ orders.error.T)
         moved = np.linalg.lstsq(stiffness, pushed, rcond=1e-13)[0]
-        return np.asarray((self.springs[:, None] * (rows @ moved - orders.error.T)).T)
+        return np.asarray((self.springs @ (rows @ moved - orders.error.T)).T)
 
 
 def loaded_machine(machine: Machine) -> LoadedMachine:
     """Of geometric meshes about the machine's mean torques. Raises NotConverged."""
     linear, springs = pressed_springs(machine)
     if machine.damping.open_flanks is OpenFlanks.ALWAYS:
-        dampers = np.full(springs.size, 0.5 * machine.damping.mesh)
+        dampers = np.full(len(springs), 0.5 * machine.damping.mesh)
     else:
-        dampers = np.where(springs > 0.0, machine.damping.mesh, 0.0)
+        dampers = np.where(np.diagonal(springs) > 0.0, machine.damping.mesh, 0.0)
     return LoadedMachine(linear, springs, dampers)
 
 
-def mesh_amplitudes(forces: ComplexArray, springs: Array) -> Array:
-    """Amplitude (..., meshes) of the flank of each mesh that carries."""
+def mesh_amplitudes(forces: ComplexArray, closed: Mask) -> Array:
+    """Amplitude (..., meshes) of the flank of each mesh that carries; closed (2 meshes,) says which do."""
     drive, back = np.split(np.abs(forces), 2, axis=-1)
-    first, second = np.split(springs > 0.0, 2)
+    first, second = np.split(closed, 2)
     return np.asarray(np.where(first, drive, np.where(second, back, 0.0)))

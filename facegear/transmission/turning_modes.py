@@ -46,9 +46,12 @@ class TurningModes:
 
 
 def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: float) -> TurningModes:
-    """Modes with flanks of stiffness `springs` and damping `dampers` (2 meshes,); pinion speed in rad/s."""
+    """Return the modes at a pinion speed in rad/s.
+
+    springs (2 meshes, 2 meshes): stiffness of the flanks, N/m; dampers (2 meshes,): their damping, N s/m.
+    """
     rows, size = linear.rows, linear.size
-    stiffness = linear.stiffness + (springs * rows.T) @ rows
+    stiffness = linear.stiffness + rows.T @ springs @ rows
     damping = linear.damping + (dampers * rows.T) @ rows
     if linear.spin is not None:
         stiffness = stiffness + speed * linear.spin.circulatory + speed**2 * linear.spin.centrifugal
@@ -64,7 +67,7 @@ def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: fl
 def machine_at_speeds(machine: Machine, speeds_rpm: Sequence[float]) -> list[TurningModes]:
     """Modes of geometric meshes about their static load at every pinion speed. Raises NotConverged."""
     linear, springs = pressed_springs(machine)
-    dampers = np.where(springs > 0.0, machine.damping.mesh, 0.0)
+    dampers = np.where(np.diagonal(springs) > 0.0, machine.damping.mesh, 0.0)
     return [turning_modes(linear, springs, dampers, speed * np.pi / 30.0) for speed in speeds_rpm]
 
 

@@ -42,7 +42,7 @@ def _gear(name: str, body: Body) -> Shaft:
 
 
 def known_of_rexs(path: str | Path) -> dict[str, Any]:
-    """What a REXS file says of a starting config, by the fields of `facegear.config.starting.Known`.
+    """What a REXS file says of a starting config, by the fields of `facegear.variants.first_machine.Known`.
 
     That is the pinions, with what their bearings and bodies are given; face gears, roles, torques and speeds
     it has not. Raises FacegearError for a file without cylindrical gears, or with several kinds of them.
@@ -63,6 +63,8 @@ def known_of_rexs(path: str | Path) -> dict[str, Any]:
         "pinion_width_mm": spur.width,
         "pinion_bore_radius_mm": spur.bore,
         "pinion_mass_kg": first.mass,
-        "bearing_radial_n_per_m": first.radial,
+        "input_bearing_n_per_m": first.radial,
+        "idler_bearing_n_per_m": first.radial,
+        "axial_bearing_n_per_m": first.axial,
     }
     return {name: value for name, value in known.items() if value is not None}

@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pandas as pd
-from threadpoolctl import threadpool_limits
 
 from facegear.arrays import Arrays
 from facegear.config.base import parse
@@ -184,7 +183,6 @@ class SampledMachine(VariedMachine):
         layout = wired_layout(self.start["transmission"], self.teeth)
         names = [*self.columns(layout, self.question), *self.checks]
         known, progress = self.identity(*same), Progress(label, len(numbers))
-        # The matrices of a machine are small: threads of BLAS would wait at full speed.
-        with TemporaryDirectory() as folder, threadpool_limits(1):
+        with TemporaryDirectory() as folder:
             kept = Path(folder) / "partial" if partial is None else partial
             return run_chunk(evaluate, numbers, names, kept, known, progress.step)

@@ -89,4 +89,4 @@ def _solved(section: BodySection, pair: ToothPair) -> ReducedBody:
 
     shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
     solved = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
-    return reduced_body(solved, contact_patch(section, pair), section.damping_ratio)
+    return reduced_body(solved, contact_patch(section, pair), *section.damping)

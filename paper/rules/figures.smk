@@ -21,15 +21,23 @@ rule paper_figures_page:
         png=paper_figures("png"),
         csv=paper_figures("csv"),
         manifest="results/{case}/paper_figures/paper_figures_page.provenance.json",
+    log:
+        "results/{case}/logs/paper_figures_page.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/paper_figures_page.tsv"
     localrule: True
+    conda:
+        ENVIRONMENT
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness"),
         inputs=[one.model_dump() for one in REPRODUCTION.inputs] if REPRODUCTION else [],
+        code=code("paper/scripts/paper_figures_page.py"),
     script:
         "../scripts/paper_figures_page.py"
 
 
 rule paper_figures:
+    "Figures of the paper, each beside its claims."
     input:
         rules.paper_figures_page.output.html.format(case=CASE),
     localrule: True

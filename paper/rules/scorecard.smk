@@ -23,11 +23,18 @@ rule scorecard:
         csv="results/{case}/scorecard.csv",
         html="results/{case}/scorecard.html",
         manifest="results/{case}/scorecard.provenance.json",
+    log:
+        "results/{case}/logs/scorecard.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/scorecard.tsv"
     priority: 10
+    conda:
+        ENVIRONMENT
     resources:
         mem_mb=1300,
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness"),
         case=whole_case,
+        code=code("paper/scripts/scorecard.py"),
     script:
         "../scripts/scorecard.py"

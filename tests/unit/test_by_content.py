@@ -39,7 +39,7 @@ def test_a_pure_function_is_evaluated_once_for_arguments_that_say_the_same():
 )
 def test_a_number_a_shape_or_a_type_that_differs_makes_another_content(other):
     series = Harmonics(np.array([0.0, 1.0]), np.array([2.0, 3.0]))
-    assert content(series) == content(Harmonics(series.a.copy(), series.b.copy()))
+    assert content(series) == content(Harmonics(series.sine.copy(), series.cosine.copy()))
     assert content(series) != content(other)
 
 

@@ -1,10 +1,12 @@
 """The front door: what a notebook meets. Every answer of the example takes a second or two."""
 
 import gc
+import pkgutil
 import subprocess
 import sys
 import weakref
 from copy import deepcopy
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,9 @@ from facegear import errors
 from facegear.compare.answers import opened
 from facegear.compare.judge import compare
 from facegear.errors import FacegearError
+from facegear.io.workbook import LONGEST_NAME
+from facegear.pipeline.table import STAGES
+from facegear.results.base import Result
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -340,13 +345,40 @@ def test_tables_of_an_answer_go_to_a_workbook_and_come_back(gearbox, tmp_path):
     np.testing.assert_allclose(read_back, found.table()["frequency_hz"], rtol=1e-15)
 
 
+SHEETS = "geometry", "contact", "stiffness", "modes", "response", "statics", "topography", "hunting"
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_every_table_of_an_answer_is_a_sheet_of_its_workbook(gearbox, tmp_path, name):
+    from facegear.io.workbook import read
+
+    found = gearbox.hunting(positions=4) if name == "hunting" else getattr(gearbox, name)()
+    sheets = read(found.to_excel(tmp_path / "own.xlsx"))
+    tables = {key: part for key, part in found.content.items() if hasattr(part, "columns")}
+    tables = tables or {name: found.table()}
+    assert sheets and set(sheets) == set(tables)
+    for key, table in tables.items():
+        assert list(sheets[key].columns) == list(table.columns) and len(sheets[key]) == len(table)
+
+
+def test_every_answer_of_the_door_has_something_to_write_into_a_workbook():
+    """A stage that writes no csv needs sheets of its own."""
+    for module in pkgutil.iter_modules(facegear.results.__path__):
+        import_module(f"facegear.results.{module.name}")
+    for answer in Result.__subclasses__():
+        files = STAGES[answer.STAGE].files
+        tables = [name for name, file in files.items() if file.path.endswith((".csv", ".parquet"))]
+        assert tables or "_sheets" in vars(answer), answer.__name__
+        assert all(len(name) <= LONGEST_NAME for name in tables), answer.__name__
+
+
 def test_stiffness_over_the_pinions_angle_is_the_series_over_one_pitch(gearbox):
     found = gearbox.stiffness()
     curve = found.over_angle(32)
     orders = found.table()
     np.testing.assert_allclose(curve["pinion_angle_deg"], np.arange(32) * 360 / (23 * 32))
     spectrum = np.fft.rfft(curve["k_n_per_m"]) / 32
-    np.testing.assert_allclose(spectrum[0].real, orders["b_n_per_m"][0], rtol=1e-12)
+    np.testing.assert_allclose(spectrum[0].real, orders["cos_n_per_m"][0], rtol=1e-12)
     own = spectrum[1 : len(orders)]
-    np.testing.assert_allclose(2 * own.real, orders["b_n_per_m"][1:], atol=1e-6 * 4e8)
-    np.testing.assert_allclose(-2 * own.imag, orders["a_n_per_m"][1:], atol=1e-6 * 4e8)
+    np.testing.assert_allclose(2 * own.real, orders["cos_n_per_m"][1:], atol=1e-6 * 4e8)
+    np.testing.assert_allclose(-2 * own.imag, orders["sin_n_per_m"][1:], atol=1e-6 * 4e8)

@@ -31,6 +31,29 @@ def test_a_mistake_on_the_command_line_ends_in_one_line(capsys, arguments, line)
     assert message.startswith(line) and message.count("\n") == 1
 
 
+def test_a_file_that_the_system_refuses_ends_in_one_line(monkeypatch, capsys):
+    def refuse(_):
+        raise PermissionError(13, "Permission denied", "/shut/own.yaml")
+
+    monkeypatch.setattr("facegear.__main__.load_config", refuse)
+    assert main(("check", "own.yaml")) == 1
+    assert capsys.readouterr().err == "/shut/own.yaml: permission denied\n"
+
+
+@pytest.mark.parametrize("usable", [True, False])
+def test_a_run_has_a_cache_of_its_own_where_the_home_folder_allows_none(monkeypatch, tmp_path, usable):
+    """Snakemake ended with PermissionError; the folder of results can be written, or nothing could."""
+    home = tmp_path / "home"
+    home.mkdir() if usable else home.write_text("a file")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(home))
+    monkeypatch.chdir(tmp_path)
+    given = []
+    monkeypatch.setattr("os.execve", lambda *arguments: given.append(arguments[-1]))
+    main(("run", str(ROOT / "config" / "harmonics_only.yaml")))
+    wanted = home if usable else tmp_path / ".snakemake" / "cache"
+    assert given[0]["XDG_CACHE_HOME"] == str(wanted)
+
+
 @pytest.mark.parametrize("name", ["misaligned", "unequal_inputs", "eight_pinions"])
 def test_the_example_machines_are_configs_without_mistakes(capsys, name):
     assert main(("check", str(ROOT / "examples" / "machines" / f"{name}.yaml"))) == 0

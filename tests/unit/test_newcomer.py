@@ -20,7 +20,7 @@ COMMANDS = [shlex.split(line) for line in re.findall(r"(?m)^(facegear .*)$", PAG
 DATE = "2026-11-23T20:00:00+00:00"
 LIGHT = {
     "mesh_stiffness: {torque_n_m: 600, harmonics_kept: 3}": "mesh_stiffness: {source: harmonics, table: "
-    "[{order: 0, b_n_per_m: 4.1e8}, {order: 1, a_n_per_m: 2.0e7}]}",
+    "[{order: 0, cos_n_per_m: 4.1e8}, {order: 1, sin_n_per_m: 2.0e7}]}",
     "transmission_error: from_contact": "transmission_error: {amplitude_um: 5}",
     "points: 12, chunks: 1": "points: 2, chunks: 1",
 }

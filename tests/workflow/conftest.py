@@ -8,7 +8,7 @@ from projects import ROOT, Project
 def quick(tmp_path_factory: pytest.TempPathFactory) -> Project:
     """The quick case, computed once: every stage from teeth to load sharing, at coarse resolution."""
     project = Project(tmp_path_factory.mktemp("quick"))
-    project.run("--configfile", str(ROOT / "config" / "quick.yaml"), warm=True)
+    project.run("--configfile", str(ROOT / "config" / "quick.yaml"))
     return project
 
 

@@ -1,22 +1,22 @@
 """Runs of the whole workflow in folders of their own, from the sources of this checkout."""
 
+import multiprocessing
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-
-from snakemake_server import Server
 
 from facegear.machine_code import kept
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import fingerprint, recall, remember, stage_fingerprint
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = ("workflow", "profiles", "facegear", "paper", "validation", "config")
+FOLDERS = ("workflow", "facegear", "paper", "validation", "config")
 SCRIPTS = sorted(path for name in FOLDERS for path in (ROOT / name / "scripts").glob("*.py"))
 SOURCES = kept.folder().with_name("sources.json")
 """In Snakemake's folder: what counts of each source file."""
@@ -47,16 +47,13 @@ class Project:
 
     def _all(self, *arguments: str) -> list[str]:
         return [
-            *("--cores", "2", "--nocolor", "--snakefile", str(self.sources / "Snakefile")),
+            *("--cores", "2", "--nocolor", "--snakefile", str(self.sources / "workflow" / "Snakefile")),
             *("--directory", str(self.folder), *arguments),
         ]
 
-    def run(
-        self, *arguments: str, check: bool = True, warm: bool = False, disk: tuple[str, str] | None = None
-    ) -> subprocess.CompletedProcess[str]:
-        """warm: jobs begin where their imports were made; else Python starts for each, as for a user's."""
-        assert not warm or self.sources == ROOT
-        done = server().start(self._all(*arguments), environment(), warm, disk)
+    def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess[str]:
+        """Run Snakemake and return its exit code, with what it has printed."""
+        done = start(self._all(*arguments), environment())
         if check:
             assert done.returncode == 0, f"{arguments}\n{done.stdout[-3000:]}\n{done.stderr[-6000:]}"
         return done
@@ -77,8 +74,37 @@ def dry_run(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @cache
-def server() -> Server:
-    return Server(ROOT)
+def processes() -> multiprocessing.context.ForkServerContext:
+    """Processes in which Snakemake is imported already, as its imports are most of a dry run."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["snakemake.cli", "facegear.config.cases", "facegear.pipeline.needs"])
+    return context
+
+
+def start(arguments: Sequence[str], environment: Mapping[str, str]) -> subprocess.CompletedProcess[str]:
+    """Run Snakemake with these arguments in the present folder."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [str(Path(folder, name)) for name in ("out", "error")]
+        process = processes().Process(target=_snakemake, args=(arguments, environment, os.getcwd(), files))
+        process.start()
+        process.join()
+        texts = [Path(file).read_text() for file in files]
+        return subprocess.CompletedProcess(arguments, process.exitcode or 0, *texts)
+
+
+def _snakemake(arguments: list[str], environment: dict[str, str], folder: str, files: list[str]) -> None:
+    """Be what `python -m snakemake` is, in a process of its own."""
+    for number, file in enumerate(files, 1):
+        opened = os.open(file, os.O_WRONLY | os.O_CREAT)
+        os.dup2(opened, number)
+        os.close(opened)
+    os.chdir(folder)
+    os.environ.clear()
+    os.environ.update(environment)
+    sys.argv = ["snakemake", *arguments]
+    from snakemake.cli import main
+
+    main()
 
 
 @cache

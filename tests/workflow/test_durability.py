@@ -12,9 +12,8 @@ import time
 from pathlib import Path
 
 import pytest
-from projects import ROOT, Project, environment
-
-from facegear.io.run_lock import hold
+from filelock import FileLock
+from projects import ROOT, Project, copy_sources, environment
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))
@@ -48,14 +47,14 @@ def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
     time.sleep(random.Random(seed).uniform(2.0, 8.0))
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
-    project.run(*targets, *QUICK, warm=True)
+    project.run(*targets, *QUICK)
     undisturbed, resumed = data_files(quick), data_files(project)
     for target in targets:
         assert resumed[target] == undisturbed[target], target
     assert not list((tmp_path / "results").rglob(".[0-9]*")), "no temporary file is left behind"
 
 
-def test_a_run_killed_in_the_contact_stage_resumes_and_says_so(quick, tmp_path):
+def test_a_run_killed_in_the_contact_stage_resumes(quick, tmp_path):
     project = quick.copied(tmp_path)
     shutil.rmtree(tmp_path / "results" / "quick" / "contact")
     log = tmp_path / "results" / "quick" / "logs" / "contact.log"
@@ -73,8 +72,7 @@ def test_a_run_killed_in_the_contact_stage_resumes_and_says_so(quick, tmp_path):
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     assert not (tmp_path / "results" / "quick" / "contact" / "contact.provenance.json").exists()
-    done = project.run("results/quick/contact/ltca.csv", *QUICK, warm=True)
-    assert "resuming a run that was stopped" in done.stderr
+    project.run("results/quick/contact/ltca.csv", *QUICK)
     assert data_files(project) == data_files(quick)
 
 
@@ -94,7 +92,8 @@ def test_no_spelling_of_a_dry_run_changes_anything_on_disk(tmp_path, spelling):
 
 def test_a_dry_run_beside_a_working_run_is_reported_the_plan(tmp_path):
     project = Project(tmp_path)
-    with hold(tmp_path / ".snakemake" / "facegear.lock"):
+    (tmp_path / ".snakemake").mkdir()
+    with FileLock(tmp_path / ".snakemake" / "facegear.lock"):
         assert project.planned("results/paper/modal/frequencies.csv") == {"modal"}
 
 
@@ -106,14 +105,24 @@ def may_mount():
         return False
 
 
+def in_own_namespace(script):
+    """Run a shell script that may mount disks which nobody else sees."""
+    command = ["unshare", "--user", "--map-root-user", "--mount", "bash", "-c", script]
+    return subprocess.run(command, env=environment(), capture_output=True, text=True, check=False)
+
+
 @pytest.mark.skipif(
     not may_mount(), reason="no small disk may be mounted here; /dev/full stands for it in the unit tests"
 )
 @pytest.mark.parametrize("size", ["4k", "16k", "56k"])
 def test_a_full_disk_stops_the_stage_in_one_line_and_nothing_half_written_stays(tmp_path, size):
-    (tmp_path / "results").mkdir()
-    disk = str(tmp_path / "results"), size
-    done = Project(tmp_path).run("results/paper/modal/frequencies.csv", check=False, warm=True, disk=disk)
+    disk = tmp_path / "results"
+    disk.mkdir()
+    command = Project(tmp_path).command("results/paper/modal/frequencies.csv")
+    done = in_own_namespace(
+        f"mount -t tmpfs -o size={size} tmpfs {disk} && {shlex.join(command)}; code=$?; "
+        f"cd {disk}; find * -type f | sed 's/^/left: /'; exit $code"
+    )
     assert done.returncode != 0
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
     assert "no space left on the disk; free some and run again" in line
@@ -145,7 +154,6 @@ def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quic
         "--",
         f"results/quick/{target}",
         check=False,
-        warm=True,
     )
     assert done.returncode != 0
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
@@ -159,9 +167,7 @@ def test_the_command_printed_with_a_damaged_file_makes_it_again_from_any_folder(
     path = tmp_path / "results" / "quick" / "modal" / "shapes.csv"
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
-    done = project.run(
-        *QUICK, "--force", "--", "results/quick/figures/mode_shapes.svg", check=False, warm=True
-    )
+    done = project.run(*QUICK, "--force", "--", "results/quick/figures/mode_shapes.svg", check=False)
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
     words = shlex.split(line.split("rebuild it with: ")[1].split(" (log: ")[0])
     (tmp_path / "elsewhere").mkdir()
@@ -199,17 +205,57 @@ def test_a_config_mistake_stops_before_any_work_in_one_line(tmp_path, old, new, 
     assert not (project.folder / "results").exists()
 
 
-def test_two_runs_in_one_folder_do_not_meet(tmp_path):
-    project = Project(tmp_path)
-    target = "results/paper/modal/frequencies.csv"
-    first = subprocess.Popen(project.command(target), env=environment(), stderr=subprocess.DEVNULL)
-    deadline = time.monotonic() + 60
-    while not (tmp_path / ".snakemake" / "facegear.lock").exists() and time.monotonic() < deadline:
-        time.sleep(0.02)
-    second = project.run(target, check=False)
-    assert first.wait() == 0
-    assert second.returncode == 0 or "another run is working in" in second.stderr
-    assert (tmp_path / target).exists()
+def test_a_second_run_in_a_folder_ends_in_one_line(tmp_path):
+    (tmp_path / ".snakemake").mkdir()
+    with FileLock(tmp_path / ".snakemake" / "facegear.lock"):
+        second = Project(tmp_path).run("results/paper/modal/frequencies.csv", check=False)
+    assert second.returncode == 1
+    assert second.stderr.splitlines()[1:] == [
+        f"another run is working in {tmp_path}; wait for it or stop it first"
+    ]
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_killed_run_leaves_no_lock_behind(tmp_path):
+    (tmp_path / ".snakemake").mkdir()
+    path = str(tmp_path / ".snakemake" / "facegear.lock")
+    holder = f"from filelock import FileLock; FileLock({path!r}).acquire(); print(1, flush=True); input()"
+    command = [sys.executable, "-c", holder]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        process.stdout.readline()
+        process.kill()
+    Project(tmp_path).run("results/paper/modal/frequencies.csv")
+
+
+@pytest.mark.parametrize("name", ["with blank", "a{case}b"])
+def test_a_run_works_in_a_folder_of_any_name_and_from_sources_in_one(tmp_path, name):
+    sources = copy_sources(tmp_path / name)
+    target = "results/harmonics_only/modal/frequencies.csv"
+    config = ("--configfile", str(sources / "config" / "harmonics_only.yaml"))
+    Project(sources, sources).run(*config, "--", target)
+    assert (sources / target).exists()
+
+
+def test_results_that_are_a_file_end_the_run_in_one_line(tmp_path):
+    (tmp_path / "results").write_text("mine")
+    done = Project(tmp_path).run("results/paper/modal/frequencies.csv", check=False)
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[1:] == [
+        f"{tmp_path / 'results'} is a file; move it away, as results go there"
+    ]
+    assert (tmp_path / "results").read_text() == "mine"
+
+
+@pytest.mark.skipif(not may_mount(), reason="no disk may be mounted read-only here")
+def test_a_folder_that_cannot_be_written_ends_the_run_in_one_line(tmp_path):
+    command = Project(tmp_path).command("results/paper/modal/frequencies.csv")
+    mount = f"mount --bind {tmp_path} {tmp_path} && mount -o remount,bind,ro {tmp_path}"
+    done = in_own_namespace(f"{mount} && exec {shlex.join(command)}")
+    assert done.returncode == 1
+    *others, message = done.stderr.splitlines()
+    assert message == f"{tmp_path} cannot be written; choose another folder with --directory"
+    assert len(others) == 2, "which Snakemake prints before: its profile and its log file"
+    assert not list(tmp_path.iterdir())
 
 
 def test_no_config_writes_outside_results(tmp_path):

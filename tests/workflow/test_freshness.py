@@ -92,7 +92,7 @@ def test_copy_of_the_sources_has_nothing_to_do(edited):
         ),
         (
             "facegear/plots/modal.py",
-            {"modal_figures"},
+            {"modes_figures"},
             {"modal", "contact", "dynamics_response", "load_sharing"},
         ),
     ],

@@ -24,7 +24,7 @@ def test_a_reproduction_numbers_its_figures_as_the_paper_does_and_another_machin
     (tmp_path / "reproduction.yaml").write_text("claims: claims.yaml\n")
     project = quick.copied(tmp_path)
     given = f"reproduction={tmp_path / 'reproduction.yaml'}"
-    project.run("results/quick/report.html", *QUICK, "--config", given, warm=True)
+    project.run("results/quick/report.html", *QUICK, "--config", given)
     message = captions((tmp_path / "results" / "quick" / "report.html").read_text())
     for start in ("Figure 7 of the paper: Mesh stiffness", "Figure 13 of the paper: Effect of backlash"):
         assert any(caption.startswith(start) for caption in message), start

@@ -1,4 +1,4 @@
-"""A new value in a study costs its own runs only."""
+"""A new value in a study costs its own runs only; of stages that take a second, those of its job."""
 
 import re
 
@@ -18,6 +18,6 @@ def test_new_value_of_a_study_runs_that_value_and_what_collects_it(quick, tmp_pa
     config.write_text(text.replace(POINT, POINT + NEW))
     done = Project(quick.folder, sources).run("-n", "--configfile", str(config))
     jobs = dict(re.findall(r"^(\w+) +(\d+)$", done.stdout + done.stderr, re.MULTILINE))
-    assert jobs["load_sharing"] == "1"
-    assert not {"geometry", "mesh", "compliance", "contact", "stiffness", "modal"} & set(jobs)
+    assert jobs["load_sharing_studies_1"] == "1"
+    assert not {"load_sharing", "geometry", "mesh", "compliance", "contact", "stiffness", "modal"} & set(jobs)
     assert not {"dynamics_response", "dynamics_sweep", "dynamics_sweep_chunk"} & set(jobs)

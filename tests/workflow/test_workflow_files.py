@@ -2,12 +2,13 @@
 
 import ast
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from projects import FOLDERS, ROOT, SCRIPTS, Project
+from projects import ROOT, SCRIPTS, Project, copy_sources, dry_run
 
 from facegear.config.load import load_config
 from facegear.config.yaml_file import read_yaml
@@ -25,10 +26,11 @@ def record(rule):
     values = rule.params.get("values")
     return {
         "log": list(rule.log), "benchmark": rule.benchmark, "threads": rule.resources["_cores"].value,
-        "memory": "mem_mb" in rule.resources, "runtime": "runtime" in rule.resources, "message": rule.message,
+        "memory": "mem_mb" in rule.resources, "runtime": "runtime" in rule.resources,
+        "docstring": rule.docstring,
         "environment": rule.conda_env, "code": rule.params["code"](None), "script": rule.script,
         "outputs": [str(file) for file in rule.output],
-        "taken": [list(rule.input.keys()), sorted({*rule.params.keys()} - {"code", "needs"})],
+        "taken": [list(rule.input.keys()), sorted({*rule.params.keys()} - {"code"})],
         "sections": [*values(SimpleNamespace(case=CASE))] if values else ["none"],
     }
 
@@ -40,14 +42,14 @@ Path("rules.json").write_text(json.dumps({rule.name: record(rule) for rule in wo
 def rules(tmp_path_factory):
     """What Snakemake knows of every rule that writes files, with the profile that loads by itself."""
     folder = tmp_path_factory.mktemp("rules")
-    for name in FOLDERS:
-        (folder / name).symlink_to(ROOT / name)
-    (folder / "Snakefile").write_text((ROOT / "Snakefile").read_text() + RULES_AS_JSON)
-    Project(folder, folder).run("-n", "--quiet")
+    sources = copy_sources(folder)
+    with open(sources / "workflow" / "Snakefile", "a") as stream:
+        stream.write(RULES_AS_JSON)
+    Project(folder, sources).run("-n", "--quiet")
     return json.loads((folder / "rules.json").read_text())
 
 
-def test_every_rule_has_log_benchmark_threads_memory_time_message_environment_and_code(rules):
+def test_every_rule_has_log_benchmark_threads_memory_time_docstring_environment_and_code(rules):
     assert len(rules) >= 25
     for name, rule in rules.items():
         assert [key for key, value in rule.items() if not value] == [], name
@@ -59,9 +61,16 @@ def test_rules_share_no_log_and_no_benchmark(rules):
         assert len({str(rule[key]) for rule in rules.values()}) == len(rules)
 
 
+def of_stages(rules):
+    """Rules of the table of stages: one for each stage, and one for some cases of studies."""
+    studied = {name for name in rules if re.search(r"_studies_\d+$", name)}
+    assert studied, "the paper's case has studies"
+    return set(TABLE) | studied
+
+
 def test_stages_and_figures_have_one_script_each_and_every_other_rule_one_of_its_name(rules):
     used = {name: Path(rule["script"]).stem for name, rule in rules.items()}
-    shared = {"stage": set(TABLE), "figures": {name for name in used if name.endswith(FIGURES)}}
+    shared = {"stage": of_stages(rules), "figures": {name for name in used if name.endswith(FIGURES)}}
     for script, names in shared.items():
         assert {name for name, stem in used.items() if stem == script} == names
     own = set(used) - set().union(*shared.values())
@@ -76,7 +85,7 @@ def test_no_two_rules_write_the_same_file(rules):
 
 def test_every_input_and_parameter_of_a_rule_is_used_by_its_script(rules):
     """What a script names is an attribute or a text in it; those that take all by `items()` name none."""
-    for name in set(rules) - set(TABLE) - {name for name in rules if name.endswith(FIGURES)}:
+    for name in set(rules) - of_stages(rules) - {name for name in rules if name.endswith(FIGURES)}:
         rule = rules[name]
         words = {word for node in ast.walk(_script(name)) for word in _words(node)}
         inputs, parameters = rule["taken"]
@@ -136,7 +145,8 @@ def test_every_profile_says_what_the_one_says_that_loads_by_itself():
 
 
 def test_rules_are_formatted():
-    command = [sys.executable, "-m", "snakefmt", "--check", "Snakefile", "workflow", "paper", "validation"]
+    folders = ("workflow/Snakefile", "workflow", "paper", "validation")
+    command = [sys.executable, "-m", "snakefmt", "--check", *folders]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
@@ -151,10 +161,28 @@ def test_scripts_only_adapt():
     for script in SCRIPTS:
         text = script.read_text()
         assert len(text.splitlines()) <= 45, script
-        assert "with stage(snakemake)" in text, script
+        assert "with stage(snakemake)" in text or "with job(snakemake)" in text, script
 
 
-def test_every_file_of_a_rule_lies_beside_its_manifest(rules):
+def test_every_file_of_a_rule_lies_beside_a_manifest(rules):
     """Readers look for the manifest in the folder of a file: one that drew elsewhere stopped the report."""
-    for name in {*TABLE, "report", "scorecard", *(name for name in rules if name.endswith(FIGURES))}:
-        assert len({str(Path(file).parent) for file in rules[name]["outputs"]}) == 1, name
+    for name in {*of_stages(rules), "report", "scorecard", *(n for n in rules if n.endswith(FIGURES))}:
+        files = rules[name]["outputs"]
+        covered = {Path(file).parent for file in files if file.endswith(".provenance.json")}
+        assert {Path(file).parent for file in files} == covered
+
+
+def test_figures_are_one_job_for_each_chapter_of_the_report(rules):
+    drawn = {name.removesuffix(FIGURES) for name in rules if name.endswith(FIGURES)}
+    assert drawn == {"teeth", "contact", "mesh_stiffness", "modes", "dynamics", "load_sharing"}
+
+
+def test_the_paper_s_case_is_at_most_28_jobs():
+    planned = dry_run()
+    assert int(re.search(r"^total +(\d+)$", planned.stdout + planned.stderr, re.M)[1]) <= 28
+
+
+def test_the_repository_has_what_the_workflow_catalog_asks_for():
+    usage = read_yaml(ROOT / ".snakemake-workflow-catalog.yml")["usage"]
+    assert usage["software-stack-deployment"]["conda"]
+    assert (ROOT / "workflow" / "Snakefile").is_file() and (ROOT / "config" / "README.md").is_file()

@@ -121,7 +121,7 @@ def _coordinates(max_frequency: float | None) -> Prepared:
     body = None
     if max_frequency is not None:
         solved, section, patch = _solved(max_frequency, 12)
-        body = reduced_body(solved, patch, section.damping_ratio)
+        body = reduced_body(solved, patch, *section.damping)
     running = Running(bending(body), TIGHT)
     return running.integrator.size, running
 

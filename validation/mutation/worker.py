@@ -11,6 +11,7 @@ import resource
 import signal
 import sys
 from contextlib import suppress
+from multiprocessing import get_context
 from pathlib import Path
 
 import pytest
@@ -26,10 +27,9 @@ WITHOUT_MUTANT = 600.0
 
 def attempt(tests: list[str], limit: float) -> tuple[str, float]:
     """How the tests end in a forked process, and after how much processor time (s)."""
-    child = os.fork()
-    if child == 0:
-        _run(tests, limit)
-    _, status, used = os.wait4(child, 0)
+    child = get_context("fork").Process(target=_run, args=(tests, limit))
+    child.start()
+    _, status, used = os.wait4(child.pid or 0, 0)
     code, seconds = os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime
     if code == -signal.SIGXCPU:
         return "endless", seconds
@@ -50,7 +50,7 @@ def _run(tests: list[str], limit: float) -> None:
     with suppress(BaseException):
         options = ["-x", "-n", "0", "-p", "no:cacheprovider", "--hypothesis-profile=mutants"]
         code = int(pytest.main([*options, *tests]))
-    os._exit(code)
+    raise SystemExit(code)
 
 
 def main() -> None:

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 SAMPLES, DESIGNS = 200, 4
+EXAMPLE = "validation/ratios/example_3878ccc2.yaml"
+"""The example machine of that commit stays as it was: irregular motion under a load-dependent stiffness."""
 
 
 @dataclass(frozen=True)
@@ -63,11 +65,11 @@ def _sample(law: str) -> Point:
     )
 
 
-def _sweep(direction: str) -> Point:
+def _sweep(direction: str, config: str = "config/paper.yaml", speeds: int = 400) -> Point:
     return Point(
-        "config/paper.yaml",
+        config,
         "dynamics_sweep_chunk",
-        "s a sweep of 400 speeds",
+        f"s a sweep of {speeds} speeds",
         "docs/dynamics.md, convergence of the sweep",
         wildcards={"direction": direction, "number": "0"},
     )
@@ -86,6 +88,8 @@ POINTS: Mapping[str, Point] = {
     ),
     "sweep_up": _sweep("up"),
     "sweep_down": _sweep("down"),
+    "example_up": _sweep("up", EXAMPLE, 24),
+    "example_down": _sweep("down", EXAMPLE, 24),
     "sample_with_law": _sample("load_dependent"),
     "sample_without_law": _sample("constant_load"),
     "load_sharing": Point(

@@ -6,12 +6,19 @@ rule contact_level:
     output:
         table="results/{case}/benchmarks/contact/{level}.csv",
         manifest="results/{case}/benchmarks/contact/{level}.provenance.json",
+    log:
+        "results/{case}/logs/contact_level_{level}.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/contact_level_{level}.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=9000,
         runtime=60,
     params:
         **values_of("tooth_pair", "contact"),
+        code=code("validation/scripts/contact_level.py"),
     script:
         "../scripts/contact_level.py"
 
@@ -21,11 +28,18 @@ rule contact_growth:
     output:
         table="results/{case}/benchmarks/contact_growth.csv",
         manifest="results/{case}/benchmarks/contact_growth.provenance.json",
+    log:
+        "results/{case}/logs/contact_growth.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/contact_growth.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=3000,
     params:
         **values_of("tooth_pair", "contact"),
+        code=code("validation/scripts/contact_growth.py"),
     script:
         "../scripts/contact_growth.py"
 
@@ -40,6 +54,14 @@ rule contact_benchmark:
         svg="results/{case}/figures/contact_speed_error.svg",
         png="results/{case}/figures/contact_speed_error.png",
         manifest="results/{case}/benchmarks/contact.provenance.json",
+    log:
+        "results/{case}/logs/contact_benchmark.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/contact_benchmark.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        code=code("validation/scripts/contact_benchmark.py"),
     script:
         "../scripts/contact_benchmark.py"
 
@@ -49,12 +71,19 @@ rule contact_shortcuts:
     output:
         table="results/{case}/benchmarks/contact_shortcuts.csv",
         manifest="results/{case}/benchmarks/contact_shortcuts.provenance.json",
+    log:
+        "results/{case}/logs/contact_shortcuts.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/contact_shortcuts.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=4000,
         runtime=60,
     params:
         **values_of("tooth_pair"),
+        code=code("validation/scripts/contact_shortcuts.py"),
     script:
         "../scripts/contact_shortcuts.py"
 
@@ -64,12 +93,19 @@ rule twin_benchmark:
     output:
         table="results/{case}/benchmarks/twin.csv",
         manifest="results/{case}/benchmarks/twin.provenance.json",
+    log:
+        "results/{case}/logs/twin_benchmark.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/twin_benchmark.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=4000,
         runtime=60,
     params:
         **values_of("tooth_pair"),
+        code=code("validation/scripts/twin_benchmark.py"),
     script:
         "../scripts/twin_benchmark.py"
 
@@ -79,12 +115,19 @@ rule calculix_peer:
     output:
         table="results/{case}/benchmarks/calculix.csv",
         manifest="results/{case}/benchmarks/calculix.provenance.json",
+    log:
+        "results/{case}/logs/calculix_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/calculix_peer.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=12000,
         runtime=240,
     params:
         **values_of("tooth_pair"),
+        code=code("validation/scripts/calculix_peer.py"),
     script:
         "../scripts/calculix_peer.py"
 
@@ -94,9 +137,16 @@ rule calculix_stress_peer:
     output:
         table="results/{case}/benchmarks/calculix_stress.csv",
         manifest="results/{case}/benchmarks/calculix_stress.provenance.json",
+    log:
+        "results/{case}/logs/calculix_stress_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/calculix_stress_peer.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     params:
         **values_of("tooth_pair"),
+        code=code("validation/scripts/calculix_stress_peer.py"),
     script:
         "../scripts/calculix_stress_peer.py"
 
@@ -106,7 +156,15 @@ rule body_peer:
     output:
         table="results/{case}/benchmarks/calculix_body.csv",
         manifest="results/{case}/benchmarks/calculix_body.provenance.json",
+    log:
+        "results/{case}/logs/body_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/body_peer.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
+    params:
+        code=code("validation/scripts/body_peer.py"),
     script:
         "../scripts/body_peer.py"
 
@@ -116,7 +174,15 @@ rule tooth_layer_peer:
     output:
         table="results/{case}/benchmarks/cyclic_teeth.csv",
         manifest="results/{case}/benchmarks/cyclic_teeth.provenance.json",
+    log:
+        "results/{case}/logs/tooth_layer_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/tooth_layer_peer.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
+    params:
+        code=code("validation/scripts/tooth_layer_peer.py"),
     script:
         "../scripts/tooth_layer_peer.py"
 
@@ -126,7 +192,15 @@ rule kratos_peer:
     output:
         table="results/{case}/benchmarks/kratos_hertz.csv",
         manifest="results/{case}/benchmarks/kratos_hertz.provenance.json",
+    log:
+        "results/{case}/logs/kratos_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/kratos_peer.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
+    params:
+        code=code("validation/scripts/kratos_peer.py"),
     script:
         "../scripts/kratos_peer.py"
 
@@ -136,7 +210,14 @@ rule pair_peer:
     output:
         table="results/{case}/benchmarks/pair_peer.csv",
         manifest="results/{case}/benchmarks/pair_peer.provenance.json",
+    log:
+        "results/{case}/logs/pair_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/pair_peer.tsv"
+    conda:
+        ENVIRONMENT
     params:
         **values_of("tooth_pair"),
+        code=code("validation/scripts/pair_peer.py"),
     script:
         "../scripts/pair_peer.py"

@@ -7,6 +7,12 @@ rule dynamics_work_precision:
         svg="results/{case}/figures/dynamics_work_precision.svg",
         png="results/{case}/figures/dynamics_work_precision.png",
         manifest="results/{case}/benchmarks/dynamics.provenance.json",
+    log:
+        "results/{case}/logs/dynamics_work_precision.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/dynamics_work_precision.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=1300,
@@ -14,6 +20,7 @@ rule dynamics_work_precision:
     params:
         **values_of(speed_rpm="dynamics.speed_rpm"),
         machine=needed(MACHINE),
+        code=code("validation/scripts/dynamics_work_precision.py"),
     script:
         "../scripts/dynamics_work_precision.py"
 
@@ -25,6 +32,12 @@ rule dynamics_costs:
     output:
         sweep="results/{case}/benchmarks/dynamics_sweep.csv",
         manifest="results/{case}/benchmarks/dynamics_costs.provenance.json",
+    log:
+        "results/{case}/logs/dynamics_costs.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/dynamics_costs.tsv"
+    conda:
+        ENVIRONMENT
     threads: 2
     resources:
         mem_mb=1300,
@@ -32,6 +45,7 @@ rule dynamics_costs:
     params:
         **values_of(sweep="dynamics.sweep"),
         machine=needed(MACHINE),
+        code=code("validation/scripts/dynamics_costs.py"),
     script:
         "../scripts/dynamics_costs.py"
 
@@ -43,9 +57,16 @@ rule load_sharing_costs:
     output:
         table="results/{case}/benchmarks/load_sharing_costs.csv",
         manifest="results/{case}/benchmarks/load_sharing_costs.provenance.json",
+    log:
+        "results/{case}/logs/load_sharing_costs.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/load_sharing_costs.tsv"
+    conda:
+        ENVIRONMENT
     params:
         **values_of(accuracy="dynamics.accuracy", options="load_sharing"),
         machine=needed(MACHINE),
+        code=code("validation/scripts/load_sharing_costs.py"),
     script:
         "../scripts/load_sharing_costs.py"
 
@@ -58,9 +79,16 @@ rule branches_benchmark:
         table="results/{case}/benchmarks/branches.csv",
         costs="results/{case}/benchmarks/branches_costs.csv",
         manifest="results/{case}/benchmarks/branches.provenance.json",
+    log:
+        "results/{case}/logs/branches_benchmark.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/branches_benchmark.tsv"
+    conda:
+        ENVIRONMENT
     params:
         **values_of(speed_rpm="dynamics.speed_rpm"),
         machine=needed(MACHINE),
+        code=code("validation/scripts/branches_benchmark.py"),
     script:
         "../scripts/branches_benchmark.py"
 
@@ -73,11 +101,18 @@ rule dynamics_convergence:
     output:
         table="results/{case}/benchmarks/dynamics_convergence.csv",
         manifest="results/{case}/benchmarks/dynamics_convergence.provenance.json",
+    log:
+        "results/{case}/logs/dynamics_convergence.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/dynamics_convergence.tsv"
+    conda:
+        ENVIRONMENT
     resources:
         runtime=60,
     params:
         **values_of(sweep="dynamics.sweep"),
         machine=needed(MACHINE),
+        code=code("validation/scripts/dynamics_convergence.py"),
     script:
         "../scripts/dynamics_convergence.py"
 
@@ -87,6 +122,14 @@ rule dynamics_labels:
     output:
         table="results/{case}/benchmarks/dynamics_labels.csv",
         manifest="results/{case}/benchmarks/dynamics_labels.provenance.json",
+    log:
+        "results/{case}/logs/dynamics_labels.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/dynamics_labels.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        code=code("validation/scripts/dynamics_labels.py"),
     script:
         "../scripts/dynamics_labels.py"
 
@@ -96,5 +139,13 @@ rule shaft_peer:
     output:
         table="results/{case}/benchmarks/shaft_peer.csv",
         manifest="results/{case}/benchmarks/shaft_peer.provenance.json",
+    log:
+        "results/{case}/logs/shaft_peer.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/shaft_peer.tsv"
+    conda:
+        ENVIRONMENT
+    params:
+        code=code("validation/scripts/shaft_peer.py"),
     script:
         "../scripts/shaft_peer.py"

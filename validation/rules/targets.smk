@@ -1,4 +1,5 @@
 rule benchmarks:
+    "Speed against error of all that is measured."
     input:
         expand(
             "results/{case}/benchmarks/{name}.csv",
@@ -23,6 +24,7 @@ rule benchmarks:
 
 
 rule peers:
+    "The same quantities by other programs."
     input:
         expand(
             f"results/{CASE}/benchmarks/{{name}}.csv",

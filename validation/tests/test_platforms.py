@@ -5,7 +5,18 @@ import signal
 import pandas as pd
 import pytest
 
-from validation.platforms import CASES, MEASURED, PLATFORMS, differences, end_of, platforms_table
+from validation.platforms import (
+    CASES,
+    MEASURED,
+    OUTCOMES,
+    PLATFORMS,
+    TESTS,
+    differences,
+    end_of,
+    outcomes,
+    outcomes_table,
+    platforms_table,
+)
 from validation.references import ROOT
 
 TEST = "tests/unit/geometry/test_limits.py::test_undercut_and_pointing_radii_match_the_table"
@@ -25,7 +36,7 @@ def test_a_number_that_moved_is_measured_by_the_largest_expected_value_and_by_it
 
 
 def test_cases_of_platforms_exist():
-    assert all((ROOT / case).exists() for case in CASES)
+    assert all((ROOT / case).exists() for case in CASES + TESTS)
 
 
 def test_a_process_that_a_signal_ended_says_which():
@@ -39,3 +50,32 @@ def test_the_page_has_a_row_for_each_platform_that_was_measured():
     names = measured["platform"].drop_duplicates().tolist()
     assert names == [name for name in others if name in names]
     assert platforms_table(measured).count("\n| ") == len(names) > 0
+
+
+def test_platforms_lower_the_level_twice_and_have_one_and_two_threads():
+    first, *others = PLATFORMS.values()
+    assert not first.environment
+    assert {platform.threads for platform in PLATFORMS.values()} == {1, 2}
+    lowered = [platform.environment for platform in others if platform.environment]
+    for library in ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"):
+        assert len({level[library] for level in lowered}) == len(lowered) == 2
+
+
+def test_a_test_that_fails_on_a_platform_is_named(tmp_path):
+    report = tmp_path / "report.xml"
+    report.write_text(
+        "<testsuites><testsuite>"
+        '<testcase classname="tests.a" name="kept"/>'
+        '<testcase classname="tests.a" name="left"><skipped/></testcase>'
+        '<testcase classname="tests.a" name="moved"><failure message="1 != 2"/></testcase>'
+        "</testsuite></testsuites>"
+    )
+    row = outcomes("SSE4.2, one thread", report)
+    assert (row["passed"], row["failed"], row["failed_tests"]) == (1, 1, "tests.a::moved")
+    assert "| SSE4.2, one thread | 1 | 1 | tests.a::moved |" in outcomes_table(pd.DataFrame([row]))
+
+
+def test_the_page_says_that_all_tests_pass_on_each_platform():
+    measured = pd.read_csv(OUTCOMES)
+    assert measured["platform"].to_list() == list(PLATFORMS)
+    assert (measured["passed"] > 0).all() and (measured["failed"] == 0).all()

@@ -2,7 +2,7 @@ include: "functions/targets.smk"
 
 
 rule report:
-    "Report"
+    "Report of a case: one page with all figures and tables."
     input:
         tables=report_tables,
         pictures=report_pictures,
@@ -15,9 +15,16 @@ rule report:
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",
+    log:
+        "results/{case}/logs/report.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/report.tsv"
     localrule: True
+    conda:
+        ENVIRONMENT
     params:
         values=report_values,
         base=report_base,
+        code=code("workflow/scripts/report.py"),
     script:
         "../scripts/report.py"

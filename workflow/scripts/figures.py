@@ -1,20 +1,28 @@
-"""The figures of one stage, from stored files alone."""
+"""The figures of one chapter, from stored files alone."""
 
+import signal
 from importlib import import_module
+from pathlib import Path
 
-from facegear.config.arguments import typed_arguments
-from facegear.pipeline.run import read_all
-from facegear.pipeline.stage import FIGURES, load
-from facegear.plots.style import save
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
+
 from facegear.provenance.stage import stage
 
-KINDS = ("svg", "png", "json")
-
 with stage(snakemake) as run:
+    from facegear.config.arguments import typed_arguments
+    from facegear.pipeline.run import read_all
+    from facegear.pipeline.stage import load
+    from facegear.plots.style import save
+
     stages = import_module("facegear.pipeline.table").STAGES  # as in stage.py
-    drawn = stages[snakemake.rule.removesuffix(FIGURES)].figures
-    given = read_all(drawn.upstream, snakemake.input, stages)
-    draw = load(drawn.draw)
-    figures = draw(**given, **typed_arguments(draw, snakemake.params.needs))
-    for figure, *paths in zip(figures, *(getattr(snakemake.output, kind) for kind in KINDS), strict=True):
-        save(figure, *paths)
+    paths = list(zip(snakemake.output.svg, snakemake.output.json, strict=True))
+    for name in snakemake.params.stages:
+        drawn = stages[name].figures
+        inputs = {key.removeprefix(f"{name}__"): given for key, given in snakemake.input.items()}
+        draw = load(drawn.draw)
+        needs = typed_arguments(draw, snakemake.params.needs[name])
+        for figure in draw(**read_all(drawn.upstream, inputs, stages), **needs):
+            save(figure, *paths.pop(0))
+    if paths:
+        raise ValueError(f"not drawn: {paths}")
+    run.summary(", ".join(Path(path).stem for path in snakemake.output.svg))

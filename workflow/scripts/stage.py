@@ -1,21 +1,27 @@
-"""One stage: what it takes from files, its call, what it gives to files."""
+"""One stage, for a case or for several cases of studies: read, call, write."""
 
+import signal
 from importlib import import_module
 from pathlib import Path
 
-from facegear.pipeline.run import call, read_all, write_stage
-from facegear.provenance.stage import stage
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
 
-with stage(snakemake) as run:
-    # Not imported above, where it would count as code of every rule: a new row makes no other stage again.
+from facegear.provenance.stage import job, parts_of, recorded
+
+with job(snakemake):
+    from facegear.pipeline.run import call, read_all, write_stage
+
+    # Not imported by name, where it would count as code of every rule: a new row makes no other stage again.
     stages = import_module("facegear.pipeline.table").STAGES
-    row, params, output = stages[snakemake.rule], snakemake.params, dict(snakemake.output.items())
-    given = {**read_all(row.upstream, snakemake.input, stages), **params.needs}
+    row, code = stages[snakemake.params.stage], snakemake.params.code
     wildcards = {name: snakemake.wildcards[name] for name in row.wildcards}
-    partial = Path(output[row.resumable]).with_suffix(".partial") if row.resumable else None
-    resumed = {"partial": partial, "code": params.code} if partial else {}
-    outcome = call(row, given, **row.typed(wildcards), **resumed)
-    write_stage(row, outcome.content, output)
-    if partial:
-        partial.unlink()
-    run.summary(outcome.summary)
+    for part in parts_of(snakemake):
+        with recorded(part) as run:
+            given = {**read_all(row.upstream, part.input, stages), **part.params["needs"]}
+            partial = Path(part.output[row.resumable]).with_suffix(".partial") if row.resumable else None
+            resumed = {"partial": partial, "code": code} if partial else {}
+            outcome = call(row, given, **row.typed(wildcards), **resumed)
+            write_stage(row, outcome.content, part.output)
+            if partial:
+                partial.unlink()
+            run.summary(outcome.summary)

@@ -11,7 +11,7 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.locate import locate
+from facegear.dynamics.branches.locate import Located, locate, locate_grazes
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint, solve_point
 from facegear.dynamics.branches.segment import reversal
@@ -85,6 +85,9 @@ class Branch:
         Why it ends before the first and behind the last point.
     tried
         What was tried where steps became too short.
+    image_of
+        Number of the branch, in the list that holds both, of which this one is the image under a symmetry of
+        the system; None of a branch that was followed.
     """
 
     period_map: PeriodMap
@@ -92,6 +95,7 @@ class Branch:
     specials: list[Special]
     ends: tuple[BranchEnd, BranchEnd]
     tried: str = ""
+    image_of: int | None = None
 
     @property
     def arc(self) -> Array:
@@ -160,7 +164,7 @@ def _track(
         here = track.points[-1]
         try:
             there, end = _next(period_map, here, before, step, run, images if len(track.points) > 2 else [])
-            between, last, junction = _between_points(period_map, here, there)
+            located, last, junction = _between_points(period_map, here, there)
         except (NotConverged, np.linalg.LinAlgError) as error:
             step *= 0.4
             if step < run.ds_min:
@@ -168,8 +172,8 @@ def _track(
                 return track
             continue
         base = len(track.points) - 1
-        track.specials += [replace(special, after=base + special.after) for special in between]
-        track.points += last or [there]
+        track.specials += [replace(special, after=base + special.after) for special in located.specials]
+        track.points += [*located.inner, *last]
         progress(there)
         if _cut_at_junction(track):
             junction = BranchEnd.SYMMETRY
@@ -178,7 +182,7 @@ def _track(
         if end is not None:
             track.end = end
             return track
-        if run.to_first and any(special.kind not in PASSED for special in between):
+        if run.to_first and any(special.kind not in PASSED for special in located.specials):
             track.end = BranchEnd.SPECIAL
             return track
         step = min(next_length(step, before, here, there), run.ds_max)
@@ -254,15 +258,19 @@ def _closing(
 
 def _between_points(
     period_map: PeriodMap, here: BranchPoint, there: BranchPoint
-) -> tuple[list[Special], list[BranchPoint], BranchEnd | None]:
-    """Special points on the way; where the branch runs into its own image, its last points and that end."""
+) -> tuple[Located, list[BranchPoint], BranchEnd | None]:
+    """Special points on the way and the points after them; where the branch runs into its own image, its last
+    points and that end.
+    """
     meeting = reversal(period_map, here, there)
-    if meeting is not None:
-        specials = [
-            special for special in locate(period_map, here, meeting[0]) if not _at(special, meeting[1])
-        ]
-        return specials, list(meeting), BranchEnd.DOUBLING
-    return locate(period_map, here, there), [], None
+    if meeting is None:
+        return locate(period_map, here, there), [there], None
+    located = locate(period_map, here, meeting[0])
+    count = len(located.inner) + 1
+    specials = [special for special in located.specials if not _at(special, meeting[1])]
+    grazes = locate_grazes(period_map, *meeting, meeting[0].linear)
+    specials += [replace(special, after=count + special.after) for special in grazes]
+    return Located(specials, located.inner), list(meeting), BranchEnd.DOUBLING
 
 
 def _cut_at_junction(track: _Track) -> bool:

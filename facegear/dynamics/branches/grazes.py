@@ -70,9 +70,10 @@ def _distance(level: float, mesh: int, kind: int, rank: int) -> Callable[[Array]
 
 
 def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
-    """Share of a stretch at which an extreme lies beyond an edge that it is short of at both ends.
+    """Share of a stretch at which the passages of an edge go against their change from end to end.
 
-    Looked for where cubics through the extremes with their slopes along the branch come close to an edge.
+    Looked for where cubics through the extremes with their slopes along the branch come close to an edge, or
+    come back over one that they pass.
     """
     points = segment.at(low), segment.at(high)
     reach = float(np.linalg.norm(points[1].x - points[0].x))
@@ -83,11 +84,13 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     if not any(number.any() for number in near):
         return None
     slopes = [segment.extremum_slope(fraction, high - low)[:, :, :maxima] for fraction in (low, high)]
-    passed = _passages(points[0].extrema, levels)
-    for look in dict.fromkeys(_dips(extrema, slopes, levels, near)):
-        fraction = low + look * (high - low)
-        if (_passages(segment.extrema(fraction), levels) != passed).any():
-            return fraction
+    before, after = (_passages(point.extrema, levels) for point in points)
+    for looks in dict.fromkeys(_dips(extrema, slopes, levels, near)):
+        fractions = [low + look * (high - low) for look in looks]
+        counts = [before, *(_passages(segment.extrema(fraction), levels) for fraction in fractions), after]
+        steps = np.diff(counts, axis=0)
+        if ((steps > 0).any(axis=0) & (steps < 0).any(axis=0)).any():
+            return fractions[0]
     return None
 
 
@@ -97,18 +100,18 @@ def _passages(extrema: Array, levels: Array) -> Integers:
 
 
 def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
-    """Extremes on one side of an edge at both ends, at one of them no farther from it than `reach`."""
+    """Extremes that at one end of a stretch are no farther from an edge than `reach`."""
     first_gap, second_gap = first - level[:, None, None], second - level[:, None, None]
-    return (
-        np.isfinite(first_gap)
-        & np.isfinite(second_gap)
-        & (first_gap * second_gap > 0.0)
-        & (np.minimum(abs(first_gap), abs(second_gap)) < reach)
-    )
+    finite = np.isfinite(first_gap) & np.isfinite(second_gap)
+    return finite & (np.minimum(abs(first_gap), abs(second_gap)) < reach)
 
 
-def _dips(extrema: list[Array], slopes: list[Array], levels: Array, near: list[Mask]) -> Iterator[float]:
-    """Where cubics through the extremes come closest to an edge or beyond it."""
+def _dips(
+    extrema: list[Array], slopes: list[Array], levels: Array, near: list[Mask]
+) -> Iterator[tuple[float, ...]]:
+    """Where cubics through the extremes come closest to an edge that both ends lie on one side of, or before
+    and after they come back over an edge that they pass.
+    """
     t = LOOKED_AT
     for level, few in zip(levels, near, strict=True):
         where = np.nonzero(few)
@@ -124,6 +127,12 @@ def _dips(extrema: list[Array], slopes: list[Array], levels: Array, near: list[M
             ]
         )
         heights = sign[:, None] * (bend.T @ t ** np.arange(4)[:, None])
-        min_height = heights.min(axis=1, initial=np.inf)
-        for row in np.flatnonzero(min_height < ALMOST * np.minimum(abs(first_height), abs(second_height))):
-            yield float(t[heights[row].argmin()])
+        passing = first_height * second_height <= 0.0
+        almost = ALMOST * np.minimum(abs(first_height), abs(second_height))
+        dipping = ~passing & (heights.min(axis=1, initial=np.inf) < almost)
+        for row in np.flatnonzero(dipping):
+            yield (float(t[heights[row].argmin()]),)
+        for row in np.flatnonzero(passing):
+            returning = np.flatnonzero((heights[row, :-1] < 0.0) & (heights[row, 1:] > 0.0))
+            if returning.size:
+                yield float(t[returning[0]]), float(t[returning[0] + 1])

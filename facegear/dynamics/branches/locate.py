@@ -1,13 +1,15 @@
 """Special points between two neighbouring points of a branch, each bracketed along the arc."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.dynamics.branches.between import hidden_change, may_change
 from facegear.dynamics.branches.grazes import grazes, hidden_graze
-from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.segment import Segment, zero
 from facegear.dynamics.branches.special import Kind, Special, evidence
@@ -16,11 +18,16 @@ LEVEL = 1e-7
 """A component of the tangent below this is zero: a motion that keeps contact may double at one speed."""
 SHORTEST = 1e-10
 """Part of a step down to which points that lie together are distinguished."""
-LOOKS = 2
-"""How often a stretch is halved on the mere chance that a multiplier crosses the unit circle twice in it."""
-CLOSE = 0.02
-"""A multiplier this close to the unit circle at an end of a stretch may cross it inside."""
-NEAR_CIRCLE = 0.4
+DEEPEST = 7
+"""How often a stretch is halved on the mere chance that stability or contact changes twice in it."""
+APART = 1e-6
+"""Special points that lie closer on a step share the stretch between two points of the branch."""
+ASIDE = 1e-6
+"""Part of a stretch by which a graze has to lie off its ends to divide it."""
+TOUCHING = 1e-4
+"""An extreme this near an edge, in length scales, may touch it there; grazes are located to far less."""
+STABILITY = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
+"""Special points at which multipliers pass the unit circle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,61 +40,131 @@ class _Event:
     edge: int = 0
 
 
-def locate(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> list[Special]:
-    """All special points between two neighbours, in order; `after` is the fraction of the way."""
+@dataclass(frozen=True, eq=False)
+class Located:
+    """Special points on a step, and what the step is divided into by them.
+
+    Attributes
+    ----------
+    specials
+        In order; `after` counts stretches between the divided step's points, from its first point.
+    inner
+        Points of the branch between neighbouring special points at which stability changes, so that each
+        stretch has one of these at most.
+    """
+
+    specials: list[Special]
+    inner: list[BranchPoint]
+
+
+def locate(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> Located:
+    """All special points between two neighbours, and the points of the branch that lie between them."""
     segment = Segment(period_map, here, there)
-    return sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
+    specials = sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
+    changes = [special.after for special in specials if special.kind in STABILITY]
+    cuts = [_cut(segment, *pair) for pair in pairwise(changes) if pair[1] - pair[0] > APART]
+    marks = np.array([0.0, *cuts, 1.0])
+    steps = np.arange(marks.size, dtype=float)
+    placed = [replace(special, after=float(np.interp(special.after, marks, steps))) for special in specials]
+    return Located(placed, [segment.at(cut) for cut in cuts])
 
 
-def _between(
-    segment: Segment, low: float, high: float, depth: int = 0, bend: float | None = None
+def locate_grazes(
+    period_map: PeriodMap, here: BranchPoint, there: BranchPoint, linear: Linear
 ) -> list[Special]:
+    """Grazes between two neighbours of which one is a junction: multipliers lie on the circle there.
+
+    linear: the map at the other one, with which orbits are corrected: at a junction its matrix is singular.
+    """
+    segment = Segment(period_map, replace(here, linear=linear), replace(there, linear=linear))
+    return sorted(_grazes_between(segment, 0.0, 1.0), key=lambda special: special.after)
+
+
+def _cut(segment: Segment, low: float, high: float) -> float:
+    """Fraction of a point between two special points, a known one if there is any."""
+    middle = 0.5 * (low + high)
+    inside = [fraction for fraction in segment.known if low < fraction < high]
+    margin = 0.1 * (high - low)
+    inside = [fraction for fraction in inside if low + margin < fraction < high - margin]
+    return min(inside, key=lambda fraction: abs(fraction - middle), default=middle)
+
+
+def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
     first, second = segment.at(low), segment.at(high)
     if first.linear.neutral.shape != second.linear.neutral.shape:
-        return _loosening(segment, low, high)
+        return _loosening(segment, low, high, depth)
     events, mixed = _events(segment.period_map, first, second)
-    if (mixed and high - low > SHORTEST) or (depth < LOOKS and _may_hide(first, second, bend)):
-        between: float | None = 0.5 * (low + high)
-        bend = _bend(first, segment.at(0.5 * (low + high)), second)
-    else:
-        between, bend = hidden_graze(segment, low, high) if depth < LOOKS else None, None
+    between = None
+    if mixed and high - low > SHORTEST:
+        between = 0.5 * (low + high)
+    elif depth < DEEPEST:
+        between = _hidden(segment, low, high)
     if between is None:
-        return [_refined(segment, low, high, event) for event in events]
-    left = _between(segment, low, between, depth + 1, bend)
-    return left + _between(segment, between, high, depth + 1, bend)
+        specials = [_refined(segment, low, high, event) for event in events]
+        between = _leap(segment.period_map, specials, low, high)
+        if between is None and depth < DEEPEST and may_change(segment, low, high):
+            between = _kink(specials, low, high)
+    if between is None:
+        return specials
+    return _between(segment, low, between, depth + 1) + _between(segment, between, high, depth + 1)
 
 
-def _may_hide(first: BranchPoint, second: BranchPoint, bend: float | None) -> bool:
-    """Whether a multiplier may have left the unit circle and come back between two points.
+def _kink(specials: list[Special], low: float, high: float) -> float | None:
+    """Fraction of a graze in a stretch: multipliers bend sharply there, so each side is looked at alone."""
+    margin = ASIDE * (high - low)
+    inside = (special.after for special in specials if special.kind is Kind.GRAZE)
+    return next((fraction for fraction in inside if low + margin < fraction < high - margin), None)
 
-    bend: see _bend(), over a stretch twice as long that holds them.
+
+def _leap(period_map: PeriodMap, specials: list[Special], low: float, high: float) -> float | None:
+    """Fraction of a graze at which no extreme lies at the edge: one of the extremes that are counted there is
+    born or vanishes, and the graze itself lies elsewhere.
     """
-    if first.outside != second.outside or first.multipliers.size != second.multipliers.size:
-        return False
-    first_size, two = np.abs(first.multipliers), np.abs(second.multipliers)
-    closest = np.minimum(np.abs(first_size - 1.0), np.abs(two - 1.0))
-    # A parabola rises above the nearer end of half its stretch by at most a 32nd of its second difference.
-    reach = (
-        np.clip(np.abs(first_size - two), CLOSE, 0.2)
-        if bend is None
-        else np.full(first_size.size, bend / 8.0)
+    for special in specials:
+        if special.kind is not Kind.GRAZE or high - low <= SHORTEST:
+            continue
+        levels = np.array(period_map.edges(special.point.u))[:, special.meshes[0]]
+        level = levels[int(special.edge > 0)]
+        off = np.abs(special.point.extrema[special.meshes[0]] - level).min()
+        if off > TOUCHING:
+            inside = low < special.after < high
+            return special.after if inside else 0.5 * (low + high)
+    return None
+
+
+def _hidden(segment: Segment, low: float, high: float) -> float | None:
+    """Fraction at which a stretch has to be divided to see events that cancel out between its ends."""
+    look = hidden_change(segment, low, high)
+    if look is None:
+        look = hidden_graze(segment, low, high)
+    return look
+
+
+def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
+    events, mixed = _grazing(segment.period_map, segment.at(low), segment.at(high))
+    between = None
+    if mixed and high - low > SHORTEST:
+        between = 0.5 * (low + high)
+    elif depth < DEEPEST:
+        between = hidden_graze(segment, low, high)
+    if between is None:
+        specials = [_refined(segment, low, high, event) for event in events]
+        between = _leap(segment.period_map, specials, low, high)
+    if between is None:
+        return specials
+    return _grazes_between(segment, low, between, depth + 1) + _grazes_between(
+        segment, between, high, depth + 1
     )
-    return bool((closest < reach).any())
 
 
-def _bend(first: BranchPoint, middle: BranchPoint, second: BranchPoint) -> float | None:
-    """Largest second difference of moduli near the unit circle; None where they cannot be compared."""
-    sizes = [np.abs(point.multipliers) for point in (first, middle, second)]
-    if len({size.size for size in sizes}) > 1:
-        return None
-    near = np.abs(sizes[1] - 1.0) < NEAR_CIRCLE
-    return float(np.abs(sizes[0] - 2.0 * sizes[1] + sizes[2])[near].max(initial=0.0))
+def _grazing(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
+    touched, mixed = grazes(period_map, first, second)
+    return [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in touched], mixed
 
 
 def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
     """Changes between two points; True if more than one of a kind is among them."""
-    touched, mixed = grazes(period_map, first, second)
-    events = [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in touched]
+    events, mixed = _grazing(period_map, first, second)
     ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)
     if folds:
@@ -121,8 +198,9 @@ def _turns(first: BranchPoint, second: BranchPoint) -> bool:
     return bool(a * b < 0.0 and max(abs(a), abs(b)) > LEVEL)
 
 
-def _loosening(segment: Segment, low: float, high: float) -> list[Special]:
-    """A body comes loose or is caught: halve until the parameter is known."""
+def _loosening(segment: Segment, low: float, high: float, depth: int) -> list[Special]:
+    """A body comes loose or is caught: halve until the parameter is known; events before and after it."""
+    start, end = low, high
     while high - low > 1e-9:
         middle = 0.5 * (low + high)
         if segment.at(middle).linear.neutral.shape == segment.at(low).linear.neutral.shape:
@@ -131,7 +209,10 @@ def _loosening(segment: Segment, low: float, high: float) -> list[Special]:
             high = middle
     loose = segment.at(high).linear.neutral.shape[1] - segment.at(low).linear.neutral.shape[1]
     proof = f"{abs(loose)} shift(s) {'begin' if loose > 0 else 'cease'} to touch no mesh in contact"
-    return [Special(Kind.NEUTRAL, segment.at(high), 1.0 + 0.0j, proof, high)]
+    special = Special(Kind.NEUTRAL, segment.at(high), 1.0 + 0.0j, proof, high)
+    beside = _between(segment, start, low, depth) + _between(segment, high, end, depth)
+    # The last contact that a body loses is a graze of the same place.
+    return [special, *(other for other in beside if abs(other.after - high) > APART)]
 
 
 def _refined(segment: Segment, low: float, high: float, event: _Event) -> Special:

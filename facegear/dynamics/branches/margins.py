@@ -57,16 +57,24 @@ def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Branc
 def stability_limits(
     branches: Sequence[Branch], families: Sequence[tuple[Family, float, ContinuationSettings]], value: float
 ) -> list[StabilityLimit]:
-    """For every stable motion at a parameter of the branches, the first special point in each family.
+    """For every stable motion at a parameter of the branches, the first special point in each family. Images
+    have the limits of their original.
 
     families: with the value at which they pass through the motion, and the range to look through.
     """
+    originals = [(n, point) for n, point in stable_at(branches, value) if branches[n].image_of is None]
     limits = []
-    for number, point in stable_at(branches, value):
+    for number, point in originals:
         period_map = branches[number].period_map
         for family, start, run in families:
             limits += _limits_of(replace(period_map, family=family), number, point, start, run)
-    return limits
+    images = [
+        replace(limit, branch=number)
+        for number, branch in enumerate(branches)
+        for limit in limits
+        if branch.image_of == limit.branch
+    ]
+    return sorted([*limits, *images], key=lambda limit: limit.branch)
 
 
 def _limits_of(
@@ -139,7 +147,8 @@ def passed_by(
         (number, special)
         for number, branch in enumerate(branches)
         for special in branch.of(*ENDING)
-        if branch.period_map.period == period
+        if branch.image_of is None
+        and branch.period_map.period == period
         and low - slack <= special.point.value <= high + slack
         and _ends_stability(branch, special)
     ]

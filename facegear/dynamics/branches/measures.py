@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
-from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_forces, mesh_fractions
+from facegear.dynamics.steady_state.mesh_samples import (
+    each_deflection,
+    largest_mesh_forces,
+    mesh_fractions,
+)
 from facegear.dynamics.steady_state.window import run_window
 
 SAMPLES = 64
@@ -16,7 +18,7 @@ SAMPLES = 64
 @dataclass(frozen=True, eq=False)
 class Measures:
     """Of each mesh, shape (meshes,): RMS without and with mean, least and largest deflection in m, largest
-    elastic force of at least 64 samples a mesh period in N. fractions (3, meshes): time open, on drive and
+    elastic force in N. fractions (3, meshes): time open, on drive and
     back flank.
     """
 
@@ -35,13 +37,12 @@ def measures(period_map: PeriodMap, point: BranchPoint) -> Measures:
     state = integrator.by_phase(period_map.state(point.z, point.u))
     window = run_window(integrator, state, period_map.period, SAMPLES)
     each = each_deflection(system, window.samples, window.per_period)
-    forces = mesh_forces(system, each, window.per_period)
     moments = window.averages.meshes(True)
     return Measures(
         ac_rms=moments.ac_rms,
         rms=moments.rms,
         minimum=moments.minimum,
         maximum=moments.maximum,
-        peak_force=np.abs(forces).max(axis=0),
+        peak_force=largest_mesh_forces(system, each, window.per_period, wraps=True),
         fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
     )

@@ -16,6 +16,9 @@ from facegear.dynamics.steady_state.orbits import monodromy
 
 PARAMETER_STEP = 1e-5
 """Change of the parameter's logarithm in the central difference of the map."""
+RATE_STEP = 1e-4
+"""Step along a branch in the difference that tells how the map's matrix changes: far above the matrix's own
+error, far below the steps of a branch."""
 RIGID = 1e-10
 STEPS = 0.1
 """Part of the tolerance to which each step is held: their errors add up."""
@@ -42,6 +45,8 @@ class Linear:
         Integral of the trace.
     inverses
         Of the matrix bordered by a row.
+    rates
+        Change of the matrix along a direction, see PeriodMap.matrix_rate().
     """
 
     gap: Array
@@ -51,6 +56,7 @@ class Linear:
     neutral: Array
     divergence: float
     inverses: dict[bytes, Array] = field(default_factory=dict, repr=False)
+    rates: dict[bytes, Array] = field(default_factory=dict, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,6 +150,20 @@ class PeriodMap:
             neutral=self._rigid(integrator, contact, weights),
             divergence=result.divergence,
         )
+
+    def matrix_rate(self, x: Array, tangent: Array, linear: Linear) -> Array:
+        """Change of the map's matrix (2 n, 2 n) per unit length along a tangent (2 n + 1,) of the branch.
+
+        linear: the map at x (2 n + 1,), which keeps the answer.
+        """
+        key = tangent.tobytes()
+        if key not in linear.rates:
+            ahead = x + RATE_STEP * tangent
+            integrator = self.integrator(float(ahead[-1]))
+            weights = self.weights(integrator)
+            matrix, _ = monodromy(integrator, self._by_phase(integrator, ahead[:-1]), self.period)
+            linear.rates[key] = (matrix * (weights[:, None] / weights) - linear.matrix) / RATE_STEP
+        return linear.rates[key]
 
     def _rigid(self, integrator: Integrator, contact: Mask, weights: Array) -> Array:
         """Shifts that neither a mesh in contact nor a bearing feels: their multiplier is one."""

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from facegear.arrays import Array, ComplexArray
+from facegear.arrays import AnyArray, Array, ComplexArray
 from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.dynamics.multiplier_order import by_modulus
 from facegear.errors import NotConverged
@@ -71,9 +71,7 @@ class BranchPoint:
     @cached_property
     def multipliers(self) -> ComplexArray:
         """Floquet multipliers (2 n - k,), largest first, without those of k neutral directions."""
-        values = np.linalg.eigvals(self.linear.matrix).astype(complex)
-        near_one = np.argsort(np.abs(values - 1.0))
-        values = np.delete(values, near_one[: self.linear.neutral.shape[1]])
+        values = without_neutral(np.linalg.eigvals(self.linear.matrix), self.linear.neutral.shape[1])
         return values[by_modulus(values)]
 
     @cached_property
@@ -102,6 +100,12 @@ class BranchPoint:
     def stable(self) -> bool:
         """No multiplier outside the unit circle."""
         return self.outside == (0, 0, 0)
+
+
+def without_neutral(values: AnyArray, neutral: int) -> ComplexArray:
+    """Multipliers (..., 2 n) less the `neutral` nearest to one, shape (..., 2 n - neutral)."""
+    nearest = np.argsort(np.abs(values - 1.0), axis=-1)
+    return np.take_along_axis(values, nearest[..., neutral:], axis=-1).astype(complex)
 
 
 def bordered(linear: Linear, row: Array) -> Array:

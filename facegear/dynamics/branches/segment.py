@@ -68,10 +68,22 @@ class Segment:
         step = SMALL / float(np.linalg.norm(along))
         x = point.x + step * along
         ahead = self.period_map.extrema(x[:-1], x[-1])
-        count = min(ahead.shape[2], point.extrema.shape[2])
-        now, then = point.extrema[:, :, :count], ahead[:, :, :count]
+        now, then = point.extrema, np.full(point.extrema.shape, -np.inf)
+        count = min(ahead.shape[2], now.shape[2])
+        then[:, :, :count] = ahead[:, :, :count]
         known = np.isfinite(now) & np.isfinite(then)
         return np.divide(np.subtract(then, now, where=known, out=np.zeros(now.shape)), step)
+
+    def matrix_slope(self, fraction: float, stretch: float) -> Array:
+        """Change of the map's matrix (2 n, 2 n) with the position on a stretch of the chord, at a known
+        point.
+        """
+        point = self.known[fraction]
+        along = _slope(stretch * self.chord, point.tangent)
+        size = float(np.linalg.norm(along))
+        is_tangent = along @ point.tangent > (1.0 - 1e-9) * size
+        direction = point.tangent if is_tangent else along / size
+        return size * self.period_map.matrix_rate(point.x, direction, point.linear)
 
     def _near(self, fraction: float) -> BranchPoint:
         return self.known[min(self.known, key=lambda other: abs(other - fraction))]

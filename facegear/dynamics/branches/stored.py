@@ -55,8 +55,8 @@ LOCUS_KINDS = (Kind.FOLD, Kind.DOUBLING)
 
 
 def special_arrays(branches: Sequence[Branch]) -> dict[str, AnyArray]:
-    """Folds and period doublings as arrays of SPECIAL_SHAPES."""
-    located = [(b, n, s) for n, b in enumerate(branches) for s in b.of(*LOCUS_KINDS)]
+    """Folds and period doublings as arrays of SPECIAL_SHAPES; images, which have the same, are left out."""
+    located = [(b, n, s) for n, b in enumerate(branches) if b.image_of is None for s in b.of(*LOCUS_KINDS)]
     size = branches[0].points[0].x.size
     return {
         "kind": np.array([LOCUS_KINDS.index(special.kind) for _, _, special in located], dtype=int),

@@ -24,10 +24,11 @@ def survey_summary(
     jumps: pd.DataFrame,
 ) -> str:
     """Branches, special points, coexistence, motions of the sweep, named jumps and margins."""
-    counts = Counter(s.kind.value for branch in survey.branches for s in branch.specials)
-    points = sum(len(branch.points) for branch in survey.branches)
+    followed = [branch for branch in survey.branches if branch.image_of is None]
+    counts = Counter(s.kind.value for branch in followed for s in branch.specials)
+    points, images = sum(len(branch.points) for branch in followed), len(survey.branches) - len(followed)
     parts = [
-        f"{len(survey.branches)} branches of {points} points",
+        f"{len(followed)} branches of {points} points" + (f" and {images} images" if images else ""),
         ", ".join(f"{count} {kind}" for kind, count in counts.most_common()),
         f"{len(ranges)} speed ranges with several stable motions",
         f"{len(survey.unfollowed)} motions not followed" if survey.unfollowed else "",

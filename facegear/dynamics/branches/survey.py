@@ -1,15 +1,19 @@
 """All motions over a range of one parameter: branches, what leaves them, what was found elsewhere."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
+import numpy as np
+
 from facegear.dynamics.branches.continuation import Branch, BranchEnd, ContinuationSettings, follow
-from facegear.dynamics.branches.explore import lies_on
+from facegear.dynamics.branches.explore import SAME, lies_on
+from facegear.dynamics.branches.mirror_images import image_branch, image_point, image_state
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.branches.switching import broken, doubled
+from facegear.dynamics.symmetries import symmetries
 from facegear.errors import NotConverged
 
 MET = 1e-6
@@ -28,7 +32,9 @@ class Unfollowed:
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """branches in the order in which they were found, and the motions that were not followed."""
+    """branches in the order in which they were found, images behind their original, and the motions that were
+    not followed.
+    """
 
     branches: list[Branch]
     unfollowed: list[Unfollowed]
@@ -44,8 +50,28 @@ def survey(
 ) -> Survey:
     """The branch through `start`, all that leave it, and those through motions found elsewhere.
 
-    motions: each with its map and where it was found. What leaves a branch by period doubling or broken
-    symmetry is followed up to longest_period. At most `max_branches` branches.
+    Every branch that a symmetry of the system does not map to itself has its images behind it, which are not
+    followed but mapped. These are all periodic motions that hang together with a motion of the start or of
+    `motions` by branches of up to longest_period mesh periods, with these bounds: motions that no branch
+    leads to and no start has found are missing; where several multipliers pass one together, as at equal
+    pinions all around, one of the branches that leave the point is followed with its images; and what leaves
+    a Neimark-Sacker point is not periodic.
+
+    Parameters
+    ----------
+    start
+        Map and point of the first branch.
+    motions
+        Motions found elsewhere, each with its map and where it was found.
+    run
+        Range and steps of all branches.
+    longest_period
+        Longest period, in mesh periods, to which what leaves a branch by period doubling or broken symmetry
+        is followed.
+    max_branches
+        Largest number of branches that are followed, without their images.
+    progress
+        Is told of each branch.
     """
     search = _Search(run, longest_period, max_branches, progress)
     search.follow(*start, "the first motion")
@@ -97,7 +123,7 @@ class _Search:
 
     def _tried(self, attempt: Callable[[], Branch], period: int, value: float, origin: str) -> Branch | None:
         """A new branch, kept; None if it is known already, or with a note if it cannot be followed."""
-        if len(self.branches) >= self.max_branches:
+        if sum(branch.image_of is None for branch in self.branches) >= self.max_branches:
             reason = f"{self.max_branches} branches are followed already"
             self.unfollowed.append(Unfollowed(period, value, origin, reason))
             return None
@@ -115,7 +141,26 @@ class _Search:
             return None
         self.branches.append(branch)
         self.progress(f"{len(branch.points)} points of period {period}, {len(branch.specials)} special")
+        self._add_images(branch)
         return branch
+
+    def _add_images(self, branch: Branch) -> None:
+        """Keep the images of a branch that are not known already; a symmetric branch is its own image."""
+        number, period_map = len(self.branches) - 1, branch.period_map
+        probe = branch.points[len(branch.points) // 2]
+        own = period_map.images(probe.z, probe.u)
+        for symmetry in symmetries(period_map.family.at(probe.value)[0]):
+            z = image_state(period_map, probe.z, probe.u, symmetry)
+            if min(np.abs(z - state).max() for state in own) < SAME:
+                continue
+            try:
+                image = image_point(period_map, probe, symmetry)
+                if self._is_known(period_map.period, image):
+                    continue
+                self.branches.append(replace(image_branch(branch, symmetry), image_of=number))
+            except NotConverged as error:
+                origin = f"image of branch {number}"
+                self.unfollowed.append(Unfollowed(period_map.period, probe.value, origin, str(error)))
 
     def _is_known(self, period: int, point: BranchPoint) -> bool:
         return any(lies_on(branch, point, period) for branch in self.branches)

@@ -4,20 +4,26 @@ The new branch is sought beside the special point, along the null vector of M + 
 1991), M the matrix of the period map.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch, BranchEnd, ContinuationSettings, follow
+from facegear.dynamics.branches.locate import locate, locate_grazes
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint, at_parameter, solve_point
+from facegear.dynamics.branches.segment import Segment
 from facegear.dynamics.branches.special import Special
 from facegear.dynamics.motion import State
 from facegear.errors import NotConverged
 
 ASIDE = (0.02, 0.005, 0.06, 0.15, 0.4, 1e-3)
 """Distances from a special point, in length scales, at which another branch is sought."""
+NEAR_ROOT = 0.1
+"""Part of the way to that orbit from which special points are looked for by multipliers: at the special point
+itself one of them lies on the unit circle."""
 LEFT = 0.3
 """Smallest fraction of the distance that must remain along the new direction."""
 
@@ -29,7 +35,13 @@ def doubled(period_map: PeriodMap, special: Special, run: ContinuationSettings) 
     """
     twice = period_map.over(2 * period_map.period)
     direction = _direction(special.point.linear.matrix, -1.0)
-    start = _aside(twice, special, direction)
+
+    def is_doubled(point: BranchPoint) -> bool:
+        """Whether the motion differs from itself a period later, other than the branch that doubles."""
+        changed = np.linalg.norm(period_map.gap(point.z, point.u))
+        return bool(changed > LEFT * np.linalg.norm(point.x - special.point.x))
+
+    start = _aside(twice, special, direction, is_doubled)
     return _from(twice, special, start, run, BranchEnd.DOUBLING)
 
 
@@ -50,9 +62,30 @@ def _from(
     origin = special.point
     away = start.x - origin.x
     linear = period_map.linear(origin.z, origin.u)
-    root = replace(origin, tangent=away / np.linalg.norm(away), linear=linear)
-    specials = [replace(special_point, after=special_point.after + 1.0) for special_point in child.specials]
-    return replace(child, points=[root, *child.points], specials=specials, ends=(end, child.ends[1]))
+    extrema = period_map.extrema(origin.z, origin.u)
+    root = replace(origin, tangent=away / np.linalg.norm(away), linear=linear, extrema=extrema)
+    try:
+        first, located = _first_stretch(period_map, root, start)
+    except (NotConverged, np.linalg.LinAlgError) as error:
+        tried = f"grazes before {start.value:.9g} were not looked for: {error}"
+        first, located, child = (
+            [root],
+            [],
+            replace(child, tried="; ".join(filter(None, [tried, child.tried]))),
+        )
+    behind = [replace(later, after=later.after + len(first)) for later in child.specials]
+    points = [*first, *child.points]
+    return replace(child, points=points, specials=[*located, *behind], ends=(end, child.ends[1]))
+
+
+def _first_stretch(
+    period_map: PeriodMap, root: BranchPoint, start: BranchPoint
+) -> tuple[list[BranchPoint], list[Special]]:
+    """Points from a special point up to the orbit beside it, without that one, and what lies on the way."""
+    near = Segment(period_map, replace(root, linear=start.linear), start).at(NEAR_ROOT)
+    located = locate(period_map, near, start)
+    behind = [replace(special, after=special.after + 1.0) for special in located.specials]
+    return [root, near, *located.inner], [*locate_grazes(period_map, root, near, near.linear), *behind]
 
 
 def through(period_map: PeriodMap, state: State, value: float, run: ContinuationSettings) -> Branch:
@@ -71,8 +104,16 @@ def _direction(matrix: Array, goal: float) -> Array:
     return vector / np.linalg.norm(vector)
 
 
-def _aside(period_map: PeriodMap, special: Special, direction: Array) -> BranchPoint:
-    """An orbit at some distance along a direction, the parameter free, looking away from the point."""
+def _aside(
+    period_map: PeriodMap,
+    special: Special,
+    direction: Array,
+    is_new: Callable[[BranchPoint], bool] = lambda point: True,
+) -> BranchPoint:
+    """An orbit at some distance along a direction, the parameter free, looking away from the point.
+
+    is_new: whether an orbit lies on another branch than the special point.
+    """
     row = np.append(direction, 0.0)
     origin = special.point.x
     for distance in ASIDE:
@@ -82,7 +123,7 @@ def _aside(period_map: PeriodMap, special: Special, direction: Array) -> BranchP
             continue
         away = point.x - origin
         near = np.linalg.norm(away) < 4.0 * distance
-        if near and row @ away > LEFT * np.linalg.norm(away):
+        if near and row @ away > LEFT * np.linalg.norm(away) and is_new(point):
             return point
     raise NotConverged(
         "branches",

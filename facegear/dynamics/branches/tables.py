@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.branches.columns import BRANCH_COLUMNS, SPECIAL_COLUMNS
-from facegear.dynamics.branches.continuation import Branch, BranchEnd
+from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.loci import Locus
 from facegear.dynamics.branches.measures import measures
 from facegear.dynamics.branches.special import Special
@@ -99,17 +99,22 @@ def _edge(special: Special, meshes: int) -> str:
 
 
 def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
-    """Columns branch, period, points, from_rpm, to_rpm, first_end, last_end, tried: one row a branch."""
+    """Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried.
+
+    One row a branch. image_of: the branch of which it is the image under a symmetry of the machine, or
+    nothing.
+    """
     rows = [
         {
             "branch": number,
+            "image_of": "" if branch.image_of is None else str(branch.image_of),
             "period": branch.period_map.period,
             "points": len(branch.points),
             "from_rpm": branch.values.min(),
             "to_rpm": branch.values.max(),
             "first_end": branch.ends[0].value,
             "last_end": branch.ends[1].value,
-            "tried": branch.tried if BranchEnd.STEP in branch.ends else "",
+            "tried": branch.tried,
         }
         for number, branch in enumerate(branches)
     ]

@@ -13,8 +13,14 @@ from facegear.dynamics.integrator.sums import Sums
 
 BATCHES = 16
 CONFIDENCE = 0.95
-LARGEST_CORRELATION = 0.9
-"""Of successive batches, by which an interval is widened: batches cannot show more of it."""
+LARGEST_CORRELATION = 0.95
+"""Correlation of successive batches above which so few of them cannot tell it from 1."""
+MIN_INDEPENDENT = 3.0
+"""Least number of independent batches that a run counts for."""
+MIN_SHOWN = 0.1
+"""Least part of the variance that batches are taken to show about their own mean."""
+SLOW_WAVES = 4
+"""Slowest waves over a run whose amplitudes give the variance of its mean."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +87,19 @@ class Averages:
     centre: Array
     products: Array
 
+    @property
+    def centred_squares(self) -> Array:
+        """Mean square (B, M) of the deflections of each batch about the mean of all, m^2."""
+        off = self._whole(self.deflection)
+        return self.square - 2.0 * off * self.deflection + off**2
+
     def meshes(self, periodic: bool) -> Moments:
         """Moments of the mesh deflections."""
         off = self._whole(self.deflection)
         variance = np.maximum(self._whole(self.square) - off**2, 0.0)
         mean = self.level + off
         rms, ac_rms = np.sqrt(variance + mean**2), np.sqrt(variance)
-        moved = self.deflection - off
-        centred = self.square - 2.0 * off * self.deflection + off**2
+        moved, centred = self.deflection - off, self.centred_squares
         return Moments(
             mean=mean,
             rms=rms,
@@ -143,28 +154,84 @@ def averages(integrator: Integrator, sums: Sums, periods: int) -> Averages:
 
 
 def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """Half-width (columns,) of the confidence interval of a mean from the means of batches (B, columns), each
-    of which may be like the one before.
+    """Compute the half-width of the confidence interval of a mean from means of correlated batches.
 
-    That of independent ones, times sqrt((1 + r) / (1 - r)) by the correlation r of successive batches, which
-    is estimated too low by 1 / B (Marriott and Pope 1954).
+    The half-width is the larger of two estimates. One takes the batches for an autoregressive series of first
+    order and counts how many independent batches it is worth; it widens where a run is short beside the
+    correlation time. The other takes the variance of the mean from the slowest waves over the run; it sees a
+    slow change that is smaller than the scatter of single batches. A change that takes longer than a quarter
+    of the run and is smaller than that scatter shows in neither.
+
+    Parameters
+    ----------
+    batches : (B, columns)
+        Means over B batches of equal length, in their order in time.
+    confidence
+        Probability with which the interval holds the mean.
+
+    Returns
+    -------
+    (columns,)
+        Half-width in the unit of the batches; zero from a single batch, which says nothing.
+
+    References
+    ----------
+    Marriott and Pope (1954), bias of the correlation. Lazarus, Lewis, Stock and Watson (2018), variance of a
+    mean from its slowest cosines, with as many degrees of freedom as cosines.
     """
-    count = len(batches)
-    off = batches - batches.mean(axis=0)
-    square = (off * off).sum(axis=0)
-    alike = (off[1:] * off[:-1]).sum(axis=0) / np.where(square > 0.0, square, 1.0)
-    correlation = np.clip(alike + 1.0 / count, 0.0, LARGEST_CORRELATION)
+    if len(batches) < 2:
+        return independent_interval(batches, confidence)
+    return np.maximum(_autoregressive_interval(batches, confidence), _slow_wave_interval(batches, confidence))
+
+
+def successive_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
+    """Compute the half-width (columns,) that the correlation of successive batches (B, columns) alone widens.
+
+    For a few batches, as the halves of a run have: how many independent ones they are worth is not known, and
+    an interval that allows for any number would hide every change.
+    """
+    correlation = np.clip(_successive(batches) + 1.0 / len(batches), 0.0, 0.9)
     return independent_interval(batches, confidence) * np.sqrt((1.0 + correlation) / (1.0 - correlation))
 
 
 def independent_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """The same of batches that do not depend on each other: Student's distribution with B - 1 degrees of
-    freedom. Zero from a single batch, which says nothing.
+    """Compute the half-width (columns,) from batches (B, columns) that do not depend on each other.
+
+    Student's distribution with B - 1 degrees of freedom. Zero from a single batch, which says nothing.
     """
     count = len(batches)
     if count < 2:
         return np.zeros(batches.shape[1:])
     return _student(count - 1, confidence) * batches.std(axis=0, ddof=1) / np.sqrt(count)
+
+
+def _successive(batches: Array) -> Array:
+    """Correlation (columns,) of each batch with the next, as it is in the sample; 0 without spread."""
+    off = batches - batches.mean(axis=0)
+    square = (off * off).sum(axis=0)
+    return np.asarray((off[1:] * off[:-1]).sum(axis=0) / np.where(square > 0.0, square, 1.0))
+
+
+def _autoregressive_interval(batches: Array, confidence: float) -> Array:
+    """Half-width (columns,) by the number of independent batches that correlated ones are worth."""
+    count, sample = len(batches), _successive(batches)
+    # In a sample the correlation is too low by (1 + 4 r) / B, and the variance by its 1 / `worth`.
+    correlation = np.clip(sample + (1.0 + 4.0 * sample) / count, 0.0, LARGEST_CORRELATION)
+    worth = count * (1.0 - correlation) / (1.0 + correlation)
+    variance = batches.var(axis=0) / np.maximum(1.0 - 1.0 / worth, MIN_SHOWN)
+    worth = np.maximum(worth, MIN_INDEPENDENT)
+    quantile = scipy.special.stdtrit(worth - 1.0, 0.5 + 0.5 * confidence)
+    return np.asarray(quantile * np.sqrt(variance / worth))
+
+
+def _slow_wave_interval(batches: Array, confidence: float) -> Array:
+    """Half-width (columns,) from the amplitudes of the slowest waves over the run."""
+    count = len(batches)
+    waves = min(SLOW_WAVES, count - 1)
+    phases = np.pi * np.arange(1, waves + 1)[:, None] * (np.arange(count) + 0.5) / count
+    amplitudes = np.sqrt(2.0 / count) * np.tensordot(np.cos(phases), batches - batches.mean(axis=0), 1)
+    variance = (amplitudes**2).mean(axis=0)
+    return np.asarray(_student(waves, confidence) * np.sqrt(variance / count))
 
 
 def _root_interval(squared: Array, root: Array, periodic: bool) -> Array:

@@ -4,6 +4,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.by_content import kept_by_content
+from facegear.dynamics.between_samples import FINE_STEPS, REACH, max_peaks, top_of, values_around
 from facegear.dynamics.integrator.system import System
 from facegear.harmonics.series import stacked_values
 from facegear.mesh_law.law import beyond_edges, past_levels
@@ -51,14 +52,41 @@ def by_mesh(system: System, each: Array) -> Array:
 
 def mesh_forces(system: System, each: Array, per_period: int) -> Array:
     """Elastic forces (K, meshes), N, from each_deflection(); with two flanks what both transmit."""
+    by_period = each.reshape(-1, per_period, each.shape[1])
+    forces = _transmitted(system, by_period, np.arange(per_period) / per_period)
+    return forces.reshape(len(each), -1)
+
+
+def _transmitted(system: System, each: Array, cycles: Array) -> Array:
+    """Elastic forces (..., K, meshes), N, of deflections (..., K, contacts) at places (K,) in mesh cycles."""
     contacts = system.contacts
     beyond = beyond_edges(each, system.lower[:contacts], system.upper[:contacts])
-    cycles = np.arange(per_period) / per_period
-    forces = system.law.force(cycles, beyond.reshape(-1, per_period, contacts)).reshape(each.shape)
+    forces = system.law.force(cycles, beyond)
     if not system.two_flanks:
         return forces
-    drive, back = np.split(forces, 2, axis=1)
-    return drive - back
+    drive, back = np.split(forces, 2, axis=-1)
+    return np.asarray(drive - back)
+
+
+def largest_mesh_forces(system: System, each: Array, per_period: int, wraps: bool) -> Array:
+    """Largest magnitude (meshes,) of the elastic mesh forces, N, located between the samples.
+
+    Between samples the deflections are polynomials; the law makes forces of them, so that a short contact has
+    its kink where the flank touches. each: each_deflection(); wraps: whether the samples are a whole period.
+    """
+    sizes = np.abs(mesh_forces(system, each, per_period))
+    largest = np.asarray(sizes.max(axis=0))
+    if len(each) <= 2 * REACH:
+        return largest
+    rows, is_peak = max_peaks(sizes, wraps)
+    fine = values_around(each, rows.ravel())
+    fine = fine.reshape(-1, fine.shape[2])
+    instants = (rows.ravel() + FINE_STEPS[:, None]).ravel() / per_period
+    forces = np.abs(_transmitted(system, fine, instants)).reshape(FINE_STEPS.size, *rows.shape, -1)
+    for candidate, peak in enumerate(is_peak):
+        own = np.diagonal(forces[:, candidate], axis1=1, axis2=2)
+        largest = np.where(peak, np.maximum(largest, top_of(own)), largest)
+    return largest
 
 
 def past_law(system: System, each: Array) -> Array:

@@ -13,6 +13,7 @@ from facegear.dynamics.steady_state.averages import Averages, Moments
 from facegear.dynamics.steady_state.mesh_samples import (
     by_mesh,
     each_deflection,
+    largest_mesh_forces,
     mesh_forces,
     mesh_fractions,
     past_law,
@@ -106,6 +107,11 @@ class SteadyState:
     def forces(self) -> Array:
         """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
         return mesh_forces(self.system, self._each, self.per_period)
+
+    @property
+    def largest_forces(self) -> Array:
+        """Largest magnitude (meshes,) of the elastic mesh forces, located between the samples, N."""
+        return largest_mesh_forces(self.system, self._each, self.per_period, self.period > 0)
 
     @cached_property
     def _each(self) -> Array:

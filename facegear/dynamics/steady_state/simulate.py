@@ -1,8 +1,8 @@
 """Steady state of a machine at a speed: the public entry of the dynamics."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -16,10 +16,17 @@ from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
+from facegear.dynamics.steady_state.mirror_images import (
+    held_after,
+    start_on_image,
+    symmetries_of_start,
+    with_chosen_image,
+)
 from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.response import SteadyState, response_of
 from facegear.dynamics.steady_state.second_look import disagreeing
 from facegear.dynamics.steady_state.watching import Begun, begin, not_settled, watch
+from facegear.dynamics.symmetries import Symmetry
 from facegear.errors import NotConverged
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.statics import static_equilibrium
@@ -84,11 +91,12 @@ def simulating(
 
 @dataclass(frozen=True, eq=False)
 class Started:
-    """A motion at a pinion speed that was watched for the first time."""
+    """A motion at a pinion speed that was watched for the first time; start_held: symmetries of its start."""
 
     system: System
     begun: Begun
     speed_rpm: float
+    start_held: tuple[Symmetry, ...] = ()
 
     @property
     def known(self) -> bool:
@@ -100,12 +108,26 @@ class Started:
         """What it may hand on to a motion at another speed: a state of its own, the last that was seen."""
         return self.begun.integrator.by_time(self.begun.state)
 
+    @property
+    def held(self) -> tuple[Symmetry, ...]:
+        """The symmetries of the motion that it hands on."""
+        return held_after(self.begun, self.system)
+
     def followed(self) -> Course[SteadyState]:
         """The steady state that is left of it when it is watched until its class is known, and looked at
-        again.
+        again. Of a motion that has settled only after its first watch the image is chosen here.
         """
         with _naming(self.speed_rpm):
-            return (yield from _steady(self.system, self.begun))
+            response = yield from _steady(self.system, self.begun)
+            late = self.begun.seen is None and self.start_held
+            image = start_on_image(response, self.start_held) if late else None
+            if image is None:
+                return response
+            integrator = self.begun.integrator
+            begun = yield from begin(integrator, integrator.by_phase(image), self.begun.settings)
+            again = yield from _steady(self.system, begun)
+        run = response.periods_run + again.periods_run
+        return replace(again, periods_run=run) if again.label == response.label else response
 
 
 def started(
@@ -115,14 +137,22 @@ def started(
     start: State | None = None,
     guide: Guide | None = None,
     known: KnownOrbit | None = None,
+    held: Sequence[Symmetry] | None = None,
 ) -> Course[Started]:
-    """The first watch of simulate(); it is over where the run comes to a `known` orbit of the model."""
+    """The first watch of simulate(); it is over where the run comes to a `known` orbit of the model.
+
+    held: symmetries of what the start belongs to, by default of the start itself. Where the run breaks one,
+    which of the mirror images it takes is a matter of rule. A guide leads to the image next to it.
+    """
     model = build_model(model) if isinstance(model, Machine) else model
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
     start = static_start(model) if start is None else start
     with _naming(speed_rpm):
         begun = yield from _begun(model.system, frequency, settings or Settings(), start, guide, known)
-    return Started(model.system, begun, speed_rpm)
+        if guide is None and not begun.settled.known:
+            held = symmetries_of_start(model.system, start) if held is None else held
+            begun = yield from with_chosen_image(begun, model.system, held)
+    return Started(model.system, begun, speed_rpm, tuple(held or ()))
 
 
 @contextmanager

@@ -3,13 +3,20 @@
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.steady_state.averages import BATCHES, Averages, Moments, mean_interval
+from facegear.dynamics.between_samples import located_extremes
+from facegear.dynamics.steady_state.averages import (
+    BATCHES,
+    Averages,
+    Moments,
+    mean_interval,
+    successive_interval,
+)
 
 SMOOTH = 0.02
 
 
 def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
-    """Moments of evenly spaced samples (K, columns) over whole periods.
+    """Moments of evenly spaced samples (K, columns) over whole periods; extremes are located between them.
 
     Right where the samples show all that moves; the moments of a response come from its step polynomials.
     """
@@ -23,12 +30,13 @@ def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
         from_mean, from_squared = (batch_means(values, per_period) for values in (centred, squared))
         spread = mean_interval(from_squared + 2.0 * mean * from_mean) / (2.0 * np.where(rms > 0.0, rms, 1.0))
         ac_spread = mean_interval(from_squared) / (2.0 * np.where(ac_rms > 0.0, ac_rms, 1.0))
+    minimum, maximum = located_extremes(samples, periodic)
     return Moments(
         mean=mean,
         rms=rms,
         ac_rms=ac_rms,
-        minimum=samples.min(axis=0),
-        maximum=samples.max(axis=0),
+        minimum=minimum,
+        maximum=maximum,
         rms_interval=spread,
         ac_rms_interval=ac_spread,
     )
@@ -53,10 +61,18 @@ def drifts(averages: Averages, by_period: Array) -> bool:
     half = len(averages.weight) // 2
     if half == 0:
         return False
-    first, last = (averages.part(part).meshes(False) for part in (slice(0, half), slice(-half, None)))
-    doubt = 3.0 * (first.ac_rms_interval + last.ac_rms_interval)
-    gap = np.abs(first.ac_rms - last.ac_rms)
-    if (gap > np.maximum(doubt, 0.1 * np.maximum(first.ac_rms, last.ac_rms))).any():
+    (first, first_doubt), (last, last_doubt) = (
+        _ac_rms(averages.part(part)) for part in (slice(0, half), slice(-half, None))
+    )
+    doubt = 3.0 * (first_doubt + last_doubt)
+    if (np.abs(first - last) > np.maximum(doubt, 0.1 * np.maximum(first, last))).any():
         return True
     successive = (np.diff(by_period, axis=0) ** 2).mean(axis=0)
     return bool((successive < SMOOTH * by_period.var(axis=0)).all())
+
+
+def _ac_rms(averages: Averages) -> tuple[Array, Array]:
+    """AC RMS (meshes,) of the deflections over a few batches, and its half-width by successive batches."""
+    ac_rms = averages.meshes(False).ac_rms
+    half_width = successive_interval(averages.centred_squares)
+    return ac_rms, half_width / (2.0 * np.where(ac_rms > 0.0, ac_rms, 1.0))

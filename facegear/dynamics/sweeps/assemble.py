@@ -5,10 +5,13 @@ from enum import StrEnum
 
 import numpy as np
 
-from facegear.dynamics.steady_state.simulate import Model
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.mirror_images import held_symmetries
+from facegear.dynamics.steady_state.simulate import Model, simulate
 from facegear.dynamics.sweeps.jumps import distance
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds
+from facegear.dynamics.symmetries import Symmetry, symmetries
 
 SAME = 5e-3
 """Relative difference of the AC RMS of periodic motions that counts as the same orbit."""
@@ -49,6 +52,13 @@ def same_response(first: Piece, i: int, second: Piece, j: int) -> SeamKind | Non
     return SeamKind.IRREGULAR if (np.abs(rms - other) <= 2.0 * doubt + SAME * rms).all() else None
 
 
+def symmetries_at_end(model: Model, piece: Piece, settings: Settings) -> tuple[Symmetry, ...]:
+    """Return the symmetries that map the last motion of a piece to itself; all where it is not periodic."""
+    if not piece.symmetry_broken[-1]:
+        return symmetries(model.system)
+    return held_symmetries(simulate(model, float(piece.speeds[-1]), settings, piece.state(-1)))
+
+
 def assemble(
     model: Model, plan: SweepPlan, direction: str, chunks: list[tuple[Piece, Piece]]
 ) -> tuple[Piece, list[Seam]]:
@@ -63,9 +73,12 @@ def assemble(
             whole = joined([whole, own])
             continue
         redone: list[Piece] = []
+        held = symmetries_at_end(model, whole, plan.settings)
         for i in range(len(own.speeds)):
             state = (redone[-1] if redone else whole).state(-1)
-            redone.append(collect(model, run_speeds(model, own.speeds[i : i + 1], plan.settings, state)))
+            (again,) = run_speeds(model, own.speeds[i : i + 1], plan.settings, state, held=held)
+            redone.append(collect(model, iter([again])))
+            held = held_symmetries(again[1])
             if same_response(redone[-1], -1, own, i) is not None:
                 break
         seams.append(Seam(direction, speed, SeamKind.RERUN, len(redone)))

@@ -1,15 +1,24 @@
-"""Jumps in a sweep: found where the response changes abruptly, then bracketed by bisection."""
+"""Jumps in a sweep: found where the response changes abruptly, then bracketed by following the motion.
+
+The periodic motion before a suspected jump is followed as an orbit, speed by speed, until it ends or loses
+its stability. That speed belongs to the motion, so it depends neither on the speeds of the sweep nor on how
+far a run is from the edge of its basin. Motions that are not periodic are bracketed by bisection.
+"""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 from facegear.dynamics.courses import Course
-from facegear.dynamics.motion import State
+from facegear.dynamics.motion import Motion, State
+from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower
+from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.dynamics.sweeps.sweep import Piece
+from facegear.ties import first_largest
 
 MIN_CHANGE = 0.1
 """Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
@@ -17,6 +26,15 @@ ABRUPT = 3.0
 """A jump is this many times the change over the speeds around it."""
 FLOOR = 1e-3
 """AC RMS below this fraction of the largest is not compared."""
+SAME = 5e-3
+"""Relative difference of the AC RMS of periodic motions that counts as the same orbit."""
+MAX_CHANGES = 8
+"""Smooth changes of the motion, such as period doublings, that are passed on the way to a jump."""
+KICKS = (0.01, 0.05, 0.2)
+"""Disturbances of an orbit that has just lost its stability, in length scales; the first after which a run
+settles counts. Without any it takes some 10,000 periods to leave an orbit with a multiplier of 1.0005."""
+RUNS = 2
+"""Runs, each from the end of the one before, in which a motion may settle."""
 
 Respond = Callable[[float, State], Course[SteadyState]]
 
@@ -26,6 +44,7 @@ class JumpSide:
     """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), m, its class and state.
 
     period: 0 where the motion is not periodic. multiplier: the leading one, NaN where there is none.
+    symmetry_broken: whether the motion has mirror images that are other motions.
     """
 
     speed: float
@@ -33,6 +52,7 @@ class JumpSide:
     label: str
     period: int
     multiplier: float
+    symmetry_broken: bool
     state: State
 
 
@@ -48,20 +68,26 @@ class Jump:
         Where the relative change is largest.
     largest
         The sweep's position next to the jump with the larger response.
+    error
+        How far the speed of the change may lie from the bracket, rpm: its width where the motion before it
+        was followed as an orbit, else the sweep's step, since a run leaves irregular motion by chance.
+    followed
+        Whether the motion before it was followed as an orbit until it was lost.
     """
 
     before: JumpSide
     after: JumpSide
     mesh: int
     largest: int
+    error: float
+    followed: bool
 
     @property
-    def abrupt(self) -> bool:
-        """Whether a jump is left in the refined bracket, and not a steep but smooth change or noise."""
-        regular = self.before.period > 0 or self.after.period > 0
-        return distance(self.before.ac_rms, self.after.ac_rms) > np.log1p(
-            MIN_CHANGE if regular else 3.0 * MIN_CHANGE
-        )
+    def kind(self) -> JumpKind:
+        """What it is."""
+        if self.before.period == 0 or self.after.period == 0:
+            return JumpKind.IRREGULAR
+        return JumpKind.JUMP if self.followed else JumpKind.STEP
 
 
 def suspects(piece: Piece) -> list[int]:
@@ -79,14 +105,89 @@ def suspects(piece: Piece) -> list[int]:
     return [int(i) for i in np.flatnonzero(abrupt.any(axis=1) & (largest > 0.0))]
 
 
-def refine(piece: Piece, position: int, respond: Respond, resolution: float) -> Course[Jump]:
-    """Bisect between two speeds of a sweep, each time from the state on the branch that ends."""
-    before, after = (_stored_side(piece, i) for i in (position, position + 1))
-    before, after = yield from bracket(before, after, respond, resolution)
+def refine(
+    piece: Piece,
+    position: int,
+    respond: Respond,
+    follower: OrbitFollower,
+    resolution: float,
+    images: Integers,
+) -> Course[Jump | None]:
+    """Find where the motion at a position of a sweep is lost before the next position; None if it is not.
+
+    images (images, meshes): how symmetries of the machine exchange meshes. Mirror images are one motion.
+    """
+    before, end = (_stored_side(piece, i) for i in (position, position + 1))
+    step = abs(end.speed - before.speed)
+    for _ in range(MAX_CHANGES):
+        orbit = follower.orbit(before.speed, before.state, before.period)
+        if orbit is None:
+            before, after = yield from bracket(before, end, respond, resolution, images)
+            return _jump(piece, position, before, after, images, step, False)
+        last, beyond = follower.until_lost(orbit, end.speed, resolution)
+        if beyond is None:
+            still = yield from _seen(end.speed, last, respond)
+            if image_distance(still.ac_rms, end.ac_rms, images) <= SAME and still.period == end.period:
+                return None
+            return _jump(piece, position, before, end, images, step, False)
+        before = yield from _seen(last.speed, last, respond)
+        after = yield from _beyond(last, beyond, follower, respond)
+        if abrupt(before, after, images):
+            width = abs(after.speed - before.speed)
+            return _jump(piece, position, before, after, images, width, True)
+        before = after
+    return None
+
+
+def _seen(speed: float, orbit: HeldOrbit, respond: Respond) -> Course[JumpSide]:
+    """What a run at a speed comes to from an orbit at the same or another speed."""
+    response = yield from respond(speed, orbit.state)
+    return side(speed, response)
+
+
+def _beyond(last: HeldOrbit, speed: float, follower: OrbitFollower, respond: Respond) -> Course[JumpSide]:
+    """What follows an orbit at a speed at which it is lost.
+
+    It may be left, and the next motion approached, so slowly that no run settles: then a run goes on once,
+    and larger disturbances are tried. A class that other starts have taken back stays undecided.
+    """
+    for kick in KICKS:
+        state = follower.aside(last, speed, kick)
+        for _ in range(RUNS):
+            response = yield from respond(speed, state)
+            if response.motion is not Motion.NOT_SETTLED or response.looks is not None:
+                return side(speed, response)
+            state = response.state
+    return side(speed, response)
+
+
+def _jump(
+    piece: Piece,
+    position: int,
+    before: JumpSide,
+    after: JumpSide,
+    images: Integers,
+    error: float,
+    followed: bool,
+) -> Jump | None:
+    """The jump between two sides, None if what is left is a steep but smooth change or noise."""
+    if not abrupt(before, after, images):
+        return None
+    after = replace(after, ac_rms=after.ac_rms[_preferred(before.ac_rms, after.ac_rms, images)])
     floor = np.full_like(before.ac_rms, 1e-300)
     ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
-    mesh = int(np.argmax(np.abs(ratio)))
-    return Jump(before=before, after=after, mesh=mesh, largest=position + int(ratio[mesh] > 0.0))
+    mesh = first_largest(np.abs(ratio))
+    return Jump(before, after, mesh, position + int(ratio[mesh] > 0.0), error, followed)
+
+
+def _preferred(before: Array, after: Array, images: Integers) -> Integers:
+    """The image (meshes,) of the motion after a jump that is named: of those that the symmetries of the
+    motion before it allow, the one with the largest AC RMS in the first mesh in which they differ.
+    """
+    allowed = [image for image in images if distance(before, before[image]) <= SAME]
+    digits = np.round(-np.log10(SAME)).astype(int)
+    scale = max(float(after.max()), 1e-300)
+    return max(allowed, key=lambda image: tuple(np.round(after[image] / scale, digits)))
 
 
 def _stored_side(piece: Piece, position: int) -> JumpSide:
@@ -97,23 +198,32 @@ def _stored_side(piece: Piece, position: int) -> JumpSide:
         label=piece.labels[position],
         period=int(piece.period[position]),
         multiplier=float(piece.leading_multiplier[position]),
+        symmetry_broken=bool(piece.symmetry_broken[position]),
         state=piece.state(position),
     )
 
 
 def bracket(
-    before: JumpSide, after: JumpSide, respond: Respond, resolution: float
+    before: JumpSide, after: JumpSide, respond: Respond, resolution: float, images: Integers
 ) -> Course[tuple[JumpSide, JumpSide]]:
     """Halve the interval between two speeds with different responses down to `resolution`."""
     while abs(after.speed - before.speed) > resolution:
         middle = 0.5 * (before.speed + after.speed)
         response = yield from respond(middle, before.state)
         here = side(middle, response)
-        if distance(here.ac_rms, before.ac_rms) <= distance(here.ac_rms, after.ac_rms):
+        to_before, to_after = (image_distance(here.ac_rms, side.ac_rms, images) for side in (before, after))
+        if to_before <= to_after:
             before = here
         else:
             after = here
     return before, after
+
+
+def abrupt(before: JumpSide, after: JumpSide, images: Integers) -> bool:
+    """Whether two motions differ by more than a smooth change or noise."""
+    regular = before.period > 0 or after.period > 0
+    apart = image_distance(before.ac_rms, after.ac_rms, images)
+    return apart > np.log1p(MIN_CHANGE if regular else 3.0 * MIN_CHANGE)
 
 
 def side(speed: float, response: SteadyState) -> JumpSide:
@@ -126,6 +236,7 @@ def side(speed: float, response: SteadyState) -> JumpSide:
         label=response.label,
         period=response.period,
         multiplier=multiplier,
+        symmetry_broken=symmetry_broken(response),
         state=response.state,
     )
 
@@ -134,3 +245,8 @@ def distance(first: Array, second: Array) -> float:
     """Largest ratio between two sets of AC RMS, as a logarithm, with the same floor as in `suspects`."""
     floor = FLOOR * max(first.max(), second.max(), 1e-300)
     return float(np.abs(np.log(np.maximum(first, floor) / np.maximum(second, floor))).max())
+
+
+def image_distance(first: Array, second: Array, images: Integers) -> float:
+    """Smallest distance() of one set of AC RMS from the images (images, meshes) of another."""
+    return min(distance(first, second[image]) for image in images)

@@ -16,7 +16,16 @@ MAY_LACK = (
     "first_look_period",
     "second_look_period",
 )
-PER_SPEED = ("speeds", "motion", "period", "residual", "periods_run", "modal_order", *MAY_LACK)
+PER_SPEED = (
+    "speeds",
+    "motion",
+    "period",
+    "residual",
+    "periods_run",
+    "symmetry_broken",
+    "modal_order",
+    *MAY_LACK,
+)
 DIMENSIONS = {
     **dict.fromkeys(NAMES, 2),
     **{name: 3 for name in NAMES if name.startswith("translation_")},

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from facegear.dynamics.steady_state.response import SteadyState
+from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.dynamics.sweeps.whole_sweep import Direction
 
 PULLS = 1e-3
@@ -49,7 +50,9 @@ def sweep_summary(directions: Mapping[str, Direction]) -> str:
         rerun = sum(seam.rerun for seam in direction.seams)
         doubted = int(np.isfinite(direction.piece.first_look_period).sum())
         counts += f" ({doubted} of them because another start came to another motion)" if doubted else ""
-        jumps = f"{len(direction.jumps)} jump{'s' * (len(direction.jumps) != 1)}"
+        changes = Counter(jump.kind is JumpKind.IRREGULAR for jump in direction.jumps)
+        jumps = f"{changes[False]} jump{'s' * (changes[False] != 1)}"
+        jumps += f", irregular motion begins or ends abruptly {changes[True]} times" * bool(changes[True])
         seams = f"seams: {rerun} speeds run again, {irregular} irregular"
         parts.append(f"{name}: {jumps}; {counts}; {seams}")
     return " | ".join(parts)

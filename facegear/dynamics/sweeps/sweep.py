@@ -1,6 +1,6 @@
 """Speed sweeps: steady states at many speeds, each started from the one before."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.courses import Course, alone, side_by_side
 from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model, Started, started, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
 from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.symmetries import Symmetry
 from facegear.transmission.loaded_modes import loaded_modes
 
 T = TypeVar("T")
@@ -29,13 +31,14 @@ class Piece:
 
     motion (P,): class of motion, period (P,) its mesh periods where it is periodic, else 0. deflection_*
     (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
-    forces, without the damper's part, N; largest_force (P, M): largest magnitude of their samples.
+    forces, without the damper's part, N; largest_force (P, M): their largest magnitude.
     largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
     open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_fraction (P, M) of the samples,
     at which a mesh is pressed past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
     residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
     there is none. first_look_period, second_look_period (P,): mesh periods of the motions that two starts
-    came to (0: not periodic) where the motion is not settled because they differ, else NaN. spectrum (P, M,
+    came to (0: not periodic) where the motion is not settled because they differ, else NaN. symmetry_broken
+    (P,): whether the motion is periodic and has mirror images that are other motions. spectrum (P, M,
     orders), m. modal (P, modes): RMS velocity scale omega * coordinate of every natural mode without mean,
     sqrt(J). modal_order (P,): where in multiples of the mesh frequency the
     strongest mode moves most. displacement, velocity (P, n).
@@ -69,6 +72,7 @@ class Piece:
     periods_run: Array
     first_look_period: Array
     second_look_period: Array
+    symmetry_broken: Mask
     spectrum: Array
     modal: Array
     modal_order: Array
@@ -132,9 +136,13 @@ def run_speeds(
     settings: Settings,
     start: State | None,
     step: Callable[[], None] = lambda: None,
+    held: Sequence[Symmetry] | None = None,
 ) -> Iterator[tuple[float, SteadyState]]:
-    """Steady states at speeds in the given order, the state carried over."""
-    responses = carried_over(model, speeds, settings, start, Started.followed, step)
+    """Steady states at speeds in the given order, the state carried over.
+
+    held: symmetries of what the start belongs to, by default of the start itself.
+    """
+    responses = carried_over(model, speeds, settings, start, Started.followed, step, held)
     return zip(speeds.tolist(), responses, strict=True)
 
 
@@ -145,19 +153,20 @@ def carried_over(
     start: State | None,
     follow: Callable[[Started], Course[T]],
     step: Callable[[], None] = lambda: None,
+    held: Sequence[Symmetry] | None = None,
 ) -> Iterator[T]:
     """What comes of the motions at speeds in the given order, the state carried over.
 
     What a motion hands on is known after its first watch: where it has settled that is a state of the motion
     it has settled on, else the last one seen, as good as any other of an irregular motion. What is left to
-    see of TOGETHER speeds runs side by side.
+    see of TOGETHER speeds runs side by side. held: as in run_speeds().
     """
     state = static_start(model) if start is None else start
     for first in range(0, len(speeds), TOGETHER):
         motions = []
         for speed in speeds[first : first + TOGETHER]:
-            motions.append(alone(started(model, float(speed), settings, state)))
-            state = motions[-1].state
+            motions.append(alone(started(model, float(speed), settings, state, held=held)))
+            state, held = motions[-1].state, motions[-1].held
             step()
         yield from side_by_side([follow(motion) for motion in motions])
 
@@ -195,7 +204,7 @@ def _row(
         "period": response.period,
         **{f"deflection_{name}": getattr(meshes, name) for name in DEFLECTION},
         **dict(zip(("mean_force", "mean_force_magnitude"), response.mean_forces, strict=True)),
-        "largest_force": np.abs(response.forces).max(axis=0),
+        "largest_force": response.largest_forces,
         "largest_pull": response.averages.pull,
         **dict(zip(("open_fraction", "drive_fraction", "back_fraction"), response.fractions, strict=True)),
         "past_law_fraction": response.past_law,
@@ -207,6 +216,7 @@ def _row(
         "periods_run": float(response.periods_run),
         "first_look_period": float(first_look),
         "second_look_period": float(second_look),
+        "symmetry_broken": symmetry_broken(response),
         "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
         "modal": modal,
         "modal_order": orders[lines[1:, 0].argmax() + 1],

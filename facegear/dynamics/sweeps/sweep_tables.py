@@ -36,7 +36,8 @@ PER_SPEED = (
 
 
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
-    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular.
+    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
+    symmetry_broken.
 
     The unit stands in the quantity. Directions in which a body moves by rounding alone are left out.
     `past_law_fraction` is there where a mesh is past its law at some speed.
@@ -70,14 +71,17 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
         "class": np.tile(labels[order], len(curves)),
         "periodic": np.tile(piece.periodic[order], len(curves)),
         "after_irregular": np.tile(piece.after_irregular[order], len(curves)),
+        "symmetry_broken": np.tile(piece.symmetry_broken[order], len(curves)),
     }
     return pd.DataFrame(table).dropna(subset="value")
 
 
 JUMP_COLUMNS = (
     "direction",
+    "kind",
     "speed_before_rpm",
     "speed_after_rpm",
+    "error_rpm",
     "mesh",
     "deflection_ac_rms_before_um",
     "deflection_ac_rms_after_um",
@@ -92,6 +96,7 @@ JUMP_COLUMNS = (
     "periodic_before",
     "periodic_after",
     "after_irregular",
+    "symmetry_broken",
 )
 RESONANCE_COLUMNS = (
     "direction",
@@ -107,6 +112,7 @@ RESONANCE_COLUMNS = (
     "order",
     "periodic",
     "after_irregular",
+    "symmetry_broken",
 )
 
 
@@ -114,7 +120,7 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
     """One row for each jump: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance.
 
     order: multiple of the mesh frequency at which the mode moves most. after_irregular: of the speed after
-    the one with the larger response.
+    the one with the larger response. symmetry_broken: whether the motion on one side has mirror images.
     """
     rows = []
     for jump in direction.jumps:
@@ -122,8 +128,10 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
         rows.append(
             {
                 "direction": name,
+                "kind": jump.kind.value,
                 "speed_before_rpm": before.speed,
                 "speed_after_rpm": after.speed,
+                "error_rpm": jump.error,
                 "mesh": layout.mesh_names[jump.mesh],
                 "deflection_ac_rms_before_um": UM * before.ac_rms[jump.mesh],
                 "deflection_ac_rms_after_um": UM * after.ac_rms[jump.mesh],
@@ -134,6 +142,7 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
                 "periodic_before": before.period > 0,
                 "periodic_after": after.period > 0,
                 "after_irregular": _after_irregular(direction.piece, jump.largest),
+                "symmetry_broken": before.symmetry_broken or after.symmetry_broken,
             }
         )
     return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
@@ -158,6 +167,7 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
                 **_belongs(resonance(piece, position, modes, layout.pinion_teeth)),
                 "periodic": piece.periodic[position],
                 "after_irregular": _after_irregular(piece, position),
+                "symmetry_broken": piece.symmetry_broken[position],
             }
         )
     return pd.DataFrame(rows, columns=list(RESONANCE_COLUMNS))

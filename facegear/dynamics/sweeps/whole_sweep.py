@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from facegear.dynamics.courses import Course, side_by_side
 from facegear.dynamics.steady_state.simulate import Model, simulating
 from facegear.dynamics.sweeps.assemble import Seam, assemble
+from facegear.dynamics.sweeps.held_orbit import machine_follower
 from facegear.dynamics.sweeps.jumps import Jump, refine, suspects
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import Piece
+from facegear.dynamics.symmetries import mesh_images
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,26 +33,30 @@ def whole_sweep(
     """Join the chunks of every direction and bracket their jumps to the plan's resolution, side by side."""
     whole = {name: assemble(model, plan, name, parts) for name, parts in chunks.items()}
 
-    def bracketed(piece: Piece, position: int) -> Course[Jump]:
+    follower, images = machine_follower(model, plan.settings), mesh_images(model.system)
+
+    def bracketed(piece: Piece, position: int) -> Course[Jump | None]:
         jump = yield from refine(
             piece,
             position,
             lambda speed, state: simulating(model, speed, plan.settings, state),
+            follower,
             plan.jump_resolution_rpm,
+            images,
         )
         step()
         return jump
 
     where = [(name, position) for name, (piece, _) in whole.items() for position in suspects(piece)]
     jumps = _on_threads([bracketed(whole[name][0], position) for name, position in where], threads)
-    abrupt = [(name, jump) for (name, _), jump in zip(where, jumps, strict=True) if jump.abrupt]
+    named = [(name, jump) for (name, _), jump in zip(where, jumps, strict=True)]
     return {
-        name: Direction(piece, seams, [jump for of, jump in abrupt if of == name])
+        name: Direction(piece, seams, [jump for of, jump in named if of == name and jump is not None])
         for name, (piece, seams) in whole.items()
     }
 
 
-def _on_threads(courses: Sequence[Course[Jump]], threads: int) -> list[Jump]:
+def _on_threads(courses: Sequence[Course[Jump | None]], threads: int) -> list[Jump | None]:
     """What courses come to, dealt out to threads: the compiled part runs without the interpreter's lock."""
     count = max(threads, 1)
     with ThreadPoolExecutor(count) as pool:

@@ -1,7 +1,7 @@
 """Branches of periodic motions."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import INTEGRATION, MACHINE, MOVING, SPEED, SWEEP
+from facegear.pipeline.rows.shared import MACHINE, MOVING, SPEED, SWEEP
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
 
 BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
@@ -10,7 +10,6 @@ ROWS = (
     Stage(
         name="branches_starts",
         title="Where random starts end at one speed",
-        runs=INTEGRATION,
         needs=BRANCHES,
         section="branches",
         upstream=MOVING,
@@ -22,7 +21,6 @@ ROWS = (
     Stage(
         name="branches",
         title="Branches of periodic motions",
-        runs=INTEGRATION,
         needs={**BRANCHES, **SWEEP},
         section="branches",
         upstream={
@@ -33,7 +31,7 @@ ROWS = (
         },
         files={
             "branches": File("branches/branches.csv", "facegear.dynamics.branches.columns:BRANCH_FINITE"),
-            "ends": File("branches/ends.csv", ("branch", "period", "points"), text=("tried",)),
+            "ends": File("branches/ends.csv", ("branch", "period", "points"), text=("image_of", "tried")),
             "unfollowed": File("branches/unfollowed.csv", ("period", "origin"), may_be_empty=True),
             "multipliers": File("branches/multipliers.csv", ("branch", "speed_rpm", "real", "imaginary")),
             "special": File(
@@ -68,7 +66,6 @@ ROWS = (
     Stage(
         name="branches_loci",
         title="Loci of folds and period doublings",
-        runs=INTEGRATION,
         needs=BRANCHES,
         section="branches",
         upstream={**MOVING, "orbits": From("branches", "orbits")},

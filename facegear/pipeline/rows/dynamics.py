@@ -5,7 +5,6 @@ from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
     HARMONICS,
-    INTEGRATION,
     MACHINE,
     MOVING,
     SPEED,
@@ -17,25 +16,20 @@ from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Stage
 ROWS = (
     Stage(
         name="machine_code",
-        title="Machine code of the time integration",
-        runs=INTEGRATION,
-        needs={"mesh_law": "mesh_stiffness.mesh_law"},
-        folder="dynamics",
-        asked=asked.machine,
-        priority=85,
-    ),
-    Stage(
-        name="machine_code_abreast",
-        title="Machine code of machines side by side",
-        runs=("machine_code_abreast",),
-        folder="dynamics",
-        asked=asked.side_by_side,
-        priority=82,
+        title="Machine code of contact and time integration",
+        needs={
+            "mesh_law": "mesh_stiffness.mesh_law",
+            "contact": Computed(asked.contact, ("mesh_stiffness", "contact", "lubrication")),
+            "motion": Computed(asked.machine, ("transmission",)),
+            "side_by_side": Computed(asked.side_by_side, ("transmission", "mesh_stiffness", "lubrication")),
+        },
+        folder="machine_code",
+        asked=asked.contact_or_machine,
+        priority=95,
     ),
     Stage(
         name="dynamics_response",
         title="Response at the nominal speed",
-        runs=INTEGRATION,
         needs={**MACHINE, **ACCURACY, **SPEED},
         upstream=MOVING,
         files={
@@ -86,7 +80,6 @@ ROWS = (
     Stage(
         name="dynamics_sweep_chunk",
         title="Speed sweep, one chunk",
-        runs=(*INTEGRATION, "machine_code_abreast"),
         needs={**MACHINE, **SWEEP},
         upstream=MOVING,
         files={
@@ -101,7 +94,6 @@ ROWS = (
     Stage(
         name="dynamics_sweep",
         title="Jumps and resonances",
-        runs=(*INTEGRATION, "machine_code_abreast"),
         needs={**MACHINE, **SWEEP},
         upstream={**MOVING, "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks)},
         files={

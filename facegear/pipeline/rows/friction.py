@@ -59,6 +59,7 @@ ROWS = (
         },
         asked=asked.machine_friction,
         local=True,
+        together=8,
     ),
     Stage(
         name="friction_studies",

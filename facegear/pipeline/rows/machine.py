@@ -3,7 +3,6 @@
 from facegear.pipeline import asked
 from facegear.pipeline.rows.shared import (
     BODIES,
-    CONTACTS,
     FLANKS,
     HARMONICS,
     LAW,
@@ -88,7 +87,6 @@ ROWS = (
     Stage(
         name="operating_pose",
         title="Teeth where the machine's own forces put them",
-        runs=CONTACTS,
         needs={**MACHINE, **PAIR, "contact": "contact"},
         upstream={"surface": From("pose_surface", "surface"), **FLANKS, **MESHES, **BODIES},
         files={

@@ -24,5 +24,3 @@ TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=asked.single
 """Teeth that deviate from the others."""
 MOVING = {**HARMONICS, **BODIES, "friction": From("lubrication", "excitation", when=asked.friction_in_motion)}
 """What stages take that set the machine in motion."""
-INTEGRATION, CONTACTS = ("machine_code",), ("machine_code_contact",)
-"""Whose machine code they run."""

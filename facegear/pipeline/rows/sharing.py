@@ -5,7 +5,6 @@ from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
     HARMONICS,
-    INTEGRATION,
     MACHINE,
     MOVING,
     SHARING,
@@ -20,7 +19,6 @@ ROWS = (
     Stage(
         name="load_sharing",
         title="Load sharing at the nominal speed",
-        runs=INTEGRATION,
         needs=SHARING,
         upstream=MOVING,
         files={
@@ -28,7 +26,8 @@ ROWS = (
             "summary": File("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
             "forces": File("load_sharing/forces.csv", ("mean_n", "largest_n"), text=("mesh", "group")),
         },
-        asked=asked.shares_load,
+        asked=asked.grouped,
+        together=8,
     ),
     Stage(
         name="load_sharing_summary",
@@ -85,7 +84,6 @@ ROWS = (
     Stage(
         name="load_sharing_reference",
         title="Load sharing at rest, running slowly and over a range of speeds",
-        runs=INTEGRATION,
         needs={
             **MACHINE,
             **ACCURACY,
@@ -112,7 +110,9 @@ ROWS = (
                 ("mean_n", "drive_fraction", "back_fraction"),
                 text=("mesh", "group"),
             ),
-            "groups": File("load_sharing/hunting_groups.csv", ("torque_n_m",), text=("group", "kind")),
+            "groups": File(
+                "load_sharing/hunting_groups.csv", ("torque_n_m",), may_be_empty=True, text=("group", "kind")
+            ),
             "bearings": File(
                 "load_sharing/bearings.csv", ("body", "mean_x_n", "mean_y_n", "mean_z_n"), text=("body",)
             ),
@@ -120,9 +120,12 @@ ROWS = (
             "scan": File(
                 "load_sharing/bearing_stiffness.csv",
                 ("stiffness_n_per_m", "k_gamma"),
+                may_be_empty=True,
                 text=("kinematics", "varied", "kind"),
             ),
-            "sensitivity": File("load_sharing/sensitivity.csv", ("per_um",), text=("error", "group")),
+            "sensitivity": File(
+                "load_sharing/sensitivity.csv", ("per_um",), may_be_empty=True, text=("error", "group")
+            ),
         },
         figures=Figures(
             draw="facegear.plots.hunting:figures",
@@ -136,7 +139,6 @@ ROWS = (
     Stage(
         name="following",
         title="Load sharing of the running machine while its runouts turn",
-        runs=INTEGRATION,
         needs={
             **MACHINE,
             **ACCURACY,
@@ -146,7 +148,7 @@ ROWS = (
         },
         upstream={**MOVING, **TOOTH_ERRORS},
         files={
-            "groups": File("load_sharing/following_groups.csv"),
+            "groups": File("load_sharing/following_groups.csv", may_be_empty=True),
             "meshes": File("load_sharing/following_meshes.csv"),
         },
         asked=asked.following,

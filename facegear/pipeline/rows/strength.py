@@ -4,10 +4,8 @@ from facegear.pipeline import asked
 from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
-    CONTACTS,
     FLANKS,
     HARMONICS,
-    INTEGRATION,
     MACHINE,
     MESHES,
     MOVING,
@@ -57,7 +55,6 @@ LOAD_ROWS = (
     Stage(
         name="posed_stress",
         title="Pressure and root stress of every mesh where its teeth stand",
-        runs=CONTACTS,
         needs={**MACHINE, **PAIR, "contact": "contact", **GEARS},
         upstream={"surface": From("pose_surface", "surface"), **FLANKS, **STRESS, **MESHES, **BODIES},
         files={
@@ -88,7 +85,6 @@ LOAD_ROWS = (
     Stage(
         name="duty_loads",
         title="Loads of the running machine in every bin of the duty cycle",
-        runs=INTEGRATION,
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
         section="strength",
         upstream={**MOVING, **TOOTH_ERRORS},
@@ -133,7 +129,12 @@ ROWS = (
         name="dynamic_root_stress",
         title="Root stress of the running machine",
         needs={**MACHINE, **PAIR, **GEARS},
-        upstream={"response": From("dynamics_response", "response"), **STRESS, **POSED, **POSES},
+        upstream={
+            **from_stage("dynamics_response", "response", "summary"),
+            **STRESS,
+            **POSED,
+            **POSES,
+        },
         files={
             "dynamic_stress": File(
                 "strength/dynamic_stress.csv", "facegear.strength.columns:DYNAMIC_STRESS_FINITE"

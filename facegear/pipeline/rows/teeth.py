@@ -1,7 +1,7 @@
 """Tooth pair: geometry, meshes, compliance, contact, stiffness."""
 
 from facegear.pipeline import asked, studies
-from facegear.pipeline.rows.shared import CONTACTS, FLANKS, PAIR
+from facegear.pipeline.rows.shared import FLANKS, PAIR
 from facegear.pipeline.stage import Computed, Figures, File, From, Needs, Stage, from_stage
 
 MESH: Needs = {**PAIR, "mesh": "mesh"}
@@ -54,7 +54,7 @@ ROWS = (
     Stage(
         name="cad",
         title="Exact teeth for CAD",
-        needs=MESH,
+        needs={**MESH, "case": Computed(asked.config_name, ("case",))},
         files={"step": File("cad/{body}.step"), "stl": File("cad/{body}.stl")},
         wildcards=BODY,
     ),
@@ -73,17 +73,8 @@ ROWS = (
         priority=90,
     ),
     Stage(
-        name="machine_code_contact",
-        title="Machine code of a contact",
-        runs=CONTACTS,
-        folder="contact",
-        asked=asked.contact,
-        priority=95,
-    ),
-    Stage(
         name="contact",
         title="Loaded tooth contact",
-        runs=CONTACTS,
         needs={**PAIR, "contact": "contact"},
         upstream=FLANKS,
         files={
@@ -170,7 +161,6 @@ ROWS = (
     Stage(
         name="mesh_law",
         title="Load-dependent mesh law",
-        runs=CONTACTS,
         needs={**PAIR, "contact": "contact", "mesh_stiffness": "mesh_stiffness"},
         upstream={**FLANKS, **from_stage("contact", "ltca")},
         files={
@@ -191,7 +181,6 @@ ROWS = (
     Stage(
         name="pose_surface",
         title="Contact over pose",
-        runs=CONTACTS,
         needs={
             **PAIR,
             "contact": "contact",

@@ -74,7 +74,7 @@ def test_a_mesh_a_thousandth_stiffer_is_found(nominal, tmp_path):
 def test_a_number_is_judged_by_its_own_numerical_error(factor, verdict, nominal, tmp_path):
     shutil.copytree(nominal, tmp_path, dirs_exist_ok=True)
     table = pd.read_csv(tmp_path / "stiffness/harmonics.csv")
-    table.loc[0, "b_n_per_m"] *= factor
+    table.loc[0, "cos_n_per_m"] *= factor
     table.to_csv(tmp_path / "stiffness/harmonics.csv", index=False)
     assert compare(nominal, tmp_path).rows["verdict"].to_list() == [verdict] * (verdict is not None)
 
@@ -128,6 +128,49 @@ def test_a_motion_that_is_irregular_in_one_run_first_is_a_change(tmp_path):
     gone = sweep_peaks(tmp_path / "gone", "period-1", 1.0, False, (7500.0, 9200.0))
     assert not compare(old, other).equal
     assert not compare(old, gone).equal
+
+
+def jumps(folder, *rows, error_rpm=0.8, **columns):
+    """A table of jumps upwards: the speed before each, the AC RMS after it (um) and its multiplier."""
+    (folder / "dynamics").mkdir(parents=True)
+    table = pd.DataFrame(
+        rows, columns=["speed_before_rpm", "deflection_ac_rms_after_um", "leading_multiplier_before"]
+    )
+    table = table.assign(
+        direction="up", mesh="right input/upper", speed_after_rpm=table["speed_before_rpm"] + 0.8
+    )
+    table.assign(error_rpm=error_rpm, **columns).to_csv(folder / "dynamics/jumps.csv", index=False)
+    return folder
+
+
+JUMPS = (5806.5, 15.7, 0.956), (8876.0, 20.0, 0.95)
+
+
+@pytest.mark.parametrize(
+    ("moved", "verdicts"),
+    [
+        ((8876.0, 20.0, 0.95 + 1.3e-6), {Verdict.WITHIN_ERROR}),
+        ((8876.0, 20.0, 0.95 + 2e-2), {Verdict.MOVED}),
+        ((8876.0, 20.1, 0.95), {Verdict.MOVED}),
+        ((8877.5, 20.1, 0.93), {Verdict.WITHIN_ERROR}),
+        ((8877.5, 22.0, 0.93), {Verdict.WITHIN_ERROR, Verdict.MOVED}),
+        ((8878.5, 20.0, 0.95), {Verdict.GONE, Verdict.ADDED}),
+    ],
+)
+def test_a_jump_is_compared_within_the_error_of_its_bracket(moved, verdicts, tmp_path):
+    old, new = jumps(tmp_path / "old", *JUMPS), jumps(tmp_path / "new", JUMPS[0], moved)
+    assert set(compare(old, new).rows["verdict"]) == verdicts
+
+
+def test_a_jump_that_ends_irregular_motion_is_known_to_a_step_of_the_sweep(tmp_path):
+    old = jumps(tmp_path / "old", *JUMPS, error_rpm=200.0)
+    new = jumps(tmp_path / "new", JUMPS[0], (8950.0, 20.1, 0.93), error_rpm=200.0)
+    assert compare(old, new).equal
+
+
+def test_jumps_of_two_directions_are_not_taken_for_one_another(tmp_path):
+    old, new = jumps(tmp_path / "old", *JUMPS), jumps(tmp_path / "new", *JUMPS, direction="down")
+    assert set(compare(old, new).rows["verdict"]) == {Verdict.GONE, Verdict.ADDED}
 
 
 @pytest.mark.parametrize(("residual", "equal"), [(6e-13, True), (2e-12, False)])
@@ -221,3 +264,69 @@ def test_what_is_no_folder_of_results_is_refused_in_one_line(name, capsys):
 def test_a_folder_without_tables_is_refused(tmp_path):
     with pytest.raises(FacegearError, match="must be a folder of results"):
         compare(tmp_path, tmp_path)
+
+
+MESHES = ("left/upper", "right/upper", "input/upper")
+
+
+def write_sweep(folder, values, broken=True):
+    """A sweep at one speed: the RMS of three meshes, of which symmetry exchanges two."""
+    (folder / "dynamics").mkdir(parents=True)
+    table = pd.DataFrame({"body_or_mesh": MESHES, "value": values}).assign(
+        direction="up", speed_rpm=9600.0, quantity="deflection_ac_rms_um", symmetry_broken=broken
+    )
+    table.assign(**{"class": "period-1"}).to_csv(folder / "dynamics/sweep.csv", index=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("values", "broken", "verdict"),
+    [
+        ((70.0, 17.0, 27.0), True, Verdict.MIRROR),
+        ((70.0, 17.0, 27.0), False, Verdict.MOVED),
+        ((70.0, 18.0, 27.0), True, Verdict.MOVED),
+    ],
+    ids=["image", "symmetric motion", "another motion"],
+)
+def test_mirror_images_count_as_one_motion_where_symmetry_is_broken(values, broken, verdict, tmp_path):
+    old = write_sweep(tmp_path / "old", (17.0, 70.0, 27.0), broken)
+    found = compare(old, write_sweep(tmp_path / "new", values, broken))
+    assert found.equal == (verdict is Verdict.MIRROR)
+    assert found.counts[verdict] == 2
+
+
+def write_jump(folder, before, after, error=0.8, **columns):
+    (folder / "dynamics").mkdir(parents=True)
+    row = {"direction": "up", "kind": "jump", "speed_before_rpm": before, "speed_after_rpm": after}
+    row |= {"error_rpm": error, "mesh": "a", "deflection_ac_rms_before_um": 69.0} | columns
+    pd.DataFrame([row]).to_csv(folder / "dynamics/jumps.csv", index=False)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("bracket", "columns", "equal"),
+    [
+        ((9505.0, 9505.8), {}, True),
+        ((9505.8, 9506.6), {}, True),
+        ((9505.8, 9506.6), {"deflection_ac_rms_before_um": 69.5}, True),
+        ((9505.0, 9505.8), {"deflection_ac_rms_before_um": 69.5}, False),
+        ((9505.8, 9506.6), {"deflection_ac_rms_before_um": 75.0}, False),
+        ((9508.2, 9509.0), {}, False),
+    ],
+)
+def test_the_speed_of_a_jump_is_compared_within_its_own_error(bracket, columns, equal, tmp_path):
+    old = write_jump(tmp_path / "old", 9505.0, 9505.8)
+    found = compare(old, write_jump(tmp_path / "new", *bracket, **columns))
+    assert found.equal == equal
+    assert not found.counts[Verdict.NO_ERROR]
+
+
+def test_two_jumps_of_a_table_are_each_compared_with_the_nearest_one(tmp_path):
+    folders = [write_jump(tmp_path / name, 9505.0, 9505.8) for name in ("old", "new")]
+    for folder, second in zip(folders, (9507.0, 9506.9), strict=True):
+        table = pd.read_csv(folder / "dynamics/jumps.csv")
+        other = table.assign(speed_before_rpm=second, speed_after_rpm=second + 0.8)
+        pd.concat([other, table]).to_csv(folder / "dynamics/jumps.csv", index=False)
+    found = compare(*folders)
+    assert found.equal
+    assert set(found.rows["verdict"]) <= {Verdict.WITHIN_ERROR}

@@ -194,7 +194,7 @@ def test_what_needs_a_transmission_says_so(key):
 
 
 def test_a_csv_named_by_a_study_counts_from_the_folder_of_the_config(tmp_path, monkeypatch):
-    (tmp_path / "soft.csv").write_text("order,a_n_per_m,b_n_per_m\n0,0,3e8\n1,1e7,0\n")
+    (tmp_path / "soft.csv").write_text("order,sin_n_per_m,cos_n_per_m\n0,0,3e8\n1,1e7,0\n")
     (tmp_path / "own.yaml").write_text(
         "extends: base.yaml\n"
         "studies:\n"

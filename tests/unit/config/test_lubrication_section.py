@@ -65,7 +65,7 @@ def changed(**values):
             changed(oil={**OIL, "flash_point_c": 80}),
             "supply_temperature_c = 90.0: must be below the oil's flash",
         ),
-        (changed(pinion__ra_um=0), "pinion.ra_um = 0: must be greater than 0"),
+        (changed(pinion__ra_um=0), "pinion.ra_um = 0: must be greater than or equal to 0.001"),
         (changed(face_gear__ra_um=6.3), "face_gear.ra_um = 6.3: must be less than or equal to 4"),
         (changed(oil="castor"), 'oil = "castor": must be one of mineral_vg_100, mineral_vg_220, pao_vg_320'),
         (
@@ -83,7 +83,7 @@ def changed(**values):
         ),
         (
             changed(map_speeds_rpm=[2000, 1000]),
-            "map_speeds_rpm = [2000.0, 1000.0]: must be rising speeds above 0",
+            "map_speeds_rpm = [2000.0, 1000.0]: must be rising speeds",
         ),
         (changed(oils="x"), "oils"),
     ],

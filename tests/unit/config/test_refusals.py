@@ -21,8 +21,8 @@ from facegear.errors import ConfigError, ConfigErrors
 
 CONFIG = Path(__file__).parents[3] / "config"
 TWO = load_config(CONFIG / "two_pinion.yaml").model_dump(mode="json")
-SECTIONS = {"branches": "branches", "strength_only": "strength"}
-"""Configs with sections of which keys have other names than in earlier versions."""
+RENAMED_IN = ("branches", "strength_only", "harmonics_only")
+"""Configs with keys that had other names in earlier versions."""
 GIVEN = load_config(CONFIG / "harmonics_only.yaml").model_dump(mode="json")
 
 
@@ -62,19 +62,31 @@ def test_capitals_and_hyphens_in_a_key_are_reported_with_what_was_meant(section,
     assert line in message and message.startswith(".".join((*section, key)))
 
 
+def place_of(key, values):
+    """Parts of the dotted key at which a key first stands in nested values; None if it stands nowhere."""
+    inside = values.items() if isinstance(values, dict) else enumerate(values)
+    for part, value in inside:
+        if part == key:
+            return (key,)
+        if isinstance(value, dict | list) and (below := place_of(key, value)) is not None:
+            return (str(part), *below)
+    return None
+
+
 @pytest.mark.parametrize(("old", "new"), sorted(RENAMED.items()))
 def test_a_key_of_an_earlier_version_is_refused_with_its_name_of_today(old, new):
     """In the file itself, and as the dotted key of a change or of a study."""
-    shipped = [load_config(CONFIG / f"{name}.yaml").model_dump(mode="json") for name in SECTIONS]
-    ((section, values),) = [
-        pair for pair in zip(SECTIONS.values(), shipped, strict=True) if new in pair[1][pair[0]]
-    ]
-    value = values[section].pop(new)
-    (line,) = lines(values, **{f"{section}__{old}": value})
-    assert line == f"{section}.{old} = {value}: unknown key; `{old}` is now `{new}`"
-    values[section][new] = value
+    shipped = [load_config(CONFIG / f"{name}.yaml").model_dump(mode="json") for name in RENAMED_IN]
+    values, *_ = [values for values in shipped if place_of(new, values)]
+    *sections, _ = place_of(new, values)
     with pytest.raises(ConfigError, match=f"`{old}` is now `{new}`"):
-        set_key(values, f"{section}.{old}", value)
+        set_key(values, ".".join((*sections, old)), 1.0)
+    inside = values
+    for part in sections:
+        inside = inside[int(part) if part.isdecimal() else part]
+    value = inside.pop(new)
+    (line,) = lines(values, **{"__".join((*sections, old)): value})
+    assert line.endswith(f"{old} = {value}: unknown key; `{old}` is now `{new}`")
 
 
 @given(st.text(st.characters(categories=("L", "N", "P")), min_size=1, max_size=12))
@@ -118,6 +130,10 @@ HARMONIC = {"order": 1, "amplitude_um": 1.0}
             {"transmission__pinions__1__torque_n_m": -1e6},
             "[1].torque_n_m = -1000000.0: must be at most",
         ),
+        (
+            {"transmission__pinions__1__name": "lower face gear"},
+            'transmission.pinions.1.name = "lower face gear": must be another name than lower face gear or',
+        ),
         ({"contact__torques_n_m": [150.0, 1e6]}, "contact.torques_n_m = 1000000.0: must be at most"),
         (
             {"tooth_pair__pinion__lead_crowning": {"amount_um": 20.0, "start_mm": 12.0, "length_mm": 8.0}},
@@ -156,13 +172,13 @@ def test_what_no_machine_can_be_is_refused(changes, line):
 
 def test_a_stiffness_in_newton_per_micrometre_is_refused_by_its_size(tmp_path):
     path = tmp_path / "harmonics.csv"
-    path.write_text("order,a_n_per_m,b_n_per_m\n0,0,410\n1,20,0\n")
+    path.write_text("order,sin_n_per_m,cos_n_per_m\n0,0,410\n1,20,0\n")
     given = {"source": "harmonics", "csv": str(path)}
     (message,) = lines(GIVEN, mesh_stiffness=given)
     assert message.endswith(
         "= 410.0: must be at least 100000 N/m; values in N/um are a million times too small"
     )
-    path.write_text("order,a_n_per_m,b_n_per_m\n0,0,4.1e8\n1,2e7,0\n")
+    path.write_text("order,sin_n_per_m,cos_n_per_m\n0,0,4.1e8\n1,2e7,0\n")
     assert parse(Config, {**GIVEN, "mesh_stiffness": given}).mesh_stiffness.mean == 4.1e8
 
 

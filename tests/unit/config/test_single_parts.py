@@ -44,8 +44,8 @@ def test_errors_from_contact_are_those_of_the_unloaded_pair_and_one_mesh_may_dif
     values = section(transmission_error="from_contact")
     for spelling in ("from_contact", {"source": "from_contact"}):
         found = machine(parse(Transmission, section(transmission_error=spelling)), TEETH, STIFFNESS, unloaded)
-        np.testing.assert_array_equal(found.error.a, unloaded.a)
-        np.testing.assert_array_equal(found.error.b, unloaded.b)
+        np.testing.assert_array_equal(found.error.sine, unloaded.sine)
+        np.testing.assert_array_equal(found.error.cosine, unloaded.cosine)
         assert found.error_lags is None
     own = {**values, "single_meshes": {"two/lower": {"transmission_error": {"amplitude_um": 3}}}}
     found = machine(parse(Transmission, own), TEETH, STIFFNESS, unloaded)
@@ -79,7 +79,7 @@ def test_an_error_is_either_given_or_from_contact(error, line):
     ],
 )
 def test_an_error_from_contact_is_refused_where_stiffness_is_given(changes):
-    given = {"mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4e8}]}}
+    given = {"mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "cos_n_per_m": 4e8}]}}
     with pytest.raises(ConfigErrors, match="no contact analysis gives e"):
         facegear.example().with_values(given | changes)
 

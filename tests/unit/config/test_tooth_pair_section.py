@@ -54,7 +54,7 @@ def test_a_body_may_have_its_own_material(section):
         ),
         ("face_gear", "iner_radius_mm", 250.0, "did you mean 'inner_radius_mm'?"),
         ("pinion", "rack_tip_radius_modules", 0.5, "pinion.rack_tip_radius_modules = 0.5: must be"),
-        ("pinion", "width_mm", -1.0, "pinion.width_mm = -1.0: must be greater than 0"),
+        ("pinion", "width_mm", -1.0, "pinion.width_mm = -1.0: must be greater than or equal to 0.01"),
         ("shaper", "teeth", 30, "shaper.teeth = 30: must be from 23 (line contact) to 26"),
         ("pinion", "width_mm", 1.0, "pinion.width_mm = 1.0: must be at least 12.500, half the gear's face"),
         ("pinion", "width_mm", 600.0, "pinion.width_mm = 600.0: must be less than 525.000"),

@@ -11,7 +11,7 @@ from references import against, agrees
 
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.nodal_loads import load_arrays
-from facegear.contact.tooth_errors import loaded_curves, orders, pair_gaps, unloaded_errors
+from facegear.contact.tooth_errors import loaded_curves, located_range, orders, pair_gaps, unloaded_errors
 from facegear.transmission.tooth_errors import ToothErrors
 
 BODIES = ("pinion", "face_gear")
@@ -19,7 +19,7 @@ BODIES = ("pinion", "face_gear")
 
 @pytest.fixture(scope="module")
 def gaps():
-    return pair_gaps(pair_design(), 32)
+    return pair_gaps(pair_design(), np.arange(32) / 32)
 
 
 def teeth(pinion=0.0, gear=0.0):
@@ -92,6 +92,27 @@ def test_under_load_teeth_add_what_their_part_of_the_force_says(model_of, body):
     added = [before.ste - after.ste for before, after in zip(results[1::3], deviating, strict=True)]
     agrees("added transmission error, m", curves[body][:2], added, absolute=0.08 * UM)
     assert np.abs(added).min() > 0.1 * UM
+
+
+@against(
+    "analytic",
+    "top of a narrow bump on one tooth",
+    capability="tooth_errors",
+    module="facegear.contact.tooth_errors",
+)
+def test_peak_to_peak_does_not_depend_on_the_positions_that_are_looked_at():
+    design = pair_design()
+
+    def bump(face, depth):
+        return 6 * UM * np.exp(-(((depth - np.quantile(depth, 0.55)) / (0.08 * MM)) ** 2)) + 0.0 * face
+
+    one = [sampled(design, "pinion", bump, (3, 401)), *[None] * 22]
+    bumpy = {"pinion": one, "face_gear": [None] * 143}
+    errors = unloaded_errors(pair_gaps(design, np.arange(16) / 16), bumpy, 23)
+    peak_to_peak, left = located_range(design, bumpy, errors)
+    assert np.ptp(errors) < 5.8 * UM
+    agrees("peak to peak, m", peak_to_peak, 6 * UM, absolute=0.01 * UM)
+    assert left < 0.05 * UM
 
 
 def test_a_tooth_is_felt_by_both_its_flanks_while_it_is_in_mesh():

@@ -176,7 +176,7 @@ def test_energy_audit_over_a_period(machine, speed):
 
 def derivative(series: Harmonics, cycles: np.ndarray, omega: float) -> np.ndarray:
     order = np.arange(series.order + 1)
-    return omega * Harmonics(np.r_[0.0, (-order * series.b)[1:]], order * series.a)(cycles)
+    return omega * Harmonics(np.r_[0.0, (-order * series.cosine)[1:]], order * series.sine)(cycles)
 
 
 @against(

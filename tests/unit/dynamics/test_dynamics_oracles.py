@@ -8,12 +8,12 @@ from references import against, agrees
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from facegear.dynamics.courses import alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import steady_state
-from facegear.dynamics.sweeps.jumps import bracket, side
+from facegear.dynamics.sweeps.held_orbit import OrbitFollower
+from facegear.dynamics.sweeps.jumps import side
 
 FINE = Settings(tolerance=1e-14, periodic_residual=1e-12, settle=20_000, longest_period=1)
 LOWER = (1.1624504362, 0.0080293418, 1.03663857, 1.16336143, 1.1, 0.04480330)
@@ -99,7 +99,8 @@ def test_multipliers_agree_with_matrix_exponentials_between_switches(branch):
 
 
 def jump(make, approach, first, last):
-    """Run through `approach`, sweep from first to last in coarse steps, bisect the largest change."""
+    """Run through `approach`, sweep from first to last in coarse steps, follow the orbit before the largest
+    change until it is lost; return the motion before and the width of the bracket."""
 
     def respond(speed, at):
         return steady_state(make(speed), speed, FINE, at)
@@ -113,11 +114,11 @@ def jump(make, approach, first, last):
     changes = [abs(np.log(b.ac_rms[0] / a.ac_rms[0])) for a, b in pairwise(sides)]
     position = int(np.argmax(changes))
 
-    def course(speed, at):
-        return respond(speed, at)
-        yield
-
-    return alone(bracket(sides[position], sides[position + 1], course, 2e-6))
+    follower = OrbitFollower(lambda speed: (make(speed), speed), FINE)
+    before = sides[position]
+    orbit = follower.orbit(before.speed, before.state, before.period)
+    held, lost = follower.until_lost(orbit, sides[position + 1].speed, 2e-6)
+    return side(held.speed, respond(held.speed, held.state)), lost
 
 
 @against(
@@ -131,10 +132,10 @@ def jump(make, approach, first, last):
     [((), 0.80, 0.84, 0.82846394), ((0.9, 0.85, 0.8), 0.76, 0.69, 0.70803163)],
 )
 def test_fold_speeds_of_oracle_a(approach, first, last, speed):
-    before, after = jump(backlash_oscillator, approach, first, last)
+    before, lost = jump(backlash_oscillator, approach, first, last)
     agrees(
         "speed of the jump, over the natural frequency",
-        0.5 * (before.speed + after.speed),
+        0.5 * (before.speed + lost),
         speed,
         absolute=1e-5,
     )
@@ -152,10 +153,10 @@ def test_fold_speeds_of_oracle_a(approach, first, last, speed):
     [((), 0.84, 0.90, 0.871224), ((0.95, 0.9, 0.85, 0.8, 0.77), 0.74, 0.66, 0.688016)],
 )
 def test_jump_speeds_of_oracle_b(approach, first, last, speed):
-    before, after = jump(lambda w: meissner(0.05, one_sided=True), approach, first, last)
+    before, lost = jump(lambda w: meissner(0.05, one_sided=True), approach, first, last)
     agrees(
         "speed of the jump, over the natural frequency",
-        0.5 * (before.speed + after.speed),
+        0.5 * (before.speed + lost),
         speed,
         absolute=1e-5,
     )

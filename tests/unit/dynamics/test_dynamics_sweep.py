@@ -163,7 +163,7 @@ def test_tables_name_every_mesh_and_unit(model, whole):
     layout = model.machine.layout
     table = sweep_table(layout, "up", whole["up"].piece)
     columns = ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class", "periodic"]
-    columns.append("after_irregular")
+    columns += ["after_irregular", "symmetry_broken"]
     assert list(table.columns) == columns
     assert (table["periodic"] == table["class"].str.startswith("period-")).all()
     assert set(layout.mesh_names) <= set(table["body_or_mesh"])

@@ -15,13 +15,17 @@ LEVELS = pd.DataFrame(
 )
 
 
-def swept(rows):
-    return pd.DataFrame(rows, columns=["quantity", "body_or_mesh", "value"])
+def swept(rows, motion="period-1"):
+    found = pd.DataFrame(rows, columns=["quantity", "body_or_mesh", "value"])
+    return found.assign(**{"class": motion})
 
 
-def table(meshes, summary=(), sweep=()):
+def table(meshes, summary=(("residual", "machine", 0.0),), sweep=()):
+    """Loads of meshes whose forces have their extremes between two samples."""
+    cycles = np.arange(32) / 32
+    wave = np.cos(2 * np.pi * (cycles + 1 / 64))
     forces = [
-        pd.DataFrame({"mesh": name, "elastic_force_n": mean + size * np.cos(2 * np.pi * np.arange(16) / 16)})
+        pd.DataFrame({"mesh_cycle": cycles, "mesh": name, "elastic_force_n": mean + size * wave})
         for name, mean, size in meshes
     ]
     return law_loads(LEVELS, pd.concat(forces), swept(summary), swept(sweep))
@@ -38,8 +42,8 @@ def test_a_mesh_is_set_beside_the_last_level_of_the_flank_that_carries_it():
     assert found["flank"].to_list() == ["drive", "back"]
     agrees("force at the last level, N", found["last_level_n"], [30e3, 25e3], relative=1e-15)
     agrees("mean force, N", found["mean_n"], [24e3, 6e3], relative=1e-12)
-    agrees("smallest force, N", found["smallest_n"], [22e3, 5.5e3], relative=1e-12)
-    agrees("largest force, N", found["largest_n"], [26e3, 6.5e3], relative=1e-12)
+    agrees("smallest force, N", found["smallest_n"], [22e3, 5.5e3], relative=1e-6)
+    agrees("largest force, N", found["largest_n"], [26e3, 6.5e3], relative=1e-6)
 
 
 def test_what_lies_past_the_table_is_the_largest_fraction_of_the_sweep():

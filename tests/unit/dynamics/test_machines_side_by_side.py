@@ -77,7 +77,7 @@ def apart(found, starts, periods):
 @against(
     "other program",
     "the integrator of a single machine, whose vectors hold its meshes",
-    capability="branches_starts machine_code_abreast",
+    capability="branches_starts machine_code",
     module="facegear.dynamics.abreast.many",
 )
 @pytest.mark.parametrize("name", [*MACHINES, *OSCILLATORS])

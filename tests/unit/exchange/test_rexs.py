@@ -103,3 +103,36 @@ def test_a_file_that_cannot_be_read_is_named_in_one_line(tmp_path, text, line):
     with pytest.raises(FacegearError, match=line) as caught:
         read_rexs(path)
     assert "\n" not in str(caught.value)
+
+
+TWO_SHAFTS = (
+    '<model><relations><relation id="1" type="assembly"><ref id="1" role="assembly"/>'
+    '<ref id="2" role="part"/></relation></relations><components><component id="1" type="shaft" name="s">'
+    '<attribute id="mass_of_component">1.5</attribute></component>'
+    '<component id="2" type="cylindrical_gear"><attribute id="number_of_teeth">25</attribute>'
+    '<attribute id="normal_module">4</attribute></component></components></model>'
+)
+REPLACED = [
+    (">1.5<", ">heavy<", "component 1: mass_of_component = 'heavy': must be a finite number"),
+    (">1.5<", ">1e999<", "component 1: mass_of_component = '1e999': must be a finite number"),
+    (">25<", ">nan<", "component 2: number_of_teeth = 'nan': must be a finite number"),
+    (">25<", ">24.6<", "gear 2: number_of_teeth = 24.6: must be a whole number"),
+    (">4<", ">4,5<", "component 2: normal_module = '4,5': must be a finite number"),
+    ('<component id="2"', "<component", "an element component (type='cylindrical_gear') has no attribute id"),
+    (' type="shaft"', "", "has no attribute type"),
+    (' role="part"', "", "an element ref (id='2') has no attribute role"),
+    ('<ref id="2"', '<ref id="7"', "names component '7', which is absent"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "line"), REPLACED)
+def test_a_fault_inside_a_file_is_named_in_one_line(tmp_path, old, new, line):
+    """A value that was no number ended in a ValueError, a missing attribute in a KeyError."""
+    path = tmp_path / "own.rexs"
+    path.write_text(TWO_SHAFTS)
+    assert read_rexs(path).shafts[0].mass == 1.5
+    assert old in TWO_SHAFTS
+    path.write_text(TWO_SHAFTS.replace(old, new))
+    with pytest.raises(FacegearError) as caught:
+        read_rexs(path)
+    assert line in str(caught.value) and "\n" not in str(caught.value)

@@ -6,16 +6,22 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gear_bodies import PATCH, reference_body
+from references import against, agrees
 
 import facegear
 from facegear.config.base import parse
 from facegear.config.gear_body import BodySection
 from facegear.config.load import load_config
-from facegear.errors import ConfigError
+from facegear.errors import ConfigError, ConfigErrors
 from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduction import reduced_body
+from facegear.gear_body.tables import COUPLINGS, mode_table
+from facegear.results.gear_bodies import GearBodiesResult
 from facegear.stages import gear_bodies as stage
 from facegear.variants import varied_bodies
 
+pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 DISC = {
     "rim": {"inner_radius_mm": 180.0, "back_mm": -12.0},
@@ -42,6 +48,67 @@ def test_equal_gears_have_equal_modes_and_both_stand_in_the_tables(outcome):
     waves = modes[modes["nodal_diameters"] > 0]
     assert (waves["forward_hz"] > waves["backward_hz"]).all()
     assert (modes["frequency_change"] < 1e-2).all()
+
+
+@against(
+    "other program",
+    "Fourier elements extrapolated, hexahedra of a whole gear",
+    capability="gear_bodies",
+    module="facegear.gear_body.tables",
+)
+def test_table_has_c_b_and_q_of_every_mode_as_another_program_has_them():
+    table = mode_table("upper", reference_body(), 1.0, 143, 143 / 23).groupby("nodal_diameters").first()
+    c = [0, -0.0506, -0.0470, -0.0430, -0.0414, -0.0409, -0.0409]
+    b = [0.826, 1.401, 3.322, 6.587, 11.180, 17.104, 24.361]
+    agrees("c of the first modes", table["gyroscopic_factor"][:7], c, absolute=5e-4)
+    agrees("B of the first modes", table["stiffening_factor"][:7], b, absolute=2e-3, relative=1e-3)
+    couplings = table.filter(like="hub_").abs()
+    agrees("Q along the axis, kg^0.5", couplings.loc[0, "hub_axial_sqrt_kg"], 3.99319, relative=5e-4)
+    agrees("Q sideways, kg^0.5", couplings.loc[1, "hub_sideways_sqrt_kg"], 0.94095, relative=5e-4)
+    agrees("Q of a tilt, kg^0.5 m", couplings.loc[1, "hub_tilt_sqrt_kg_m"], 0.67771, relative=5e-4)
+    assert not couplings.loc[2:].to_numpy().any() and not couplings.loc[0].filter(regex="sideways|tilt").any()
+
+
+def test_coefficients_through_the_door_are_the_columns_of_the_modes(outcome):
+    result = GearBodiesResult(outcome.content, outcome.summary, "computed", {})
+    table = result.coefficients()
+    assert (
+        len(table) == len(outcome.content["modes"])
+        and np.isfinite(table.select_dtypes(float).to_numpy()).all()
+    )
+    assert list(table.columns[-4:]) == list(COUPLINGS) and (table["damping_ratio"] == 0.002).all()
+    for column in table.columns[-4:]:
+        assert column in GearBodiesResult.coefficients.__doc__
+
+
+def test_damping_in_proportion_to_the_stiffness_rises_with_the_frequency_of_every_mode():
+    body = parse(BodySection, {**DISC, "stiffness_damping_s": 3.2e-6})
+    assert body.damping == (0.0, 3.2e-6) and parse(BodySection, DISC).damping == (0.002, 0.0)
+    solved = reduced_body(reference_body(), PATCH, *body.damping)
+    f = solved.frequency
+    assert solved.damping / (4 * np.pi * f) == pytest.approx(np.pi * f * 3.2e-6, rel=1e-12)
+    table = mode_table("upper", reference_body(), 1.0, 143, 143 / 23, body.damping)
+    assert table["damping_ratio"].to_numpy() == pytest.approx(np.pi * f * 3.2e-6, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        (
+            {"stiffness_damping_s": 1e-6, "damping_ratio": 0.01},
+            "stiffness_damping_s = 1e-06: must be left out where damping_ratio = 0.01 is given",
+        ),
+        ({"stiffness_damping_s": -1e-6}, "stiffness_damping_s = -1e-06: must be greater than or equal to 0"),
+        (
+            {"stiffness_damping_s": 1e-3},
+            "stiffness_damping_s = 0.001: must be at most 2.65e-05: a mode of max_frequency_hz then",
+        ),
+    ],
+)
+def test_damping_that_is_given_twice_or_cannot_be_is_refused_in_one_line(given, line):
+    with pytest.raises(ConfigErrors) as refused:
+        parse(BodySection, {**DISC, **given})
+    assert len(refused.value.lines) == 1 and line in refused.value.lines[0]
 
 
 def test_gears_alike_are_solved_once(monkeypatch):
@@ -83,11 +150,25 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
     assert solved == [0.06, 0.03, 0.06, 0.03]
 
 
-def test_what_the_modes_leave_out_between_flanks_is_less_than_at_a_flank_itself(outcome):
-    bodies = outcome.content["bodies"]
-    own = (1.0 - bodies["modal_fraction"]) * bodies["own_compliance_m_per_n"]
-    assert (bodies["left_out_between_m_per_n"] > 0.0).all()
-    assert (bodies["left_out_between_m_per_n"] < own).all()
+def test_what_modes_leave_out_between_flanks_of_one_mesh_and_of_two_are_columns_of_their_own(outcome):
+    """Both from sums of cosines and sines over the orders; the first is by far the larger."""
+    bodies = outcome.content["bodies"].set_index("gear")
+    angles = 2 * np.pi * np.array([0, 22.5, 45.5, 97.5, 120.5]) / 143
+    apart = (angles[:, None] - angles)[~np.eye(5, dtype=bool)]
+    s, c = np.sin(np.radians(25.0)), np.cos(np.radians(25.0))
+    for gear in ("lower", "upper"):
+        left = ReducedBody.of_arrays(outcome.content["reduced"], gear).residual
+        axial, around, mixed = left[:, 0, 0], left[:, 1, 1], left[:, 0, 1]
+        orders = np.outer(apart, np.arange(len(left)))
+        alike = np.cos(orders) @ (s**2 * axial + c**2 * around)
+        across = np.cos(orders) @ (s**2 * axial - c**2 * around) + np.sin(orders) @ (2 * s * c * mixed)
+        one_mesh = abs((s**2 * axial - c**2 * around).sum())
+        two_meshes = max(np.abs(alike).max(), np.abs(across).max())
+        found = bodies.loc[gear]
+        assert found["left_out_between_flanks_m_per_n"] == pytest.approx(one_mesh, rel=1e-9)
+        assert found["left_out_between_meshes_m_per_n"] == pytest.approx(two_meshes, rel=1e-9)
+        own = (1.0 - found["modal_fraction"]) * found["own_compliance_m_per_n"]
+        assert two_meshes < one_mesh < own
 
 
 def test_own_compliance_is_the_sum_over_the_orders_along_the_line_of_action(outcome):
@@ -147,7 +228,7 @@ def test_reduced_bodies_come_back_from_their_arrays(outcome):
     assert body.arrays("upper") == {key: value for key, value in arrays.items() if key.startswith("upper_")}
     static = outcome.content["bodies"].set_index("gear").loc["upper"]
     angle = np.radians(25.0)
-    own = body.own_residual(np.array([-np.sin(angle), np.cos(angle)]))
+    own = body.residual_of_flanks(np.array([[-np.sin(angle), np.cos(angle)]]))[0, 0]
     left = (1.0 - static["modal_fraction"]) * static["own_compliance_m_per_n"]
     assert own == pytest.approx(left, rel=1e-9)
 

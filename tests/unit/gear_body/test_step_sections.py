@@ -77,6 +77,16 @@ def test_body_of_a_step_file_is_that_of_its_parameters(tmp_path, build):
     assert np.array_equal(drawn.nodes, typed.nodes) and np.array_equal(drawn.quads, typed.quads)
 
 
+@pytest.mark.parametrize("degrees", [90.0, 180.0, -90.0, 37.0])
+def test_half_section_is_read_in_every_half_plane_through_the_axis(tmp_path, degrees):
+    """The distance from the axis counts, wherever the face stands about it."""
+    with writing(path := tmp_path / "gear.step") as occ:
+        face = half_section(occ, CORNERS)
+        occ.rotate([(2, face)], 0, 0, 0, 0, 0, 1, np.radians(degrees))
+    straight = step(tmp_path / "straight.step", half_section)
+    assert np.array(read_section(path)) == pytest.approx(np.array(read_section(straight)), abs=1e-8)
+
+
 def test_file_says_its_own_unit(tmp_path):
     path = step(tmp_path / "gear.step", turned, 1e-3 * CORNERS)
     text = path.read_text()
@@ -160,6 +170,14 @@ def disc(occ, corners):
     occ.addCylinder(0, 0, 0, 0, 0, 12, 275)
 
 
+def both_sides(occ, corners):
+    occ.rotate([(2, occ.addRectangle(-200, -20, 0, 400, 40))], 0, 0, 0, 1, 0, 0, 0.5 * np.pi)
+
+
+def leaning(occ, corners):
+    occ.rotate([(2, half_section(occ, corners))], 200, 0, 0, 1, 0, 0, 0.01)
+
+
 def across(occ, corners):
     occ.addRectangle(100, 20, 0, 150, 20)
 
@@ -175,6 +193,8 @@ def across(occ, corners):
         (beside_axis, "is not one of revolution about the z axis: two cuts differ"),
         (disc, "its body has no bore"),
         (across, "its face lies in no half plane through the z axis"),
+        (leaning, "its face lies in no half plane through the z axis"),
+        (both_sides, "its face lies in no half plane through the z axis"),
     ],
 )
 def test_shape_without_one_section_is_refused_in_one_line(tmp_path, build, line):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from references import against, agrees
 
+import facegear
 from facegear.errors import NotConverged
 from facegear.geometry import face_gear
 from facegear.geometry.bodies import BODIES
@@ -59,6 +60,24 @@ def test_step_has_the_volume_and_the_flanks_of_the_exact_teeth(pair, body, tmp_p
         0.0,
         absolute=50e-9,
     )
+
+
+def test_step_has_one_product_with_the_name_of_case_and_body_and_no_loose_points(tmp_path):
+    for body, words in (("pinion", "pinion"), ("face_gear", "face gear")):
+        file = facegear.example().export(tmp_path / f"{body}.step", body, teeth=1)
+        gmsh.initialize(interruptible=False)
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.model.occ.importShapes(str(file), highestDimOnly=False)
+            gmsh.model.occ.synchronize()
+            ((_, solid_tag),) = gmsh.model.getEntities(3)
+            assert gmsh.model.getEntityName(3, solid_tag).endswith(f"/example, {words}")
+            corners = gmsh.model.getBoundary([(3, solid_tag)], recursive=True)
+            assert len(gmsh.model.getEntities(0)) == len(corners)
+        finally:
+            gmsh.finalize()
+        text = file.read_text()
+        assert "translator" not in text and f"FILE_NAME('example, {words}'" in text
 
 
 def _flank(design, body):

@@ -19,8 +19,8 @@ GIVEN = Harmonics(np.array([0.0, 3.0, -1.0, 0.5]), np.array([40.0, 2.0, 0.7, -0.
 @given(count=st.integers(8, 90))
 def test_a_series_sampled_often_enough_comes_back(count):
     fit = fit_harmonics(GIVEN(np.arange(count) / count))
-    agrees("sine coefficient", fit.series.a[:4], GIVEN.a, relative=1e-7, absolute=1e-12)
-    agrees("cosine coefficient", fit.series.b[:4], GIVEN.b, relative=1e-7, absolute=1e-12)
+    agrees("sine coefficient", fit.series.sine[:4], GIVEN.sine, relative=1e-7, absolute=1e-12)
+    agrees("cosine coefficient", fit.series.cosine[:4], GIVEN.cosine, relative=1e-7, absolute=1e-12)
     assert np.abs(fit.series.amplitudes[4:]).max(initial=0.0) < 1e-12
 
 

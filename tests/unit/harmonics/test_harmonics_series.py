@@ -26,7 +26,7 @@ def test_mean_is_the_average_over_a_period_and_amplitudes_are_phase_free():
 
 def test_kept_series_drops_the_higher_orders_only():
     assert SERIES.kept(1).order == 1
-    np.testing.assert_array_equal(SERIES.kept(1).b, SERIES.b[:2])
+    np.testing.assert_array_equal(SERIES.kept(1).cosine, SERIES.cosine[:2])
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from facegear.config.stiffness import MeshStiffness, given_series
 from facegear.dynamics.response_tables import response_table
 from facegear.load_sharing import reference
 from facegear.load_sharing.collect import NOMINAL, collected
-from facegear.load_sharing.groups import load_groups
+from facegear.load_sharing.groups import split_groups
 from facegear.load_sharing.reference import (
     REFERENCE_COLUMNS,
     SPEED_COLUMNS,
@@ -78,7 +78,7 @@ def chain(own):
     }
     for columns, table in tables.items():
         assert tuple(table.columns) == columns
-    groups = load_groups(machine.layout)
+    groups = split_groups(machine.layout)
     found = collected({(NOMINAL, NOMINAL): tables[SUMMARY_COLUMNS]})
     assert found["group"].to_list() == [group.name for group in groups]
     return sharing, found
@@ -86,7 +86,7 @@ def chain(own):
 
 @pytest.mark.parametrize(
     ("roles", "gears"),
-    [(["input"], ["upper"]), (["input"], ["lower"]), (["input", "idler"], ["upper"])],
+    [(["input"], ["upper"]), (["input"], ["lower"]), (["input", "idler", "input"], ["upper"])],
 )
 def test_where_no_meshes_share_a_load_the_tables_have_no_rows(roles, gears):
     """The plainest machines ended in `No objects to concatenate`, after all the contact work."""

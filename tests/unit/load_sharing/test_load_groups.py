@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from facegear.load_sharing.groups import GroupKind, load_groups
+from facegear.load_sharing.groups import GroupKind, load_groups, split_groups
 from facegear.transmission.layout import Role
 
 
@@ -14,14 +14,15 @@ def test_paper_layout_has_two_inputs_and_the_lower_meshes_of_three_idlers(paper_
     }
 
 
-def test_inputs_on_a_single_gear_share_among_each_other(paper_machine):
+def test_pinions_on_a_single_gear_split_no_load(paper_machine):
     layout = paper_machine.layout
     single = replace(layout, gears=layout.gears[1:])
     groups = load_groups(single)
     assert [(group.kind, len(group.meshes)) for group in groups] == [
-        (GroupKind.DRIVERS, 2),
-        (GroupKind.IDLERS, 3),
+        (GroupKind.INDEPENDENT, 2),
+        (GroupKind.INDEPENDENT, 3),
     ]
+    assert split_groups(single) == ()
 
 
 def test_a_single_pinion_shares_with_nobody(paper_machine):

@@ -10,9 +10,11 @@ from references import against, agrees
 from spur_path import c40
 
 from facegear.lubrication.friction import (
+    LIMIT_SOURCES,
     BenedictKelley,
     Doleschel,
     Iso633620,
+    Iso633622,
     Rubbing,
     Schlenk,
     Xu,
@@ -119,6 +121,12 @@ def test_ranges_name_the_places_outside_them():
     assert not Iso633620().within(slow)["pitch line velocity at most 50 m/s"].any()
     fast = rubbing(u1=np.array([1.0, 8.0]), u2=np.array([4.0, 9.0]))
     assert Xu().within(fast)["slide to roll ratio at most 1"].tolist() == [False, True]
+
+
+@pytest.mark.parametrize("model", [Schlenk(), Iso633620(), Iso633622(), Xu(), BenedictKelley()])
+def test_every_limit_of_a_friction_model_names_its_source(model):
+    named = {limit for name, limit in LIMIT_SOURCES if name == model.name}
+    assert set(model.within(rubbing())) == named
 
 
 def test_solid_and_fluid_friction_share_the_load_by_the_film():

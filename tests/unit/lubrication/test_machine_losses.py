@@ -82,6 +82,8 @@ def test_an_oil_s_limits_and_the_model_stand_beside_the_numbers(gearbox):
     assert table["scuffing_safety"].to_numpy() == pytest.approx(rises.to_numpy(), rel=1e-12)
     limits = found.limits()
     assert set(limits["limit"]) == {"line load at least 150 N/mm", "pitch line velocity at most 50 m/s"}
+    assert limits["limit_source"].str.endswith("unverified: the document was not at hand").all()
+    assert table["allowed_contact_temperature_source"].str.startswith("AGMA 925, mean for MIL-L-23699").all()
     assert limits["loss_outside_percent"].between(0, 100).all()
     chart = found.map()
     assert chart["efficiency"].between(0.98, 1).all() and (chart["loss_w"] > 0).all()

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from exact_pose import body_motion, in_mesh_frame, pose_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout
@@ -15,6 +14,7 @@ from facegear.config.tooth_pair import pair_design
 from facegear.geometry.conjugate import conjugate_contact
 from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.placement import body_rotation, mirrored, pinion_to_gear
+from facegear.poses.exact_pose import body_motion, in_mesh_frame, pose_of
 from facegear.poses.mesh_poses import mesh_poses, pose_rows
 from facegear.transmission.layout import Role, Tilt
 from facegear.transmission.linear_model import LinearModel

@@ -57,8 +57,8 @@ def surface(gearbox):
 def test_in_a_bin_with_the_machine_s_own_load_its_meshes_carry_the_published_forces():
     """Published without the second order of the closing, and along the ideal normal."""
     values = facegear.load("config/concentric.yaml", results=None).values
-    numbers = {"order": 0, "a_n_per_m": 0.0, "b_n_per_m": 4.1e8, "amplitude_n_per_m": 4.1e8}
-    harmonics = pd.DataFrame([{**numbers, "e_a_um": 0.0, "e_b_um": 0.0}])
+    numbers = {"order": 0, "sin_n_per_m": 0.0, "cos_n_per_m": 4.1e8, "amplitude_n_per_m": 4.1e8}
+    harmonics = pd.DataFrame([{**numbers, "e_sin_um": 0.0, "e_cos_um": 0.0}])
     with np.load(SURFACE) as stored:
         arrays = dict(stored)
     duty = [{"torque_n_m": torque, "speed_rpm": 7500.0, "hours": 1.0} for torque in (663.8, 332.0)]

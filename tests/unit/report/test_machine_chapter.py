@@ -18,7 +18,7 @@ from facegear.report.warnings import warnings
 @pytest.fixture(scope="module")
 def example():
     values = facegear.example().values
-    harmonics = pd.DataFrame({"order": [0, 1], "a_n_per_m": [0.0, 0.0], "b_n_per_m": [4.1e8, 1e7]})
+    harmonics = pd.DataFrame({"order": [0, 1], "sin_n_per_m": [0.0, 0.0], "cos_n_per_m": [4.1e8, 1e7]})
     return values, call(STAGES["ratings"], {"harmonics": harmonics, **stage_needs("ratings", values)}).content
 
 
@@ -37,6 +37,38 @@ def test_a_machine_in_balance_says_so_and_one_out_of_balance_by_how_much(example
     assert "The power brought in equals the power taken out" in machine_chapter(values, tables).text
     off = tables["ratings"].assign(value=lambda t: t["value"].mask(t["quantity"] == "power_imbalance", -0.07))
     assert "-7 % of the larger" in machine_chapter(values, {**tables, "ratings": off}).text
+
+
+def test_friction_loss_is_taken_off_the_power_out(example):
+    values, tables = example
+    lossy = {**tables, "machine_loss": pd.DataFrame({"bin": [0, -1], "loss_percent": [0.58, 0.7]})}
+    numbers = key_numbers(lossy, None).set_index("quantity")["value"].map(float)
+    power_in, out = (
+        numbers["Power brought in"],
+        numbers["Power taken out, less the friction loss of the meshes"],
+    )
+    assert out == pytest.approx(power_in * (1.0 - 0.0058), rel=1e-4)
+    assert numbers["Power taken out, without friction"] == pytest.approx(power_in, rel=1e-4)
+    assert "Power taken out" not in numbers
+    assert (
+        "Friction is not in these torques and powers. It takes 0.58 %" in machine_chapter(values, lossy).text
+    )
+
+
+@pytest.mark.parametrize("k_gamma", [0.701, 1.2])
+def test_k_gamma_is_defined_where_it_is_shown_and_explained_below_one(k_gamma):
+    row = {
+        "group": "idlers",
+        "k_gamma": k_gamma,
+        "k_gamma_static": k_gamma,
+        "k_v": 1.1,
+        "torque_n_m": 1328.0,
+        "speed_rpm": 7500.0,
+        "mesh_cycles": 99,
+    }
+    (found,) = findings({"following_groups": pd.DataFrame([row])}, None)
+    assert "largest mean load of a mesh over its nominal even share" in found.finding
+    assert ("below 1, less load takes this path" in found.finding) == (k_gamma < 1.0)
 
 
 def test_the_shift_of_the_contact_path_is_a_number():
@@ -161,7 +193,7 @@ def test_a_machine_whose_output_is_a_pinion_shows_its_torque_and_ratio(example):
         "face_gears": ["upper"],
         "torque": {"per_input_n_m": 0.0, "tail_share": 0.0},
     }
-    harmonics = pd.DataFrame({"order": [0], "a_n_per_m": [0.0], "b_n_per_m": [4.1e8]})
+    harmonics = pd.DataFrame({"order": [0], "sin_n_per_m": [0.0], "cos_n_per_m": [4.1e8]})
     needs = {**stage_needs("ratings", example[0]), "transmission": section}
     numbers = key_numbers(call(STAGES["ratings"], {"harmonics": harmonics, **needs}).content, None).set_index(
         "quantity"
@@ -218,7 +250,9 @@ def test_a_jump_far_from_a_linear_resonance_is_not_given_its_speed():
     jumps = pd.DataFrame(
         {
             "direction": "up",
+            "kind": "jump",
             "speed_before_rpm": [2953.0, 10475.0],
+            "error_rpm": 0.8,
             "mesh": "a",
             "class_before": "period-1",
             "class_after": "period-1",

@@ -73,7 +73,7 @@ def report(tmp_path_factory):
     ]
     columns = ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class", "periodic"]
     sweep = pd.DataFrame(rows, columns=columns)
-    jumps = pd.DataFrame({"direction": ["up"], "speed_after_rpm": [4000.0]})
+    jumps = pd.DataFrame({"direction": ["up"], "kind": "jump", "speed_after_rpm": [4000.0]})
     drawn = {
         "mesh_sweep": mesh_sweeps(sweep, jumps, ["input", "tail"], ["upper"]),
         "pinion_sweep": translations(sweep, ["input"], "xy"),
@@ -239,7 +239,7 @@ def test_without_scripts_the_stills_and_tables_are_there(opened):
 def test_a_still_on_the_page_shows_the_stored_drawing_dot_for_dot(browser, report):
     """A page holds its stills shortened, a third smaller; what a reader sees is what the file shows."""
     stored = report.parent / "mesh_sweep.svg"
-    still = data_uri(stored)
+    still = data_uri(stored.read_text(encoding="utf-8"))
     assert len(still) < 0.8 * len(base64.b64encode(stored.read_bytes()))
     whole = f"data:image/svg+xml;base64,{base64.b64encode(stored.read_bytes()).decode()}"
     page = browser.new_page()

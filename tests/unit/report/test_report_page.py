@@ -62,7 +62,7 @@ def test_equal_modes_are_one_row_that_says_how_many():
 def test_stiffnesses_are_written_in_one_format():
     frame = pd.DataFrame({"mean_n_per_m": [4.1e8, 52.0, 9.99e5], "torque_n_m": [600.0, 5.0, 1e5]})
     assert [row[0] for row in Table("T", frame, 4).rows()] == ["4.100e8", "5.200e1", "9.990e5"]
-    none = pd.DataFrame({"a_n_per_m": [0.0, 2.9e7]})
+    none = pd.DataFrame({"sin_n_per_m": [0.0, 2.9e7]})
     assert Table("T", none, 4).rows() == [["0"], ["2.900e7"]]
 
 

@@ -14,7 +14,7 @@ from facegear.scenarios.evolution import ERROR, Effort, Task, Variable, evolve, 
 INPUTS, IDLERS = ("right input", "left input"), ("tail idler", "right idler", "left idler")
 STIFF = "bearing_stiffness_n_per_m"
 LINEAR = {
-    "mesh_stiffness.table": [{"order": 1, "a_n_per_m": 0.0, "b_n_per_m": 0.0}],
+    "mesh_stiffness.table": [{"order": 1, "sin_n_per_m": 0.0, "cos_n_per_m": 0.0}],
     "transmission.mesh_kinematics": "geometric",
     "transmission.face_gear.mesh_radius_mm": None,
     "transmission.transmission_error": {"amplitude_um": 0},

@@ -98,7 +98,7 @@ def test_body_is_solved_once_for_every_section_and_not_for_what_it_does_not_depe
         given["transmission"]["face_gear"]["mass_kg"] = 40.0 + thickness
         section = parse(Transmission, given["transmission"])
         joined = bodies.joined(wired_machine(section, numbers, K), section, given["tooth_pair"])
-        assert joined.softening.size == 10
+        assert len(joined.softening) == 10
     assert solved == [10.0, 11.0]
 
 

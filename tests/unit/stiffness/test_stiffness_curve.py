@@ -170,11 +170,11 @@ def test_written_harmonics_are_those_kept():
 
 
 def test_harmonics_given_in_the_config_need_no_contact():
-    table = [{"order": 1, "a_n_per_m": 2e7, "b_n_per_m": 1e7}, {"order": 3, "b_n_per_m": -5e6}]
+    table = [{"order": 1, "sin_n_per_m": 2e7, "cos_n_per_m": 1e7}, {"order": 3, "cos_n_per_m": -5e6}]
     asked = request(source="harmonics", table=table, torque_n_m=None)
     series = series_of(stiffness_given(asked).harmonics)
-    np.testing.assert_allclose(series.a, [0, 2e7, 0, 0])
-    np.testing.assert_allclose(series.b, [4.1e8, 1e7, 0, -5e6])
+    np.testing.assert_allclose(series.sine, [0, 2e7, 0, 0])
+    np.testing.assert_allclose(series.cosine, [4.1e8, 1e7, 0, -5e6])
 
 
 @against(
@@ -214,6 +214,6 @@ def test_incomplete_or_contradictory_sources_are_refused(changes):
 
 @pytest.mark.parametrize("orders", [[0, 1, 1], [0, -1], [0, 0.5]])
 def test_orders_of_a_users_file_must_be_whole_and_single(orders):
-    frame = pd.DataFrame({"order": orders, "a_n_per_m": 0.0, "b_n_per_m": 1.0})
+    frame = pd.DataFrame({"order": orders, "sin_n_per_m": 0.0, "cos_n_per_m": 1.0})
     with pytest.raises(ValueError, match="orders"):
         series_of(frame)

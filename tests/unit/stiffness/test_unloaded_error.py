@@ -50,7 +50,7 @@ def test_the_series_is_the_unloaded_error_without_its_mean():
 def test_a_constant_error_is_exactly_zero_and_the_report_says_so():
     found = found_for(np.full(32, -44.8236) + 1e-6 * curve(POSITIONS))
     series = unloaded_error(found.harmonics)
-    assert not series.a.any() and not series.b.any()
+    assert not series.sine.any() and not series.cosine.any()
     text = machine_chapter(VALUES, {"harmonics": found.harmonics}).text
     assert "Transmission error from contact, unloaded: constant, so e(t) from contact is zero." in text
     moving = machine_chapter(VALUES, {"harmonics": found_for(curve(POSITIONS)).harmonics}).text
@@ -58,7 +58,7 @@ def test_a_constant_error_is_exactly_zero_and_the_report_says_so():
 
 
 def test_given_harmonics_bring_no_error_of_a_pair():
-    table = [{"order": 0, "b_n_per_m": 4e8}]
+    table = [{"order": 0, "cos_n_per_m": 4e8}]
     section = parse(MeshStiffness, {"source": "harmonics", "table": table})
     assert unloaded_error(stiffness_given(stiffness_request(section)).harmonics) is None
 

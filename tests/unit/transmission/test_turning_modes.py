@@ -32,7 +32,7 @@ def held_gears(damping_ratio=0.0):
 def modes_at(machine, gear_rpm):
     """Modes with all meshes open."""
     none = np.zeros(len(machine.linear.rows))
-    return turning_modes(machine.linear, none, none, gear_rpm * RPM * gear_bodies.TEETH / 23)
+    return turning_modes(machine.linear, np.diag(none), none, gear_rpm * RPM * gear_bodies.TEETH / 23)
 
 
 @against(

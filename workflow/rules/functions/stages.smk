@@ -1,54 +1,71 @@
-from facegear.pipeline.stage import FIGURES
-
-DRAWN = [stage for stage in STAGES.values() if stage.figures and stage.figures.named(BASE)]
-"""Stages of which there is something to draw."""
-TITLES = {stage.name: stage.title for stage in STAGES.values()} | {
-    f"{stage.name}{FIGURES}": f"Figures: {stage.title[0].lower()}{stage.title[1:]}" for stage in DRAWN
-}
-MODULES = {stage.name: stage.modules for stage in STAGES.values()} | {
-    f"{stage.name}{FIGURES}": (stage.figures.draw.partition(":")[0],) for stage in DRAWN
-}
-"""Modules that decide the files of a rule, beside its script."""
+STAGE_SCRIPT = "workflow/scripts/stage.py"
 
 
-def machine_code_of(rule):
-    """Functions that load what jobs of a rule run, with their arguments."""
-    codes = [STAGES[name] for name in STAGES[rule].runs] if rule in STAGES else []
-    return [(code.function, resolved_needs(code.needs, BASE)) for code in codes]
+def own_cases(stage):
+    """Cases of studies with files of their own of a stage that takes seconds, to be made by one job."""
+    if stage.together == 1 or len(CASES) == 1:
+        return []
+    return [name for name, shared_by in sources(stage.name).items() if name == shared_by != CASE]
+
+
+STUDIED = [
+    (stage, number, own_cases(stage)[first : first + stage.together])
+    for stage in STAGES.values()
+    for number, first in enumerate(range(0, len(own_cases(stage)), stage.together), 1)
+]
+"""Stage, number and cases of every job that makes cases of studies."""
+
+
+def alone(stage):
+    """Wildcards of a stage; its rule makes the cases that no other job makes."""
+    others = [name for name in CASES if name not in own_cases(stage)]
+    return {**stage.wildcards, "case": "|".join(map(re.escape, others))}
 
 
 def inputs(upstream, stage):
-    """Files of earlier stages that a stage, or its figures, take, each from the case whose files are shared."""
+    """Files of earlier stages that a stage takes, each from the case whose files are shared."""
     return {name: read_from(source, stage.name) for name, source in upstream.items()}
 
 
-def outputs(stage):
-    """Paths of a stage's files by name; a list where it writes several of a kind."""
-    return {
+def outputs(stage, case="{case}"):
+    """Paths of a stage's files by name, its manifest among them; a list where it writes several of a kind."""
+    files = {
         name: (
-            [f"results/{{case}}/{file.at({'each': each})}" for each in file.each(BASE)]
+            [f"results/{case}/{file.at({'each': each})}" for each in file.each(BASE)]
             if file.each
-            else f"results/{{case}}/{file.path}"
+            else f"results/{case}/{file.path}"
         )
         for name, file in stage.files.items()
     }
+    return {**files, "manifest": f"results/{case}/{stage.manifest}"}
 
 
-def pictures(figures):
-    """Lists `svg`, `png` and `json` of the files of figures; the first are marked for Snakemake's report."""
-    names = figures.named(BASE)
+def numbered(values_of_case, cases):
+    """Files or values of several cases by name, the number of the case behind each name."""
     return {
-        "svg": [shown(name, figures.chapter) for name in names],
-        "png": [f"results/{{case}}/figures/{name}.png" for name in names],
-        "json": [f"results/{{case}}/figures/{name}.json" for name in names],
+        f"{name}__{n}": value for n, case in enumerate(cases) for name, value in values_of_case(case).items()
     }
 
 
-def shown(name, chapter):
-    """The svg of a figure, marked for Snakemake's report."""
-    category = chapter.replace("_", " ").capitalize()
-    file, text = f"results/{{case}}/figures/{name}.svg", f"../report/{chapter}.rst"
-    return report(file, caption=text, category=category, labels={"figure": name})
+def inputs_of_cases(stage, cases):
+    """Files of earlier stages that a stage takes for several cases."""
+    return numbered(
+        lambda case: {
+            name: lambda wildcards, source=source: files_read(source, case, stage.name)
+            for name, source in stage.upstream.items()
+        },
+        cases,
+    )
+
+
+def needs_of_cases(stage, cases):
+    """Function of the wildcards giving what a stage needs of the config, case by case."""
+    return lambda wildcards: [values_needed(stage.needs, case, stage.name) for case in cases]
+
+
+def named(name, wildcards):
+    """A name for files of a rule, made of the rule's and of its wildcards beside the case."""
+    return "_".join([name, *(f"{{{wildcard}}}" for wildcard in sorted(wildcards))])
 
 
 def resources(memory_mb=None, minutes=None):

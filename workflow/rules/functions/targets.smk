@@ -10,7 +10,10 @@ def files_of(rule, case):
 def targets(case):
     """All files of a case but its report: only what its config asks for."""
     made = [stage for stage in STAGES.values() if stage.asked and stage.asked(case_of(case))]
-    names = [stage.name for stage in made] + [f"{stage.name}{FIGURES}" for stage in made if stage in DRAWN]
+    names = [stage.name for stage in made]
+    names += [
+        f"{chapter}{FIGURES}" for chapter, stages in CHAPTERS.items() if any(one in made for one in stages)
+    ]
     found = [getattr(rules, name) for name in names] + ([rules.scorecard] if REPRODUCTION else [])
     return [path for rule in found for path in files_of(rule, case)]
 

@@ -1,0 +1,142 @@
+"""Where the stability of a branch may change and change back between two neighbouring points.
+
+Two multipliers that meet on the unit circle may leave it and come back within one step, and the more they
+turn in it the narrower such a band is beside the step. The matrix of the map itself changes smoothly along a
+branch, also where multipliers meet. It is interpolated by cubics through the matrices and their slopes at
+both ends, on stretches over which no multiplier near the circle turns far. What the multipliers of the
+interpolated matrices suggest is then looked at on the branch itself.
+"""
+
+import numpy as np
+
+from facegear.arrays import Array, ComplexArray, Integers
+from facegear.dynamics.branches.points import REAL_PAIR, BranchPoint, without_neutral
+from facegear.dynamics.branches.segment import Segment
+
+NEAR_CIRCLE = 0.4
+"""Multipliers farther from the unit circle at both ends of a stretch are left out."""
+WIDEST_TURN, NARROWEST_TURN = 0.6, 0.1
+"""Angles in rad over which the matrix is interpolated: a cubic errs there by 3e-4 and 3e-7."""
+UNDAMPED = 1e-6
+"""Multipliers nearer to the circle lie on it, as far as they are known: without damping all of them do, and
+closer looks tell no more."""
+CUBIC_ERROR = 1.0 / 384.0
+"""Error of a Hermite cubic over a stretch, in the fourth power of the angle that a multiplier turns."""
+FEWEST, MOST = 4, 32
+"""Matrices interpolated in a stretch."""
+SHORTEST_LENGTH = 1e-3
+"""Shorter stretches, in length scales, are not looked through: ten times the step of the slopes."""
+TRUSTED = 0.25
+"""Part of the way by which a multiplier comes nearer to the circle than at the ends that may be an error."""
+STEEP = 3.0
+"""A slope of the matrix this many times that of the chord and the other end is a graze's, and left out."""
+
+
+def may_change(segment: Segment, low: float, high: float) -> bool:
+    """Whether a stretch is long enough, and a multiplier at its ends near enough, to pass the circle."""
+    closest = min(_distance(segment.at(fraction)) for fraction in (low, high))
+    return segment.length * (high - low) >= SHORTEST_LENGTH and closest <= NEAR_CIRCLE
+
+
+def _distance(point: BranchPoint) -> float:
+    """Distance from the unit circle of the multiplier nearest to it."""
+    return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
+
+
+def hidden_change(segment: Segment, low: float, high: float) -> float | None:
+    """Fraction at which to look for changes of stability that the ends of a stretch do not show, or None."""
+    if not may_change(segment, low, high):
+        return None
+    ends, stretch = (segment.at(low), segment.at(high)), high - low
+    neutral = ends[0].linear.neutral.shape[1]
+    distances = [_distance(point) for point in ends]
+    start, end = (segment.matrix_slope(fraction, stretch) for fraction in (low, high))
+    turn = min(_turn(point, rate, neutral) for point, rate in zip(ends, (start, end), strict=True))
+    if turn > _widest_turn(max(distances)):
+        return 0.5 * (low + high)
+    # A band in which multipliers reach the circle is at least as wide, in their angle, as they were off it.
+    count = int(np.clip(np.ceil(turn / max(max(distances), 1e-3)), FEWEST, MOST))
+    looks = np.arange(1, count + 1) / (count + 1.0)
+    matrices = _interpolated([point.linear.matrix for point in ends], [start, end], looks)
+    values = without_neutral(np.linalg.eigvals(matrices), neutral)
+    error = CUBIC_ERROR * turn**4
+    outside = [np.array([point.outside]) for point in ends]
+    surely, perhaps = (
+        np.concatenate([outside[0], _outside(values, margin), outside[1]]) for margin in (error, -error)
+    )
+    look = _returning(surely, perhaps)
+    if look is None:
+        look = _approaching(values, distances, looks, error)
+    return None if look is None else float(low + looks[look] * stretch)
+
+
+def _widest_turn(distance: float) -> float:
+    """Angle over which a cubic errs by half the distance of the multipliers from the circle."""
+    if distance < UNDAMPED:
+        return WIDEST_TURN
+    return float(np.clip((distance / (2.0 * CUBIC_ERROR)) ** 0.25, NARROWEST_TURN, WIDEST_TURN))
+
+
+def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
+    """Largest change of a multiplier near the unit circle, by the change (2 n, 2 n) of the matrix."""
+    values, vectors = np.linalg.eig(point.linear.matrix)
+    try:
+        moved = np.abs(np.einsum("ij,jk,ki->i", np.linalg.inv(vectors), change, vectors))
+    except np.linalg.LinAlgError:
+        return np.inf
+    off = np.abs(values - 1.0)
+    kept = np.argsort(off)[neutral:]
+    near = kept[np.abs(np.abs(values[kept]) - 1.0) <= NEAR_CIRCLE]
+    return float(moved[near].max(initial=0.0))
+
+
+def _interpolated(matrices: list[Array], changes: list[Array], looks: Array) -> Array:
+    """Matrices (K, 2 n, 2 n) at shares (K,) of a stretch, from those at its ends and their slopes there."""
+    step = matrices[1] - matrices[0]
+    start, end = changes
+    sizes = [float(np.linalg.norm(each)) for each in (start, end, step)]
+    if sizes[0] > STEEP * max(sizes[1:]):
+        start = 2.0 * step - end
+    elif sizes[1] > STEEP * max(sizes[0], sizes[2]):
+        end = 2.0 * step - start
+    t = looks[:, None, None]
+    return matrices[0] + t * (start + t * (3.0 * step - 2.0 * start - end + t * (start + end - 2.0 * step)))
+
+
+def _outside(values: ComplexArray, margin: float) -> Integers:
+    """BranchPoint.outside of multipliers (K, m), but beyond 1 + margin, shape (K, 3)."""
+    size = np.abs(values)
+    beyond, real = size > 1.0 + margin, np.abs(values.imag) <= REAL_PAIR
+    kinds = (real & (values.real > 0.0), real & (values.real < 0.0), ~real & (values.imag > 0.0))
+    return np.stack([(beyond & kind).sum(axis=1) for kind in kinds], axis=1)
+
+
+def _returning(surely: Integers, perhaps: Integers) -> int | None:
+    """Number of the look, without the ends, at which a count goes against the change from end to end.
+
+    surely, perhaps: the counts (K + 2, 3) outside by more than, and up to, the error of the matrices.
+    """
+    for sure, possible in zip(surely.T, perhaps.T, strict=True):
+        least, most = sorted((sure[0], sure[-1]))
+        beyond = np.flatnonzero((sure > most) | (possible < least))
+        if beyond.size:
+            return int(beyond[0]) - 1
+        inner, possible = sure[1:-1], possible[1:-1]
+        if sure[-1] > sure[0]:
+            against = np.flatnonzero(np.maximum.accumulate(inner)[:-1] > possible[1:])
+        else:
+            against = np.flatnonzero(np.minimum.accumulate(possible)[:-1] < inner[1:])
+        if against.size:
+            return int(against[0])
+    return None
+
+
+def _approaching(values: ComplexArray, ends: list[float], looks: Array, error: float) -> int | None:
+    """The look at which multipliers come so near to the circle, from as far as `ends`, that they may pass
+    it, or None.
+    """
+    nearest = np.abs(np.abs(values) - 1.0).min(axis=1)
+    before = ends[0] + looks * (ends[1] - ends[0])
+    gain = before - nearest
+    doubtful = (gain > error) & (nearest < np.maximum(error, TRUSTED * gain))
+    return int(np.argmin(np.where(doubtful, nearest, np.inf))) if doubtful.any() else None

@@ -1,0 +1,198 @@
+"""Unloaded contact of a pair whose two bodies stand displaced: where its flanks meet, and how far they close.
+
+The pinion's displacement is given in the machine's frame at the pinion: x along the tangent as the upper
+gear's teeth move, y along the gears' axis towards the upper gear, z outwards along the pinion. The gear's
+displacement is given in the frame of the gears: x towards azimuth 0, y a quarter turn further, z from the
+lower to the upper gear.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.geometry.conjugate import PairNumbers, exact_contact
+from facegear.geometry.design import AssemblyErrors, PairDesign
+from facegear.geometry.flank_errors import FLANKS, errors_at
+from facegear.geometry.placement import RigidMotion, mirrored, pinion_angle
+from facegear.geometry.unloaded import unloaded_contact
+from facegear.poses.exact_pose import Pose, assembled_motion, body_motion, in_mesh_frame, pose_of
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """Displacement of a body from where it was assembled.
+
+    Attributes
+    ----------
+    shift
+        Along x, y and z, m.
+    turn
+        Tilts about x and y, and the turn about the body's axis as it turns when it drives or is driven, rad.
+    """
+
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class MeshPlace:
+    """Place of a mesh in a machine.
+
+    Attributes
+    ----------
+    gear
+        Upper or lower.
+    azimuth
+        Of the pinion, rad.
+    tilt_height
+        Height over the pinion's axis, towards the gear, of the point about which the gear tilts, m.
+    """
+
+    gear: str
+    azimuth: float
+    tilt_height: float
+
+    @property
+    def sign(self) -> float:
+        """1 for the upper, -1 for the lower gear."""
+        return 1.0 if self.gear == "upper" else -1.0
+
+
+@dataclass(frozen=True)
+class DisplacedFlank:
+    """Unloaded contact of one flank of a displaced pair; m and rad.
+
+    Attributes
+    ----------
+    design
+        The pair whose drive flank this flank is, its assembly that of the pose.
+    outward
+        Shift of the pinion along its axis, away from the gears' axis.
+    path
+        Place of the contact along the pinion's axis, as `ConjugateContact.y`.
+    slope
+        Slope of the common normal (the pressure angle there); NaN where the contact was searched.
+    approach
+        How far the flanks have come together along the line of action, from as assembled.
+    deflection
+        The part of `approach` that is of first order: what a lumped mesh counts as its deflection.
+    backlash
+        Normal backlash of the displaced pair at this place of the mesh cycle.
+    to_inner_end, to_outer_end
+        From the path to the ends of the common face.
+    """
+
+    design: PairDesign
+    outward: float
+    path: float
+    slope: float
+    approach: float
+    deflection: float
+    backlash: float
+    to_inner_end: float
+    to_outer_end: float
+
+    @property
+    def closing(self) -> float:
+        """The part of `approach` beyond the first order."""
+        return self.approach - self.deflection
+
+
+def displaced_flanks(
+    design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement, position: float = 0.5
+) -> dict[str, DisplacedFlank]:
+    """Return the unloaded contact of the drive and the back flank by name.
+
+    Parameters
+    ----------
+    design
+        Pair as assembled.
+    mesh
+        Where the mesh is in its machine.
+    pinion, gear
+        Displacements of both bodies, of any size for which flanks face each other.
+    position
+        Place of a pitch (0 to 1) at which flanks with modifications are searched; the others have the same
+        contact everywhere.
+
+    Raises NotConverged where the flanks do not face each other.
+    """
+    moved = _motions(design, mesh, pinion, gear)
+    nominal = errors_at(design.assembly, mesh.gear, FLANKS[0])
+    built = assembled_motion(nominal, design.mean_radius)
+    whole = RigidMotion(moved[0].matrix @ built.matrix, moved[0].points(built.shift[None])[0])
+    pose = pose_of(whole, moved[1], design.mean_radius)
+    contacts = [_contact(_seen(design, pose.errors, flank), pose, flank, position) for flank in FLANKS]
+    still = Pose(nominal, 0.0, 0.0, 0.0)
+    rest = [_contact(_seen(design, nominal, flank), still, flank, position)[0] for flank in FLANKS]
+    ends = PairNumbers.of_design(design)
+    return {
+        flank: DisplacedFlank(
+            design=_seen(design, pose.errors, flank),
+            outward=pose.outward,
+            path=path,
+            slope=slope,
+            approach=error - at_rest,
+            deflection=_first_order(design, mesh, pinion, gear, flank),
+            backlash=-contacts[0][0] - contacts[1][0],
+            to_inner_end=path - ends.first_end,
+            to_outer_end=ends.last_end - path,
+        )
+        for flank, (error, path, slope), at_rest in zip(FLANKS, contacts, rest, strict=True)
+    }
+
+
+def _seen(design: PairDesign, errors: AssemblyErrors, flank: str) -> PairDesign:
+    """Return the pair whose drive flank a flank is, by the errors that the drive flank meets."""
+    posed = replace(design, assembly=errors)
+    return posed if flank == FLANKS[0] else mirrored(posed)
+
+
+def _contact(design: PairDesign, pose: Pose, flank: str, position: float) -> tuple[float, float, float]:
+    """Return transmission error (m) with the turns of both bodies, path (m) and slope (rad) of a flank."""
+    sign = 1.0 if flank == FLANKS[0] else -1.0
+    turned = sign * (design.pinion_base_radius * pose.ahead + design.gear_base_radius * pose.behind)
+    exact = exact_contact(design)
+    if exact is not None:
+        return exact.transmission_error + turned, exact.y, exact.psi
+    phi1 = sign * (float(pinion_angle(design, position)) + pose.ahead)
+    contact = unloaded_contact(design, phi1)
+    return float(contact.transmission_error[0]) + turned, float(contact.path[1][0]), float("nan")
+
+
+def _motions(
+    design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
+) -> tuple[RigidMotion, RigidMotion]:
+    """Return the motions of both bodies in the mesh frame, from where they were assembled."""
+    own, other = _turns(design, mesh, pinion, gear)
+    return in_mesh_frame(body_motion(*own), mesh.sign), in_mesh_frame(body_motion(*other), mesh.sign)
+
+
+def _turns(
+    design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
+) -> tuple[tuple[Array, Array, Array], tuple[Array, Array, Array]]:
+    """Return shift, rotation vector and pivot, (3,) each, of both bodies in the machine's frame there.
+
+    A pinion that drives turns against z there, and the lower gear against the gears' z.
+    """
+    cosine, sine = np.cos(mesh.azimuth), np.sin(mesh.azimuth)
+    to_pinion = np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
+    own = np.array(pinion.shift), np.array(pinion.turn) * [1.0, 1.0, -1.0]
+    other = np.array(gear.shift), np.array(gear.turn) * [1.0, 1.0, mesh.sign]
+    middle = np.array([0.0, 0.0, design.mean_radius])
+    height = np.array([0.0, mesh.sign * mesh.tilt_height, 0.0])
+    return (*own, middle), (to_pinion @ other[0], to_pinion @ other[1], height)
+
+
+def _first_order(
+    design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement, flank: str
+) -> float:
+    """Return the approach of a flank (m) to first order: along the ideal normal at the pitch point."""
+    point = np.array([0.0, mesh.sign * design.pinion_pitch_radius, design.gear_pitch_radius])
+    moved = [
+        shift + np.cross(turn, point - pivot) for shift, turn, pivot in _turns(design, mesh, pinion, gear)
+    ]
+    angle, sign = design.pressure_angle, 1.0 if flank == FLANKS[0] else -1.0
+    normal = mesh.sign * np.array([sign * np.cos(angle), np.sin(angle), 0.0])
+    return float(normal @ (moved[0] - moved[1]))

@@ -1,0 +1,125 @@
+"""Contact of a pair whose two bodies stand displaced, without load and under torques."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import degrees, isfinite, radians, tau
+
+import pandas as pd
+
+from facegear.arrays import Arrays
+from facegear.config.contact import Contact, contact_plan
+from facegear.config.machine_layout import ToothNumbers, layout
+from facegear.config.tooth_pair import ToothPair, pair, pair_design
+from facegear.config.transmission import Transmission
+from facegear.contact.gear_flank import from_arrays
+from facegear.contact.posed import met_contacts
+from facegear.errors import ConfigError, chosen
+from facegear.poses.displaced import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
+from facegear.stages.outcome import Outcome
+
+SHIFTS, TURNS = ("x_um", "y_um", "z_um"), ("tilt_x_deg", "tilt_y_deg", "theta_deg")
+LARGEST_SHIFT, LARGEST_TURN = 5000.0, 2.0
+"""Largest shift (um) and turn (deg) of a body: the bounds of assembly errors in a config."""
+
+
+def displaced_contact(
+    tooth_pair: ToothPair,
+    transmission: Transmission | None,
+    mesh: str | None,
+    pinion: Mapping[str, float],
+    face_gear: Mapping[str, float],
+    position: float,
+) -> dict[str, DisplacedFlank]:
+    """Return the unloaded contact of both flanks of a mesh by their names.
+
+    Raises ConfigError for a pair without bodies, for displacements that are no numbers within bounds, and for
+    a mesh that the machine does not have, NotConverged where flanks do not face each other.
+    """
+    if not (isinstance(position, int | float) and 0.0 <= position <= 1.0):
+        raise ConfigError("position", position, "from 0 to 1, a place of a pitch")
+    moved = displacement("pinion", pinion), displacement("face_gear", face_gear)
+    return displaced_flanks(
+        pair_design(tooth_pair), _place(tooth_pair, transmission, mesh), *moved, float(position)
+    )
+
+
+def displacement(body: str, given: Mapping[str, float]) -> Displacement:
+    """Return the displacement of a body from its keys SHIFTS and TURNS. Raises ConfigError."""
+    for key, value in given.items():
+        chosen(key, (*SHIFTS, *TURNS), f"key of the displacement {body}")
+        largest = LARGEST_SHIFT if key in SHIFTS else LARGEST_TURN
+        number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+        if not number or abs(value) > largest:
+            raise ConfigError(f"{body}.{key}", value, f"a number from -{largest:g} to {largest:g}")
+    x, y, z = (1e-6 * given.get(key, 0.0) for key in SHIFTS)
+    first, second, third = (radians(given.get(key, 0.0)) for key in TURNS)
+    return Displacement((x, y, z), (first, second, third))
+
+
+def _place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: str | None) -> MeshPlace:
+    """Return the place of a named mesh, or of the first one.
+
+    A pair without a machine counts as that of an upper gear and a pinion at azimuth 0.
+    """
+    if transmission is None:
+        if mesh is not None:
+            raise ConfigError("mesh", mesh, "left out: the config has no transmission")
+        pitch_radius = 0.5e-3 * tooth_pair.module_mm * tooth_pair.pinion_teeth
+        return MeshPlace("upper", 0.0, pitch_radius)
+    machine = layout(transmission, ToothNumbers.of_config(tooth_pair.model_dump()))
+    names = machine.mesh_names
+    i, g = machine.meshes[names.index(chosen(mesh, names, "mesh")) if mesh is not None else 0]
+    return MeshPlace(machine.gears[g].side.value, float(machine.angles[i]) % tau, machine.tilt_distance(g))
+
+
+def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
+    """One row a flank; columns in `DisplacedContactResult.table`."""
+    return pd.DataFrame(
+        [
+            {
+                "flank": name,
+                "offset_um": 1e6 * flank.design.assembly.offset,
+                "axial_shift_um": 1e6 * flank.design.assembly.axial_shift,
+                "shaft_angle_error_deg": degrees(flank.design.assembly.shaft_angle_error),
+                "outward_um": 1e6 * flank.outward,
+                "approach_um": 1e6 * flank.approach,
+                "deflection_um": 1e6 * flank.deflection,
+                "closing_um": 1e6 * flank.closing,
+                "backlash_um": 1e6 * flank.backlash,
+                "unloaded_path_mm": 1e3 * flank.path,
+                "to_inner_end_mm": 1e3 * flank.to_inner_end,
+                "to_outer_end_mm": 1e3 * flank.to_outer_end,
+                "pressure_angle_deg": degrees(flank.slope),
+            }
+            for name, flank in flanks.items()
+        ]
+    )
+
+
+def loaded_displaced_contact(
+    flanks: Mapping[str, DisplacedFlank],
+    tooth_pair: ToothPair,
+    contact: Contact,
+    bodies: tuple[Arrays, Arrays],
+    torques: Sequence[float],
+) -> Outcome:
+    """`by_torque` and `ltca` (tables) of both flanks under torques on the pinion, N m, rising.
+
+    bodies: arrays of stage compliance, of the pinion and the face gear. Raises NotConverged.
+    """
+    plan = replace(contact_plan(contact), root_stress=False)
+    met = [(flank.design, tuple(torques)) for flank in flanks.values()]
+    own, compliances = pair(tooth_pair), (from_arrays(bodies[0]), from_arrays(bodies[1]))
+    solved = list(met_contacts(own.design, own.materials, compliances, plan, met))
+    tables = {
+        name: pd.concat(
+            [getattr(each, name).assign(flank=flank) for flank, each in zip(flanks, solved, strict=True)],
+            ignore_index=True,
+        )
+        for name in ("by_torque", "ltca")
+    }
+    content = {
+        name: table[["flank", *(column for column in table.columns if column != "flank")]]
+        for name, table in tables.items()
+    }
+    return Outcome(content, f"contact of both flanks at {len(torques)} torques")

@@ -1,0 +1,173 @@
+"""Bearings with which a split-torque machine splits its torque: soft for inputs, stiff for idlers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.load_sharing.closed_form import SplitMachine
+from facegear.load_sharing.hunting import HuntingCycle, hunting_cycle, hunting_length
+from facegear.transmission.layout import Role
+from facegear.transmission.machine import Machine
+
+STIFF = 5.0
+"""Radial stiffness of a bearing over that of a mesh, where load sharing does not depend on it."""
+IDLERS = (5.0, 3.0, 2.0, 1.2, 0.7, 0.4, 0.2, 0.1, 0.06, 0.03)
+"""Radial stiffness of the idlers' bearings over that of a mesh, the stiffest tried first.
+
+Stiff idlers even out the inputs, soft ones even out the idlers among each other.
+"""
+AIMS = (1.20, 1.15, 1.10, 1.05)
+"""K_gamma of the inputs without errors, tried in this order; errors add to it."""
+SOFTEST = 0.005
+"""Softest radial bearing of an input over a mesh: some 2e6 N/m, a pinion on a quill shaft."""
+LARGEST_K_GAMMA, LEAST_K_GAMMA = 1.3, 0.7
+"""K_gamma up to which a split counts as right, and down to which that of idlers does."""
+POSITIONS, CYCLES = 2, 120
+"""Positions in each mesh cycle, and cycles of the hunting cycle, that an estimate takes."""
+
+
+@dataclass(frozen=True)
+class Bearings:
+    """Radial stiffness, N/m, of the bearings of inputs, idlers and face gears."""
+
+    inputs: float
+    idlers: float
+    gears: float
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """How a machine at rest shares its load over the hunting cycle, errors included.
+
+    Attributes
+    ----------
+    inputs : float
+        Largest K_gamma of a mesh of an input.
+    idlers : (2,) array
+        Least and largest K_gamma of the idlers' meshes that share a load, nan without idlers.
+    group_ratio : float
+        Largest load of a path over the mean of its group.
+    mesh_torques : (meshes,) array
+        Torque on a pinion, N m, that the mean load of each mesh balances.
+    """
+
+    inputs: float
+    idlers: Array
+    group_ratio: float
+    mesh_torques: Array
+
+    @property
+    def excess(self) -> float:
+        """Worst number over what a right split allows; at most 1 where the split is right."""
+        low, high = self.idlers
+        return float(
+            max(
+                self.inputs / LARGEST_K_GAMMA,
+                high / LARGEST_K_GAMMA,
+                LEAST_K_GAMMA / max(low, 1e-9),
+                self.group_ratio / LARGEST_K_GAMMA,
+            )
+        )
+
+
+@dataclass(frozen=True)
+class ChosenBearings:
+    """Bearings, and the split that they give."""
+
+    bearings: Bearings
+    split: Split
+
+
+def choose_bearings(
+    closed: SplitMachine,
+    wishes: tuple[float | None, float | None, float | None],
+    machine_with: Callable[[Bearings], Machine],
+) -> ChosenBearings:
+    """Choose the bearings of inputs and idlers by the closed form, and check them by the full statics.
+
+    Parameters
+    ----------
+    closed : SplitMachine
+        The machine in numbers.
+    wishes : tuple of three floats or None
+        Radial stiffness of inputs, idlers and gears, N/m, where it is given.
+    machine_with : callable
+        The machine with some bearings and its errors.
+
+    Returns
+    -------
+    ChosenBearings
+        The first bearings with a right split, else those that come nearest to one.
+    """
+    given_input, given_idler, given_gear = wishes
+    mesh = closed.mesh_stiffness
+    best: ChosenBearings | None = None
+    for idler in [given_idler] if given_idler is not None else [factor * mesh for factor in IDLERS]:
+        for aim in AIMS if given_input is None else AIMS[:1]:
+            soft = closed.input_bearing_for(aim, idler) if given_input is None else given_input
+            if given_input is None:
+                soft = min(max(soft, SOFTEST * mesh), STIFF * mesh) if isfinite(soft) else STIFF * mesh
+            bearings = Bearings(
+                rounded(soft), rounded(idler), rounded(STIFF * mesh) if given_gear is None else given_gear
+            )
+            found = ChosenBearings(bearings, split_of(machine_with(bearings)))
+            if best is None or found.split.excess < best.split.excess:
+                best = found
+            if found.split.excess <= 1.0:
+                return found
+    assert best is not None
+    return best
+
+
+def split_of(machine: Machine) -> Split:
+    """Estimate how the machine shares its load, by some cycles spread over the hunting cycle."""
+    run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // CYCLES, 1))
+    roles = [machine.layout.pinions[pinion].role for pinion, _ in machine.layout.meshes]
+    factors = run.mesh_load_factors
+    inputs = np.array([role is Role.INPUT for role in roles])
+    shared = np.zeros(inputs.size, dtype=bool)
+    for group in run.groups:
+        shared[list(group.meshes)] = True
+    idlers = factors[~inputs & shared]
+    return Split(
+        inputs=float(np.nanmax(factors[inputs])),
+        idlers=np.array([idlers.min(), idlers.max()]) if idlers.size else np.full(2, np.nan),
+        group_ratio=_group_ratio(run),
+        mesh_torques=run.loads.mean(axis=0) * machine.layout.pinion_arm,
+    )
+
+
+def _group_ratio(run: HuntingCycle) -> float:
+    ratios = [run.group_ratios(group).max() for group in run.groups if group.splits_load]
+    return float(max(ratios, default=np.nan))
+
+
+def smallest_torque(closed: SplitMachine, bearings: Bearings, torque: float) -> float:
+    """Torque of an input, N m, from which the softest bearing gives LARGEST_K_GAMMA without errors.
+
+    `torque`: that of the machine now, N m. Infinite where no torque is enough.
+    """
+    loop = closed.input_k_gamma(SOFTEST * closed.mesh_stiffness, bearings.idlers)
+    if loop <= LARGEST_K_GAMMA:
+        return torque
+    factors = 2.0 ** np.arange(0.25, 12.0, 0.25)
+    for factor in factors:
+        heavier = SplitMachine(
+            closed.inputs,
+            closed.idlers,
+            closed.input_force * float(factor),
+            closed.mesh_stiffness,
+            closed.backlash,
+            closed.pressure_angle,
+        )
+        if heavier.input_k_gamma(SOFTEST * closed.mesh_stiffness, bearings.idlers) <= LARGEST_K_GAMMA:
+            return torque * float(factor)
+    return float("inf")
+
+
+def rounded(stiffness: float) -> float:
+    """Three significant digits, as a config writes it."""
+    return float(f"{stiffness:.3g}")

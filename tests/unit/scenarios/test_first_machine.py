@@ -1,0 +1,193 @@
+"""A machine to start from is complete, meshes freely, can be rated, splits its torque, and says why."""
+
+import random
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+
+import facegear
+from facegear.config.load import config_of
+from facegear.config.model import resolved
+from facegear.config.tooth_pair import pair
+from facegear.config.yaml_file import read_yaml
+from facegear.errors import ConfigError, FacegearError
+from facegear.geometry.analysis import analyse
+from facegear.strength.rating import pinion_form
+from facegear.variants.first_machine import Known, first_machine
+from facegear.variants.starting_teeth import ToothWishes, choose_teeth
+
+MACHINES = (
+    Known("small", 19, 57, 2, 50, 10000, pinions=3),
+    Known("paper", 23, 143, 3.75, 1300, 7500, 2),
+    Known("plain", 40, 120, 1, 5, 500, pressure_angle_deg=20),
+    Known("large", 25, 160, 6.35, 800, 5000, coarse=True),
+    Known("split", 23, 143, 3.75, 1300, 7500, pinions=2, idlers=3),
+    Known("odd", 19, 57, 2, 50, 10000, pinions=1, idlers=2),
+)
+TEETH = (5, 7, 9, 10, 11, 12, 14, 16, 17, 20, 25, 40)
+ANGLES = (17.5, 20.0, 22.5, 25.0, 27.5)
+KINDS = ((1, 0), (3, 0), (5, 0), (2, 3), (1, 2))
+"""Inputs and idlers of the five machines that are made of every pair of teeth."""
+MODULE = 3.0
+NAMED = re.compile(r"no teeth for .*: (the contact ratio is|the teeth of every candidate interfere)")
+
+
+def values_of(text, folder):
+    path = folder / "own.yaml"
+    path.write_text(text)
+    return read_yaml(path)
+
+
+@cache
+def pairs_of_teeth():
+    """Sixty pairs of tooth numbers and pressure angles, drawn by a fixed seed over the whole range."""
+    draw = random.Random(50)
+    return [(teeth, round(teeth * draw.uniform(3, 7)), angle) for teeth in TEETH for angle in ANGLES]
+
+
+def torque_for(teeth, unit_load, idlers):
+    """Torque of an input, N m, that gives a mesh F_t/(b m) in MPa on 6.4 modules of face."""
+    force = unit_load * 6.4 * MODULE * MODULE
+    return force * MODULE * teeth / 2e3 * (2 if idlers else 1)
+
+
+@pytest.mark.parametrize("teeth", TEETH)
+def test_every_machine_of_a_grid_passes_check_or_has_no_teeth(teeth, tmp_path):
+    """Of 63 starter machines 19 had interfering teeth and 7 were refused."""
+    draw = random.Random(teeth)
+    for pinion, gear, angle in [one for one in pairs_of_teeth() if one[0] == teeth]:
+        for pinions, idlers in KINDS:
+            torque = torque_for(pinion, draw.uniform(20, 60), idlers)
+            known = Known("own", pinion, gear, MODULE, torque, 3000, pinions, angle, idlers)
+            try:
+                machine = first_machine(known)
+            except FacegearError as error:
+                assert teeth < 12 and NAMED.match(str(error)), error
+                continue
+            config = config_of(values_of(machine.text, tmp_path))
+            assert not idlers or "worse than" not in "".join(machine.expected)
+            assert config.tooth_pair.face_gear_teeth == gear
+
+
+@pytest.mark.parametrize("known", MACHINES, ids=lambda known: known.case)
+def test_chosen_teeth_mesh_freely_at_more_positions_and_can_be_rated(known, tmp_path):
+    config = config_of(values_of(first_machine(known).text, tmp_path))
+    design = pair(config.tooth_pair).design
+    analysis = analyse(design, 48)
+    assert analysis.interference is None
+    assert analysis.contact_ratio > 1.05
+    assert design.shaper.tip_rounding > 0.0
+    assert np.isfinite(pinion_form(design, analysis.contact_ratio).notch_parameter)
+
+
+@pytest.mark.parametrize("known", MACHINES, ids=lambda known: known.case)
+def test_what_a_user_knows_is_enough_for_a_config_without_mistakes(known, tmp_path):
+    values = resolved(config_of(values_of(first_machine(known).text, tmp_path)))
+    assert values["tooth_pair"]["face_gear_teeth"] == known.face_gear_teeth
+    machine = values["transmission"]
+    assert machine["torque"]["per_input_n_m"] == known.torque_n_m
+    roles = [pinion["role"] for pinion in machine["pinions"]]
+    assert (roles.count("input"), roles.count("idler")) == (known.pinions, known.idlers)
+    assert len(machine["face_gears"]) == (2 if known.idlers else 1)
+    assert len(values["strength"]["duty"]) == 1 and values["lubrication"] is not None
+
+
+def with_constant_stiffness(known, tmp_path):
+    """The written machine with one mesh stiffness, so that no contact analysis is needed."""
+    values = values_of(first_machine(known).text, tmp_path)
+    face = values["tooth_pair"]["face_gear"]
+    stiffness = 1.4e7 * (face["outer_radius_mm"] - face["inner_radius_mm"])
+    values["mesh_stiffness"] = {"source": "harmonics", "table": [{"order": 0, "cos_n_per_m": stiffness}]}
+    values["transmission"]["transmission_error"] = {"amplitude_um": 0}
+    del values["strength"], values["lubrication"]
+    return values, facegear.load(values)
+
+
+def test_idlers_lead_what_the_lower_gear_takes_to_the_upper_one(tmp_path):
+    _, gearbox = with_constant_stiffness(MACHINES[4], tmp_path)
+    power = gearbox.statics().table().set_index("mesh")["power_kw"]
+    lower = power[[mesh.endswith("/lower") for mesh in power.index]]
+    assert lower.sum() == pytest.approx(0.0, abs=1e-6 * power.abs().max())
+    assert lower[["input 1/lower", "input 2/lower"]].min() > 0.0
+    assert lower[["idler 1/lower", "idler 2/lower", "idler 3/lower"]].max() < 0.0
+
+
+@pytest.mark.parametrize(
+    "known",
+    [
+        Known("split", 23, 143, 3.75, 1328, 7500, pinions=2, idlers=3),
+        Known("light", 22, 101, 3.5, 300, 3000, pinions=2, idlers=2),
+    ],
+    ids=lambda known: known.case,
+)
+def test_a_split_torque_machine_splits_its_torque_as_it_says(known, tmp_path):
+    """It shared nothing: K_gamma was 1.999, and idlers carried 0.1 %."""
+    _, gearbox = with_constant_stiffness(known, tmp_path)
+    groups = gearbox.hunting().table().set_index("group")
+    said = first_machine(known).expected[1]
+    inputs, _, highest, ratio = map(float, re.findall(r"\d+\.\d+|\d+", said.partition(" (")[0]))
+    found = groups["k_gamma"].filter(like="input").max()
+    assert found == pytest.approx(inputs, rel=0.1) and found <= 1.3
+    assert groups.loc["idlers", "k_gamma"] == pytest.approx(highest, rel=0.1)
+    assert 0.7 <= groups.loc["idlers", "k_gamma"] <= 1.3
+    assert groups["group_ratio"].max() == pytest.approx(ratio, rel=0.1)
+    assert groups["group_ratio"].max() <= 1.3 * 1.02
+
+
+def test_every_mesh_at_rest_lies_inside_the_torques_of_the_contact_analysis(tmp_path):
+    values, gearbox = with_constant_stiffness(MACHINES[4], tmp_path)
+    at_rest = gearbox.statics().table()["pinion_torque_n_m"].abs()
+    torques = values["contact"]["torques_n_m"]
+    assert torques[0] < at_rest.min() and at_rest.max() < torques[-1]
+
+
+def test_a_load_too_small_to_share_says_what_is_nearest():
+    known = Known("light", 23, 143, 3.75, 20, 7500, pinions=2, idlers=5)
+    (line,) = [line for line in first_machine(known).expected if "worse than" in line]
+    assert re.search(r"F_t/\(b m\) = 2\.06 MPa; nearest: at least", line)
+
+
+def test_a_load_too_light_for_the_contact_analysis_names_the_nearest():
+    with pytest.raises(FacegearError, match=r"^torque_n_m = 0\.01: the contact analysis .* nearest: 2\.02$"):
+        first_machine(Known("own", 23, 143, 3.75, 0.01, 7500))
+
+
+def test_the_chosen_bodies_are_those_of_a_steel_ring(tmp_path):
+    machine = values_of(first_machine(MACHINES[1]).text, tmp_path)
+    pinion, width = machine["transmission"]["pinion"], machine["tooth_pair"]["pinion"]
+    outer, bore = 0.5 * 3.75 * 23, width["bore_radius_mm"]
+    volume = np.pi * (outer**2 - bore**2) * width["width_mm"]
+    assert pinion["mass_kg"] == pytest.approx(7850e-9 * volume, rel=1e-3)
+    gyration = 1e-6 * (outer**2 + bore**2) / 2
+    assert pinion["inertia_kg_m2"] == pytest.approx(pinion["mass_kg"] * gyration, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "place"),
+    [
+        ("profile_shift_modules", 0.2, ("tooth_pair", "pinion", "profile_shift_modules")),
+        ("gear_addendum_modules", 0.7, ("tooth_pair", "face_gear", "addendum_modules")),
+        ("shaper_teeth", 24, ("tooth_pair", "shaper", "teeth")),
+        ("thinning_um", 90.0, ("tooth_pair", "pinion", "thinning_um")),
+        ("pinion_mass_kg", 3.0, ("transmission", "pinion", "mass_kg")),
+        ("mesh_damping_n_s_per_m", 900.0, ("transmission", "damping", "mesh_n_s_per_m")),
+        ("input_bearing_n_per_m", 2e8, ("transmission", "pinion", "bearing_stiffness_n_per_m", "x")),
+    ],
+)
+def test_a_given_value_stands_in_the_config(key, value, place, tmp_path):
+    found = values_of(first_machine(Known("own", 23, 143, 3.75, 600, 7500, **{key: value})).text, tmp_path)
+    for name in place:
+        found = found[name]
+    assert found == value
+
+
+def test_a_machine_without_load_is_refused_in_one_line():
+    with pytest.raises(ConfigError, match=r"^torque_n_m = 0: must be above 0$"):
+        first_machine(Known("own", 23, 143, 3.75, 0, 7500))
+
+
+def test_too_few_teeth_are_refused_by_the_geometric_reason():
+    with pytest.raises(FacegearError, match=r"the contact ratio is 0\.\d+ at most, below 1\.05"):
+        choose_teeth(ToothWishes(6, 40, 3.0, 25.0))

@@ -1,1 +1,0 @@
-"""Process control of a run: what it prints, how it ends, and what a killed one has left behind."""
