@@ -61,6 +61,7 @@ def test_each_command_of_the_page_works_in_turn(folder, capsys):
     )
     for name in ("modal/frequencies.csv", "dynamics/sweep.csv", "figures/campbell.svg"):
         assert (folder / "results" / "own" / name).is_file(), name
+    assert not list(folder.rglob("*.png")), "pictures are drawn on request"
 
 
 def test_what_is_not_given_is_asked_and_an_empty_answer_takes_the_default(folder, monkeypatch):
