@@ -24,7 +24,7 @@ LIGHT = {
     "transmission_error: from_contact": "transmission_error: {amplitude_um: 5}",
     "points: 12, chunks: 1": "points: 2, chunks: 1",
 }
-"""What a test changes in the config, so that no contact is solved."""
+"""What a test changes in the config beside leaving out the rating, so that no contact is solved."""
 
 
 @cache
@@ -49,6 +49,7 @@ def test_each_command_of_the_page_works_in_turn(folder, capsys):
     for old, light in LIGHT.items():
         assert old in text
         text = text.replace(old, light)
+    text = re.sub(r"(?ms)^strength:.*?^transmission:", "transmission:", text)
     (folder / "own.yaml").write_text(text)
     assert [command[1] for command in others] == ["check", "report", "run"]
     for command in others:
