@@ -121,13 +121,14 @@ def installed_version() -> str:
 def _new(given: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
     from facegear.variants.first_machine import Known, first_machine
-    from facegear.variants.gear_unit import known_of_rexs
+    from facegear.variants.gear_unit import RexsPinions, known_of_rexs
 
     if given.config.exists():
         raise FacegearError(f"{given.config}: exists already; choose another name")
     if given.config.suffix not in (".yaml", ".yml"):
         raise FacegearError(f"{given.config}: must end in .yaml")
-    read = {} if given.rexs is None else known_of_rexs(given.rexs)
+    rexs = RexsPinions({}, ()) if given.rexs is None else known_of_rexs(given.rexs)
+    read = dict(rexs.values)
     if given.idlers and given.pinions is None and "pinions" in read:
         read["pinions"] = max(read["pinions"] - given.idlers, 0)
     own = {name: value for name, value in vars(given).items() if value is not None}
@@ -142,7 +143,7 @@ def _new(given: argparse.Namespace) -> int:
             load_config(temporary)
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
-    print(*machine.expected, sep="\n")
+    print(*rexs.notes, *machine.expected, sep="\n")
     print(f"{given.config}: written; `facegear report {given.config}` computes it")
     return 0
 
