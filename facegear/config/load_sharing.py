@@ -40,6 +40,12 @@ class LoadSharing(Section):
         le=100_000,
         description="mesh cycles for which the running machine is followed while runouts turn; null: all",
     )
+    required_k_gamma: float | None = Field(
+        None,
+        ge=1.0,
+        le=100.0,
+        description="largest mesh load factor K_gamma allowed, judged in the report; null: not judged",
+    )
 
 
 def sharing_options(section: LoadSharing) -> SharingOptions:

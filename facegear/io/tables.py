@@ -10,7 +10,7 @@ from facegear.errors import CorruptFile
 from facegear.io.atomic import atomic_path
 from facegear.io.checksums import verify
 
-NAMES = ("body", "mesh", "body_or_mesh", "pinion", "group", "study", "point", "label", "reason")
+NAMES = ("body", "mesh", "body_or_mesh", "pinion", "group", "study", "point", "label", "reason", "caveat")
 """Columns of names that a user has given, or of sentences that may be empty."""
 
 

@@ -57,6 +57,7 @@ SAFETY_COLUMNS = (
     "reliability",
     "nearest_limit",
     "reason",
+    "caveat",
     "within_torques_solved",
 )
 SCUFFED_COLUMNS = ("scuffing_safety", "scuffing_margin_k", "smallest_film_ratio", "micropitting_safety")
@@ -73,6 +74,7 @@ RATING_COLUMNS = (
     "required",
     "verdict",
     "reason",
+    "caveat",
     "damage",
     "life_hours",
     "reliability",
@@ -111,13 +113,13 @@ DUTY_SPECTRUM_COLUMNS = ("bin", "body", "gear", "flank", "mesh", "fraction", "fo
 RATING_FINITE = tuple(
     name
     for name in RATING_COLUMNS
-    if name not in ("stress_error_mpa", "reason", "damage", "life_hours", "reliability")
+    if name not in ("stress_error_mpa", "reason", "caveat", "damage", "life_hours", "reliability")
 )
 DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 SAFETY_FINITE = tuple(
     name
     for name in SAFETY_COLUMNS
-    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability", "reason")
+    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability", "reason", "caveat")
 )
 MAY_BE_UNKNOWN = ("largest_error_mpa", "at_30_deg_mpa")
 ROOT_STRESS_BY_FLANK_FINITE = tuple(

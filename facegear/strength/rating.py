@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import pi, sqrt, tan
+from math import isfinite, pi, sqrt, tan
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from facegear.contact.columns import FILLET_CONTACT
 from facegear.errors import FacegearError
 from facegear.geometry.bodies import BODIES
 from facegear.geometry.design import PairDesign
+from facegear.number_format import format_number
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import FlankDuty
 from facegear.strength.factors import (
@@ -115,24 +116,32 @@ class Rated:
 
     @property
     def verdict(self) -> str:
-        """green: as safe as required; amber: lasts the duty cycle; red: does not.
-
-        Never green where there are `reasons`.
-        """
-        if self.safety < 1.0:
-            return "red"
-        return "green" if self.safety >= self.required and not self.reasons else "amber"
+        """green: as safe as required; red: less safe. `caveats` never change it."""
+        return "green" if self.safety >= self.required else "red"
 
     @property
-    def reasons(self) -> tuple[str, ...]:
-        """Why it is not green although as safe as required: loads whose stress is not known."""
-        reasons = []
+    def reason(self) -> str:
+        """Why it is red: the damage with the life that follows, or the safety that lacks; empty if green."""
+        if self.verdict == "green":
+            return ""
+        harm = float(self.damage.sum())
+        if not isfinite(harm):
+            return "the first load breaks the tooth"
+        if harm <= 1.0:
+            return f"safety {self.safety:.2f}, {self.required:g} required"
+        hours = self.life / 3600.0
+        return f"damage {harm:.3g} in {format_number(harm * hours)} h, life {format_number(hours)} h"
+
+    @property
+    def caveats(self) -> tuple[str, ...]:
+        """Loads whose stress the method does not know."""
+        caveats = []
         if self.failure == "pitting" and self.edge_load >= EDGE:
-            reasons.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
+            caveats.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
         if self.fillet_share >= FILLET_CONTACT:
             carried = f"fillets carry up to {100 * self.fillet_share:.2g} % of the torque"
-            reasons.append(f"{carried}, kept out of pressure and root stress")
-        return tuple(reasons)
+            caveats.append(f"{carried}, kept out of pressure and root stress")
+        return tuple(caveats)
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from facegear.strength.root_stress import RootStress
 
 POINTS = 61
 """Of a curve of allowed stress."""
-WORST_FIRST = ("red", "amber", "green")
+WORST_FIRST = ("red", "green")
 
 
 def safety_table(ratings: Sequence[Rated], pressure: ContactPressure) -> pd.DataFrame:
@@ -44,11 +44,20 @@ def safety_table(ratings: Sequence[Rated], pressure: ContactPressure) -> pd.Data
                 min(rating.life for rating in ways) / 3600.0,
                 float(np.prod(known)) if known else np.nan,
                 f"{nearest.failure} ({nearest.method})",
-                "; ".join(dict.fromkeys(reason for rating in ways for reason in rating.reasons)),
+                "; ".join(f"{rating.failure}: {rating.reason}" for rating in worst_ways(ways) if rating.reason),
+                "; ".join(dict.fromkeys(caveat for rating in ways for caveat in rating.caveats)),
                 all(bool(_within(rating, pressure).all()) for rating in ways),
             )
         )
     return _stated(pd.DataFrame(rows, columns=list(SAFETY_COLUMNS)), ratings)
+
+
+def worst_ways(ways: Sequence[Rated]) -> list[Rated]:
+    """Return of each failure the method with the smallest safety."""
+    return [
+        min((rating for rating in ways if rating.failure == failure), key=lambda rating: rating.safety)
+        for failure in dict.fromkeys(rating.failure for rating in ways)
+    ]
 
 
 def rating_table(
@@ -69,7 +78,8 @@ def rating_table(
             rating.safety,
             rating.required,
             rating.verdict,
-            "; ".join(rating.reasons),
+            rating.reason,
+            "; ".join(rating.caveats),
             float(rating.damage.sum()),
             rating.life / 3600.0,
             rating.reliability,

@@ -9,12 +9,16 @@ import pytest
 
 pytestmark = pytest.mark.xdist_group("import_directions")  # a module is parsed once a process
 PACKAGE = Path(__file__).parents[2] / "facegear"
-FOUNDATION = {"arrays", "blas_threads", "by_content", "errors", "progress", "io", "machine_code", "ties"}
+FOUNDATION = {
+    *("arrays", "blas_threads", "by_content", "errors", "progress", "io", "machine_code", "number_format"),
+    "ties",
+}
 MAY_IMPORT = {
     "arrays": set(),
     "blas_threads": set(),
     "by_content": set(),
     "errors": set(),
+    "number_format": set(),
     "progress": set(),
     "ties": set(),
     "machine_code": set(),

@@ -2,14 +2,16 @@
 
 from facegear.config.changes import TEETH
 from facegear.pipeline import asked
-from facegear.pipeline.stage import From, Needs, from_stage
+from facegear.pipeline.stage import Computed, From, Needs, from_stage
 
 PAIR: Needs = {"tooth_pair": "tooth_pair"}
 MACHINE: Needs = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
 SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
 ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}
 SWEEP: Needs = {"sweep": "dynamics.sweep"}
-SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": "load_sharing"}
+OPTIONS = Computed(asked.load_sharing_options, ("load_sharing",))
+"""How load sharing is averaged."""
+SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": OPTIONS}
 
 FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in asked.BODIES}
 LAW = {"law": From("mesh_law", "law", when=asked.load_dependent)}

@@ -7,6 +7,7 @@ from facegear.pipeline.rows.shared import (
     HARMONICS,
     MACHINE,
     MOVING,
+    OPTIONS,
     SHARING,
     SPEED,
     TOOTH_ERRORS,
@@ -88,7 +89,7 @@ ROWS = (
             **MACHINE,
             **ACCURACY,
             "range_accuracy": "dynamics.sweep.accuracy",
-            "options": "load_sharing",
+            "options": OPTIONS,
         },
         upstream=MOVING,
         files={

@@ -1,7 +1,7 @@
 """Machines with their tolerances, and designs that are searched."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, PAIR, SHARING, SPEED
+from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
 from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
@@ -24,7 +24,7 @@ SEARCHED: Needs = {
     **ACCURACY,
     **SPEED,
     "transmission": "transmission",
-    "options": "load_sharing",
+    "options": OPTIONS,
     "search": "search",
     "tolerances": "tolerances",
     "pair": Computed(asked.pair_where(asked.searched_contact), asked.PAIR_SECTIONS),

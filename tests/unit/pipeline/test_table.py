@@ -12,7 +12,7 @@ from facegear.config.arguments import typed_arguments
 from facegear.config.cases import expand_cases
 from facegear.config.load import load_config
 from facegear.pipeline.listing import listing
-from facegear.pipeline.needs import resolved_needs, stages_before
+from facegear.pipeline.needs import resolved_needs, stage_needs, stages_before
 from facegear.pipeline.reported import REPORTED, table_name
 from facegear.pipeline.stage import FIGURES, Case, load
 from facegear.pipeline.table import STAGES
@@ -142,3 +142,12 @@ def test_the_report_is_given_every_table_that_its_chapters_read():
     read |= set(SHAFT_TABLES)
     assert len(read) > 20
     assert read <= {*stems, "duty_loads", "scorecard"}
+
+
+def test_the_limit_of_load_sharing_makes_no_stage_run_again():
+    """It only judges; the dynamics took minutes again."""
+    values = facegear.example().values
+    limited = facegear.example().with_values({"load_sharing.required_k_gamma": 1.3}).values
+    assert limited["load_sharing"]["required_k_gamma"] == 1.3
+    for name in ("load_sharing", "load_sharing_reference"):
+        assert stage_needs(name, values) == stage_needs(name, limited)

@@ -54,14 +54,14 @@ def test_a_flank_has_the_least_safety_of_its_meshes_over_the_duty_cycle():
 
 def test_a_contact_too_hot_for_the_oil_is_never_green_and_says_why():
     found = with_scuffing(SAFETY, SPECTRUM, losses())
-    assert found["verdict"].tolist() == ["green", "red", "amber"]
+    assert found["verdict"].tolist() == ["green", "red", "red"]
     assert found["reason"].tolist() == [
         "",
         "teeth break; safety against scuffing 0.80",
         "tips touch; safety against scuffing 0.90",
     ]
     thin = with_scuffing(SAFETY, SPECTRUM, losses(micropitting_safety=0.5))
-    assert thin["verdict"].tolist() == ["amber", "red", "amber"]
+    assert thin["verdict"].tolist() == ["red", "red", "red"]
 
 
 def test_the_first_screen_names_the_mesh_nearest_to_scuffing():
