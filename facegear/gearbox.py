@@ -530,9 +530,9 @@ class Gearbox:
         """
         from facegear.results.tooth_errors import ToothErrorsResult
 
-        bodies = filter(None, (self.config.tooth_pair.pinion, self.config.tooth_pair.face_gear))
-        grids = [body.flanks.grids for body in bodies]
-        if grids and all(grid.tooth is None for given in grids for grid in given):
+        pair = self.config.tooth_pair
+        flanks = [body.flanks for body in (pair.pinion, pair.face_gear) if body is not None]
+        if flanks and all(grid.tooth is None for given in flanks for grid in given.grids):
             allowed = "given for single teeth of pinion or face_gear: all are alike"
             raise ConfigError("tooth_pair.pinion.flanks.grids", [], allowed)
         return self._chain.result(ToothErrorsResult)
