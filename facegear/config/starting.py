@@ -62,8 +62,8 @@ def starting_config(known: Known) -> str:
     if known.idlers < 0:
         raise ConfigError("idlers", known.idlers, "0 or more")
     if known.pinions + known.idlers > MAX_PINIONS:
-        most = MAX_PINIONS - known.idlers
-        raise ConfigError("pinions", known.pinions, f"at most {most}, with {known.idlers} idlers beside them")
+        allowed = f"at most {MAX_PINIONS} together with the {known.idlers} idlers"
+        raise ConfigError("pinions", known.pinions, allowed)
     inner, outer, allowed = _face(known)
     module, speed = known.module_mm, known.speed_rpm
     torque = known.torque_n_m / len(_gears(known))
