@@ -125,9 +125,9 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
     if kind == "missing":
         return [f"{key} = (missing): this key is required"]
     if kind in ("too_short", "too_long"):
-        most, name = (False, "min_length") if kind == "too_short" else (True, "max_length")
+        words, name = ("at least", "min_length") if kind == "too_short" else ("at most", "max_length")
         count = details["ctx"][name]
-        items = f"{'at most' if most else 'at least'} {count} item{'s' * (count != 1)}"
+        items = f"{words} {count} item{'s' * (count != 1)}"
         return [f"{key} = {_shown(details['input'])}: must have {items}, not {len(details['input'])}"]
     message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
     message = message.replace("should ", "must ", 1)
