@@ -125,7 +125,7 @@ TABLES: Mapping[str, Table] = {
     "contact/by_torque.csv": Table(("torque_n_m",), errors=CONTACT),
     "contact/ltca.csv": Table(("torque_n_m", "position"), errors=CONTACT, zero=RESIDUALS),
     "stiffness/harmonics.csv": Table(
-        ("order",), errors={"a_n": 3e-3, "b_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
+        ("order",), errors={"sin_n": 3e-3, "cos_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
     ),
     "stiffness/tvms.csv": Table(("position",), errors={"k_": 3e-3}),
     "dynamics/summary.csv": Table(
