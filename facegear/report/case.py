@@ -1,16 +1,20 @@
 """What the report of a case holds, from the machine as configured to what made each file."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from facegear.arrays import Arrays
+from facegear.number_format import counted
 from facegear.report.contents import CHAPTERS, FRICTION, POSES, SHAFTS, STUDIED_CONTACT, caption_of
-from facegear.report.glance import glance_chapter
+from facegear.report.first_screen import first_screen
 from facegear.report.machine import Base, machine_chapter
-from facegear.report.page import Chapter, Picture, Table, View, render
+from facegear.report.page import Chapter, Picture, View, render
 from facegear.report.poses import pose_tables, pose_text
+from facegear.report.table import Table
 from facegear.ties import first_largest_rows
 
 BY_TORQUE = (
@@ -61,8 +65,8 @@ SAFETY = (
     "what tip "
     "edges carry under the largest torque, where pressure has no limit. life: the shortest of all; inf: no "
     "load does damage. reliability: at the end of the duty cycle, where the material card gives a Weibull "
-    "shape and a load does damage. green: as safe as required; amber: less safe than required, but outlasts "
-    "the duty cycle; red: fails within the duty cycle"
+    "shape and a load does damage. green: as safe as required; red: less safe, for the reason given. caveat: "
+    "what the method does not know; it never changes the colour"
 )
 RATING = "Every kind of failure with its limits; the stress is that of the hardest load"
 DUTY_LOADS = (
@@ -107,7 +111,7 @@ JUMPS = (
     f"{100 * NEAR_RESONANCE:.0f} % away from it, and so belongs to no linear resonance of that mode"
 )
 DRAWINGS = ("layout", "machine", "tooth_pair")
-"""Figures that show the machine; the first that exists stands on the first screen."""
+"""Figures that show the machine; the first that exists stands in the chapter on the machine."""
 LONG_TABLE = 40
 """Rows of natural frequencies above which their table is folded."""
 
@@ -122,13 +126,14 @@ def case_report(
     bodies: View | None = None,
     base: Base | None = None,
     notes: Sequence[str] = (),
+    pressure: Arrays | None = None,
 ) -> str:
     """The HTML page of a case.
 
     values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules;
     pair: the record of the tooth geometry, view: the pair in mesh, bodies: modes of face gears that bend, if
     they were computed; base: the config file that the case's own extends; notes: what a run says of its
-    config when it starts.
+    config when it starts; pressure: arrays of the contact analysis.
     Chapters without a picture or table are left out.
     """
     known = {name for _, _, names in CHAPTERS for name in names}
@@ -137,7 +142,7 @@ def case_report(
     added = {STUDIED_CONTACT: studied, "Load sharing": [name for name in others if name not in studied]}
     drawing = next((name for name in DRAWINGS if name in pictures), None)
     drawn = () if drawing is None else (Picture(pictures[drawing], caption_of(drawing, values)),)
-    chapters = [glance_chapter(values, tables, drawn, pair, notes), machine_chapter(values, tables, base)]
+    chapters = [machine_chapter(values, tables, pair, drawn, base)]
     for title, text, names in CHAPTERS:
         shown = [*names, *added.get(title, ())]
         shown_pictures = [
@@ -154,11 +159,34 @@ def case_report(
         chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))
     chapters.append(_provenance(manifests))
-    lead = (
-        f"Results of facegear for the case {values['case']}, in the order of computation. "
-        "Every table can be saved as csv."
-    )
-    return render(f"facegear: {values['case']}", lead, chapters)
+    first = first_screen(values, tables, pair, pressure, notes)
+    return render(str(values["case"]), lead(values, manifests), chapters, first)
+
+
+def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> str:
+    """Return the line below the title: what machine it is, and what computed it.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the config.
+    manifests : sequence of mapping
+        Records of the stages; of each its versions.
+
+    Returns
+    -------
+    str
+        One line.
+    """
+    transmission = values["transmission"]
+    parts = ["Pinion and face gear"]
+    if transmission is not None:
+        roles = Counter(pinion["role"] for pinion in transmission["pinions"])
+        counts = [counted(count, f"{role} pinion") for role, count in roles.items()]
+        parts = [*counts, counted(len(transmission["face_gears"]), "face gear")]
+    versions = {item for manifest in manifests for item in manifest["versions"].items()}
+    made = sorted(f"{name} {version}" for name, version in versions if name == "facegear")
+    return " · ".join([", ".join(parts), *made])
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:

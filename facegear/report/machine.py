@@ -5,19 +5,19 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
+from facegear.number_format import counted, format_number
+from facegear.report.balance import BALANCED, rated
+from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
 from facegear.report.inputs import SOURCES
-from facegear.report.page import Chapter, Table, number
+from facegear.report.page import Chapter, Picture
+from facegear.report.table import Table
 
 KINEMATICS = {
     "geometric": "geometric, lever arms and signs as gears have them",
     "printed": "printed, equation (13) of the source paper to the letter (docs/theory.md)",
 }
-BALANCED = 1e-9
-"""Relative difference of power in and out that is rounding."""
 NAMES = ("case", "reproduction")
 """Keys that say nothing of the machine."""
-EXACT = 12
-"""Significant digits of the config's numbers."""
 
 
 class Base(NamedTuple):
@@ -56,21 +56,46 @@ NUMBERS = {
 
 
 def machine_chapter(
-    values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], base: Base | None = None
+    values: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    pair: Mapping[str, Any] | None = None,
+    drawn: Sequence[Picture] = (),
+    base: Base | None = None,
 ) -> Chapter:
-    """Config, torques and powers; `tables` may hold ratings, bodies, meshes."""
-    listed = []
+    """Write the chapter on the machine.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the config.
+    tables : mapping of str to DataFrame
+        Tables of the report by name; may hold ratings, bodies, meshes.
+    pair : mapping or None
+        Record of the tooth geometry, where it was computed.
+    drawn : sequence of Picture
+        Drawings of the machine.
+    base : Base or None
+        The config file that the case's own extends.
+
+    Returns
+    -------
+    Chapter
+        Key numbers, data of both gears, torques, powers and config.
+    """
+    numbers = key_numbers(tables, pair)
+    listed = [Table("Key numbers", numbers)] if len(numbers) else []
+    if pair is not None:
+        listed.append(Table(DATA_SHEET, data_sheet_table(pair)))
     if "bodies" in tables:
-        listed = [
-            Table("Torque and power of every body; positive values are brought in", tables["bodies"], 5),
+        listed += [
+            Table("Torque and power of every body; positive values are brought in", tables["bodies"]),
             Table(
                 "Every mesh at rest, with mean stiffness; the force acts along the line of action",
                 tables["meshes"],
-                5,
             ),
         ]
     config = _config_tables(values, base)
-    return Chapter("The machine as configured", _text(values, tables), (), [*listed, *config])
+    return Chapter("The machine as configured", _text(values, tables), drawn, [*listed, *config])
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
@@ -81,7 +106,7 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
         if name in known:
             value = known[name]
             parts = value if isinstance(value, tuple) else (value,)
-            rows.append((words, " to ".join(number(part, digits) for part in parts), unit))
+            rows.append((words, " to ".join(format_number(part, digits) for part in parts), unit))
     return pd.DataFrame(rows, columns=["quantity", "value", "unit"])
 
 
@@ -113,27 +138,6 @@ def _signed(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
     return numbers
 
 
-def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
-    """Numbers of the ratings by quantity, and the torques of what takes most power; empty without a machine.
-
-    That is a gear, or pinions: then neither the number of teeth nor the gear's speed is that of the output.
-    """
-    if "ratings" not in tables:
-        return {}
-    numbers = dict(tables["ratings"].itertuples(index=False))
-    driven = tables["bodies"][tables["bodies"]["power_kw"] < 0.0]
-    gears = driven["role"] == "face gear"
-    if len(driven) and driven.loc[~gears, "power_kw"].sum() < driven.loc[gears, "power_kw"].sum():
-        torques = dict.fromkeys(sorted(driven.loc[~gears, "torque_n_m"].abs()))
-        return {
-            **{name: value for name, value in numbers.items() if name != "gear_ratio"},
-            "speed_ratio": 1.0,
-            "output_pinions_n_m": tuple(torques),
-        }
-    torques = tables["bodies"].loc[tables["bodies"]["role"] == "face gear", "torque_n_m"]
-    return numbers | {"output_torque_n_m": float(torques.abs().max())}
-
-
 def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
     radii, limits = pair["radii_mm"], pair["limits_mm"]
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
@@ -162,8 +166,8 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
         )
     torque = transmission["torque"]
     return (
-        f"{_count(transmission['pinions'], 'pinion')} of {pair['pinion_teeth']} teeth and "
-        f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
+        f"{counted(len(transmission['pinions']), 'pinion')} of {pair['pinion_teeth']} teeth and "
+        f"{counted(len(transmission['face_gears']), 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
         f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
         f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. Mesh stiffness: {source}. "
         f"{_materials(values)}{_error(transmission['transmission_error'], tables)}"
@@ -217,10 +221,6 @@ def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
     )
 
 
-def _count(items: Sequence[Any], name: str) -> str:
-    return f"{len(items)} {name}" + ("" if len(items) == 1 else "s")
-
-
 def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
     """The pinions, and every key of the config that holds something; changes against the file extended."""
     rows = _keys(values)
@@ -234,8 +234,9 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
         own = ["changed" if differs else "" for differs in changed]
         there = [before.get(key, "") if rows.get(key) != before.get(key) else "" for key in frame["key"]]
         frame = frame.assign(**{f"against {base.name}": own, f"in {base.name}": there})
-        caption += f"; {sum(changed)} keys differ from {base.name}, which it extends"
-    config = Table(caption, frame, EXACT, folded=True)
+        differ = counted(sum(changed), "key differs", "keys differ")
+        caption += f"; {differ} from {base.name}, which it extends"
+    config = Table(caption, frame, folded=True, exact=True)
     if values["transmission"] is None:
         return [config]
     pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
@@ -257,9 +258,3 @@ def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
             return [row for i, item in enumerate(value) for row in _flat(f"{key}[{i}]", item)]
         return [(key, ", ".join(str(item) for item in value))]
     return [(key, value)]
-
-
-def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """The summary of load sharing of the machine itself; empty where there is none."""
-    summary = tables.get("summary")
-    return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]

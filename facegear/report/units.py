@@ -1,6 +1,8 @@
 """Units in names of columns and keys, as they are written."""
 
 UNITS = {
+    "kn": "kN",
+    "n_per_um": "N/µm",
     "n_per_mm": "N/mm",
     "n_per_m": "N/m",
     "n_m_per_rad": "N m/rad",
@@ -9,16 +11,18 @@ UNITS = {
     "deg": "deg",
     "mpa": "MPa",
     "hz": "Hz",
-    "um": "um",
+    "um": "µm",
     "mm": "mm",
     "kw": "kW",
     "kg_m2": "kg m2",
     "kg": "kg",
-    "urad": "urad",
+    "urad": "µrad",
     "percent": "%",
     "n": "N",
 }
 """Units that end a column's name, as they are written."""
+ENGINEERING = {"n_per_m": ("n_per_um", 1e-6, 0.0), "n": ("kn", 1e-3, 1e3)}
+"""Unit in which a table is written instead, its factor, and the largest number from which it is."""
 
 
 def unit_of(name: str) -> str:
