@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.number_format import counted, format_number
+from facegear.number_format import count_noun, format_number
 from facegear.report.balance import rated
 from facegear.report.compact import (
     Compact,
@@ -200,7 +200,7 @@ def _speed_and_torque(values: Mapping[str, Any]) -> Iterator[Key]:
         times = f"{len(torques)} × " if len(torques) > 1 else ""
         beside = f"{times}{next(iter(each))} N m in"
     else:
-        beside = f"{counted(len(torques), 'input')}"
+        beside = f"{count_noun(len(torques), 'input')}"
     speed = format_number(values["dynamics"]["speed_rpm"], 4)
     yield Key("Pinion speed, torque", f"{speed} rpm", beside)
 
@@ -304,7 +304,7 @@ def _jumps(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Ite
         return
     at = float(jumps.loc[(jumps["speed_after_rpm"] - speed).abs().idxmin(), "speed_after_rpm"])
     side = "above" if at >= speed else "below"
-    beside = f"{abs(100.0 * (at / speed - 1.0)):.0f} % {side} nominal; {counted(len(jumps), 'jump')}"
+    beside = f"{abs(100.0 * (at / speed - 1.0)):.0f} % {side} nominal; {count_noun(len(jumps), 'jump')}"
     yield Key("Nearest jump", f"{format_number(at, 4)} rpm", beside, definition)
 
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from facegear.number_format import counted, format_number
+from facegear.number_format import count_noun, format_number
 from facegear.report.balance import BALANCED, rated
 from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
 from facegear.report.inputs import SOURCES
@@ -33,23 +33,23 @@ NUMBERS = {
     "k_gamma": ("Mesh load factor K_gamma, largest, running", "", 4),
     "k_v": ("Dynamic factor K_v, largest, running", "", 4),
     "loss_percent": ("Friction loss of all meshes at the nominal load", "%", 3),
-    "gear_ratio": ("Gear ratio (gear teeth over pinion teeth)", "", 5),
-    "speed_ratio": ("Ratio of speeds, input over output pinion", "", 5),
-    "pinion_speed_rpm": ("Speed of the pinions", "rpm", 6),
-    "gear_speed_rpm": ("Speed of the face gears", "rpm", 6),
-    "output_torque_n_m": ("Torque of the output gear", "N m", 5),
-    "output_pinions_n_m": ("Torque of the output pinions", "N m", 5),
-    "mesh_frequency_hz": ("Mesh frequency", "Hz", 6),
-    "power_in_kw": ("Power brought in", "kW", 5),
-    "power_out_kw": ("Power taken out", "kW", 5),
-    "power_out_without_friction_kw": ("Power taken out, without friction", "kW", 5),
-    "power_out_with_friction_kw": ("Power taken out, less the friction loss of the meshes", "kW", 5),
+    "gear_ratio": ("Gear ratio (gear teeth over pinion teeth)", "", 4),
+    "speed_ratio": ("Ratio of speeds, input over output pinion", "", 4),
+    "pinion_speed_rpm": ("Speed of the pinions", "rpm", 4),
+    "gear_speed_rpm": ("Speed of the face gears", "rpm", 4),
+    "output_torque_n_m": ("Torque of the output gear", "N m", 4),
+    "output_pinions_n_m": ("Torque of the output pinions", "N m", 4),
+    "mesh_frequency_hz": ("Mesh frequency", "Hz", 4),
+    "power_in_kw": ("Power brought in", "kW", 4),
+    "power_out_kw": ("Power taken out", "kW", 4),
+    "power_out_without_friction_kw": ("Power taken out, without friction", "kW", 4),
+    "power_out_with_friction_kw": ("Power taken out, less the friction loss of the meshes", "kW", 4),
     "contact_ratio": ("Contact ratio, unloaded", "", 4),
-    "face_width_mm": ("Face width of the gear", "mm", 5),
-    "face_limits_mm": ("Radii without undercut and pointed teeth", "mm", 6),
-    "backlash_um": ("Backlash along the line of action, smallest", "um", 4),
-    "nominal_path_mm": ("Radius of the contact path, nominal", "mm", 6),
-    "unloaded_path_mm": ("Radius of the contact path, unloaded as assembled", "mm", 6),
+    "face_width_mm": ("Face width of the gear", "mm", 4),
+    "face_limits_mm": ("Radii without undercut and pointed teeth", "mm", 4),
+    "backlash_um": ("Backlash along the line of action, smallest", "µm", 4),
+    "nominal_path_mm": ("Radius of the contact path, nominal", "mm", 4),
+    "unloaded_path_mm": ("Radius of the contact path, unloaded as assembled", "mm", 4),
     "path_shift_mm": ("Shift of the unloaded contact path, positive outwards", "mm", 3),
 }
 """Key numbers in their order: words, unit, significant digits."""
@@ -165,9 +165,10 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
             "No transmission is configured: teeth, contact and stiffness alone."
         )
     torque = transmission["torque"]
+    pinions = count_noun(len(transmission["pinions"]), "pinion")
+    gears = count_noun(len(transmission["face_gears"]), "face gear")
     return (
-        f"{counted(len(transmission['pinions']), 'pinion')} of {pair['pinion_teeth']} teeth and "
-        f"{counted(len(transmission['face_gears']), 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
+        f"{pinions} of {pair['pinion_teeth']} teeth and {gears} of {pair['face_gear_teeth']} teeth, {teeth}"
         f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
         f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. Mesh stiffness: {source}. "
         f"{_materials(values)}{_error(transmission['transmission_error'], tables)}"
@@ -234,7 +235,7 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
         own = ["changed" if differs else "" for differs in changed]
         there = [before.get(key, "") if rows.get(key) != before.get(key) else "" for key in frame["key"]]
         frame = frame.assign(**{f"against {base.name}": own, f"in {base.name}": there})
-        differ = counted(sum(changed), "key differs", "keys differ")
+        differ = count_noun(sum(changed), "key differs", "keys differ")
         caption += f"; {differ} from {base.name}, which it extends"
     config = Table(caption, frame, folded=True, exact=True)
     if values["transmission"] is None:

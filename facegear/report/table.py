@@ -57,14 +57,14 @@ class Table:
     exact: bool = False
 
     @cached_property
-    def shown(self) -> pd.DataFrame:
+    def page_frame(self) -> pd.DataFrame:
         """Columns in the order of the page: main ones first; forces in kN and stiffnesses in N/µm."""
         known = [name for name in self.main if name in self.frame]
         others = [name for name in self.frame.columns if name not in known]
         table = self.frame[[*known, *others]] if known else self.frame
         return table if self.exact else _engineering(table)
 
-    def more(self) -> list[bool]:
+    def on_demand(self) -> list[bool]:
         """Return for each column whether it is shown on demand only."""
         main = sum(name in self.frame for name in self.main) or SHOWN_COLUMNS
         columns = len(self.frame.columns)
@@ -72,23 +72,23 @@ class Table:
 
     def header(self) -> list[str]:
         """Column names as words, with their units as they are written."""
-        return [words(str(name)) for name in self.shown.columns]
+        return [words(str(name)) for name in self.page_frame.columns]
 
     def numeric(self) -> list[bool]:
         """Of each column whether it holds numbers."""
         return [
             pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind)
-            for kind in self.shown.dtypes
+            for kind in self.page_frame.dtypes
         ]
 
     def rows(self) -> list[list[str]]:
         """Cells as text."""
-        units = [ending_of(str(name)) for name in self.shown.columns]
+        units = [ending_of(str(name)) for name in self.page_frame.columns]
         largest = {unit: self._largest(unit, units) for unit in set(units)}
         zero = [ROUNDING * largest[unit] for unit in units]
         return [
             [self._cell(*cell) for cell in zip(row, zero, strict=True)]
-            for row in self.shown.itertuples(index=False)
+            for row in self.page_frame.itertuples(index=False)
         ]
 
     def print_pt(self) -> float:
@@ -112,7 +112,7 @@ class Table:
 
     def _largest(self, unit: str, units: Sequence[str]) -> float:
         """The largest number of all columns with a unit; nothing for numbers without one."""
-        columns = [self.shown.iloc[:, i] for i, other in enumerate(units) if unit and other == unit]
+        columns = [self.page_frame.iloc[:, i] for i, other in enumerate(units) if unit and other == unit]
         floats = [column for column in columns if pd.api.types.is_float_dtype(column)]
         sizes = [column[np.isfinite(column)].abs().max() for column in floats]
         return max((float(size) for size in sizes if isfinite(size)), default=0.0)
@@ -128,7 +128,7 @@ class Table:
         if not isinstance(value, float):
             return "face gear" if value == "face_gear" else str(value)
         shown = 0.0 if abs(value) < zero else value
-        return format_number(shown, EXACT if self.exact else self.digits, grouped=not self.exact)
+        return format_number(shown, EXACT if self.exact else self.digits, group_digits=not self.exact)
 
 
 def _engineering(table: pd.DataFrame) -> pd.DataFrame:

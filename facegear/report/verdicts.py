@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.number_format import counted, format_number
+from facegear.number_format import count_noun, format_number
 from facegear.report.balance import BALANCED
 from facegear.ties import first_largest_row
 
@@ -120,7 +120,7 @@ def _rated(tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
     flanks = rows[["body", "flank"]].drop_duplicates()
     failing = rows.loc[rows["safety"] < rows["required"], ["body", "flank"]].drop_duplicates()
     if len(failing) > 1:
-        said += f" {len(failing)} of {counted(len(flanks), 'flank')} are below what is required."
+        said += f" {len(failing)} of {count_noun(len(flanks), 'flank')} are below what is required."
     marks = [mark for words, mark in MARKS.items() if rows["caveat"].str.contains(words).any()]
     if not rows["within_torques_solved"].all():
         marks.append(BEYOND)
@@ -165,7 +165,7 @@ def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
     if groups.empty:
         return Verdict(subject, GREY, "Not computed: no K_gamma is known of this machine.")
     worst = first_largest_row(groups, "k_gamma")
-    cycles = f" over {counted(int(worst['mesh_cycles']), 'mesh cycle')}" if "mesh_cycles" in worst else ""
+    cycles = f" over {count_noun(int(worst['mesh_cycles']), 'mesh cycle')}" if "mesh_cycles" in worst else ""
     state = "running" if "k_v" in worst else "at rest"
     found = f"K_gamma {worst['k_gamma']:.2f} ({worst['group']}, {state}{cycles})"
     if required is None:
@@ -214,10 +214,10 @@ def _at_rest(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
     contacts = tables.get("contacts", pd.DataFrame(columns=["contact", "state"]))
     undecided = contacts.loc[contacts["state"] == "undecided", "contact"].to_list()
     if idle:
-        failed = f"{counted(len(idle), 'mesh carries', 'meshes carry')} no load at rest"
+        failed = f"{count_noun(len(idle), 'mesh carries', 'meshes carry')} no load at rest"
         yield Verdict("Contact at rest", RED, f"No load at {', '.join(idle)}.", failure=failed)
     else:
-        marks = (f"{counted(len(undecided), 'contact')} undecided",) if undecided else ()
+        marks = (f"{count_noun(len(undecided), 'contact')} undecided",) if undecided else ()
         carried = meshes["force_n"].abs()
         smallest = f"{format_number(1e-3 * carried.min())} kN ({meshes['mesh'][carried.idxmin()]})"
         yield Verdict("Contact at rest", GREEN, f"Every mesh carries load; the smallest {smallest}.", marks)
@@ -257,7 +257,7 @@ def loads_beyond(tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
         if len(table) and not table["within_torques_solved"].all():
             outside = int((~table["within_torques_solved"].astype(bool)).sum())
             exceed = "exceeds" if outside == 1 else "exceed"
-            yield f"{outside:,} of {counted(len(table), singular, plural)} {exceed} it"
+            yield f"{outside:,} of {count_noun(len(table), singular, plural)} {exceed} it"
 
 
 def status_line(judged: Sequence[Verdict], found: str) -> tuple[str, str, str]:
@@ -280,10 +280,10 @@ def status_line(judged: Sequence[Verdict], found: str) -> tuple[str, str, str]:
     tail = f" {found}" if found else ""
     if red:
         others = len(red) - 1
-        more = f", and {counted(others, 'other verdict is', 'other verdicts are')} red" if others else ""
+        more = f", and {count_noun(others, 'other verdict is', 'other verdicts are')} red" if others else ""
         return RED, "Not as required:", f"{red[0].failure}{more}.{tail}"
     if green:
-        return GREEN, "As required:", f"{counted(green, 'verdict is', 'verdicts are')} green.{tail}"
+        return GREEN, "As required:", f"{count_noun(green, 'verdict is', 'verdicts are')} green.{tail}"
     return GREY, "Not judged:", f"no limit was given.{tail}"
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.hertz import DENTED
 from facegear.geometry.design import BACKLASH_DIFFERS_UM
-from facegear.number_format import counted, format_number
+from facegear.number_format import count_noun, format_number
 from facegear.report.balance import nominal
 
 POSITIONS_MATTER = 0.05
@@ -145,12 +145,9 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarnin
     motions = sweep.drop_duplicates(["direction", "speed_rpm"])
     irregular = ~motions["periodic"].astype(bool)
     if irregular.any():
-        yield ResultWarning(
-            "Motion",
-            LIMITED,
-            f"Motion is not periodic at {irregular.sum()} of {counted(len(motions), 'speed')} (up and down "
-            "sweeps together). Values there are time averages.",
-        )
+        share = f"{irregular.sum()} of {count_noun(len(motions), 'speed')} (up and down sweeps together)"
+        words = f"Motion is not periodic at {share}. Values there are time averages."
+        yield ResultWarning("Motion", LIMITED, words)
     gaps = sweep[sweep["quantity"] == "open_fraction"].groupby("body_or_mesh", sort=False)["value"]
     min_open, max_open = gaps.min(), gaps.max()
     if (always := min_open.index[min_open >= 1.0]).size:

@@ -26,12 +26,12 @@ def number_of(text):
 
 def test_key_numbers_are_ratio_torque_speed_frequency_and_power(example):
     numbers = key_numbers(example[1], None).set_index("quantity")
-    assert numbers.loc["Gear ratio (gear teeth over pinion teeth)", "value"] == f"{143 / 23:.5g}"
+    assert numbers.loc["Gear ratio (gear teeth over pinion teeth)", "value"] == f"{143 / 23:.4g}"
     assert numbers.loc["Mesh frequency", "value"] == "2,875"
     torque = number_of(numbers.loc["Torque of the output gear", "value"])
     speed = number_of(numbers.loc["Speed of the face gears", "value"])
     bodies = example[1]["bodies"].set_index("body")["power_kw"]
-    assert torque * speed * 3.14159265 / 30e3 == pytest.approx(-bodies["upper face gear"], rel=1e-4)
+    assert torque * speed * 3.14159265 / 30e3 == pytest.approx(-bodies["upper face gear"], rel=1e-3)
 
 
 def test_a_machine_in_balance_says_so_and_one_out_of_balance_by_how_much(example):

@@ -273,3 +273,16 @@ def test_a_still_on_the_page_shows_the_stored_drawing_dot_for_dot(browser, repor
     page.close()
     assert dark > 0.01, "the drawing is not empty"
     assert other < 1e-3 and larger == 0
+
+
+def test_the_toolbar_of_a_figure_never_covers_its_legend(opened):
+    page = opened()
+    drawn(page, OVER_SPEED).hover()
+    for part in (".legend", ".annotation", ".main-svg .gtitle"):
+        for box in page.locator(f"#{OVER_SPEED} {part}").all():
+            text, bar = (
+                box.bounding_box(),
+                page.locator(f"#{OVER_SPEED} .modebar-container .modebar").bounding_box(),
+            )
+            apart = text["y"] >= bar["y"] + bar["height"] or text["x"] + text["width"] <= bar["x"]
+            assert apart, (part, text, bar)
