@@ -11,6 +11,7 @@ from facegear.report.balance import BALANCED
 from facegear.ties import first_largest_row
 
 GREEN, RED, GREY = "green", "red", "grey"
+NOT_COMPUTED = "Not computed."
 BEYOND = "beyond torques solved"
 MARKS = {"tip edges": "edge contact", "fillets": "fillet contact"}
 """First words of a rating's caveat, and the mark that stands for it."""
@@ -66,7 +67,7 @@ def verdicts(
     """
     judged = [
         *_teeth(pair),
-        *(_rated(tables, failure) for failure in RATED),
+        *(_rated(values, tables, failure) for failure in RATED),
         *(_lubricated(values, tables, failure) for failure in OIL),
     ]
     if values["transmission"] is not None:
@@ -103,12 +104,12 @@ def nearest_rating(rating: pd.DataFrame) -> Any:
     return first_largest_row(rating.assign(spare=spare), "spare")
 
 
-def _rated(tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
+def _rated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
     """Judge bending or pitting by the flank nearest to its limit."""
     rating = tables.get("rating", pd.DataFrame(columns=["failure"]))
     rows = rating[rating["failure"] == failure]
     if rows.empty:
-        return Verdict(RATED[failure], GREY, "Not asked for (section strength).")
+        return _without_result(values, "strength", RATED[failure])
     row = nearest_rating(rows)
     colour = RED if (rows["safety"] < rows["required"]).any() else GREEN
     same = rows[(rows["body"] == row.body) & (rows["flank"] == row.flank) & (rows["method"] != row.method)]
@@ -127,6 +128,12 @@ def _rated(tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
     return Verdict(RATED[failure], colour, _sentence(said), tuple(marks), _failure(row, colour))
 
 
+def _without_result(values: Mapping[str, Any], section: str, subject: str) -> Verdict:
+    """Return the grey verdict of a subject whose section is not given, or whose results are not there."""
+    reason = f"Not asked for (section {section})." if values[section] is None else NOT_COMPUTED
+    return Verdict(subject, GREY, reason)
+
+
 def _failure(row: Any, colour: str) -> str:
     """Return what a rating that fails says in the status line."""
     if colour != RED:
@@ -142,7 +149,7 @@ def _failure(row: Any, colour: str) -> str:
 def _lubricated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
     """Judge scuffing or micropitting by the loaded flank nearest to its limit, in any bin."""
     if "mesh_losses" not in tables:
-        return Verdict(OIL[failure], GREY, "Not asked for (section lubrication).")
+        return _without_result(values, "lubrication", OIL[failure])
     losses, column = tables["mesh_losses"], f"{failure}_safety"
     if not losses[column].notna().any():
         needed = "an FZG stage or a scuffing temperature" if failure == "scuffing" else "allowed_film_ratio"
@@ -163,7 +170,7 @@ def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
     subject, required = "Load sharing", values["load_sharing"]["required_k_gamma"]
     groups = known_k_gamma(tables)
     if groups.empty:
-        return Verdict(subject, GREY, "Not computed: no K_gamma is known of this machine.")
+        return Verdict(subject, GREY, NOT_COMPUTED if required else "No K_gamma is known of this machine.")
     worst = first_largest_row(groups, "k_gamma")
     cycles = f" over {count_noun(int(worst['mesh_cycles']), 'mesh cycle')}" if "mesh_cycles" in worst else ""
     state = "running" if "k_v" in worst else "at rest"
@@ -282,8 +289,12 @@ def status_line(judged: Sequence[Verdict], found: str) -> tuple[str, str, str]:
         others = len(red) - 1
         more = f", and {count_noun(others, 'other verdict is', 'other verdicts are')} red" if others else ""
         return RED, "Not as required:", f"{red[0].failure}{more}.{tail}"
+    absent = sum(verdict.reason == NOT_COMPUTED for verdict in judged)
     if green:
-        return GREEN, "As required:", f"{count_noun(green, 'verdict is', 'verdicts are')} green.{tail}"
+        said = f"{count_noun(green, 'verdict is', 'verdicts are')} green"
+        if absent:
+            return GREY, "As required so far:", f"{said}, {absent} not computed.{tail}"
+        return GREEN, "As required:", f"{said}.{tail}"
     return GREY, "Not judged:", f"no limit was given.{tail}"
 
 

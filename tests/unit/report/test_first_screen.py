@@ -95,14 +95,15 @@ def test_a_caveat_is_a_mark_and_never_the_colour(example, safety):
     assert set(colours) == {"green" if safety >= 1.0 else "red"}
 
 
-def test_what_was_not_asked_for_is_grey(example):
-    found = judged(*example)
-    assert {name for name, verdict in found.items() if verdict.colour == "grey"} >= {
-        "Bending",
-        "Pitting",
-        "Scuffing",
-        "Micropitting",
-    }
+def test_what_was_not_asked_for_or_not_computed_is_grey_and_says_which(example):
+    values, tables = example
+    found = judged({**values, "lubrication": None}, tables)
+    for name in ("Bending", "Pitting"):
+        assert (found[name].colour, found[name].reason) == ("grey", "Not computed.")
+    for name in ("Scuffing", "Micropitting"):
+        assert (found[name].colour, found[name].reason) == ("grey", "Not asked for (section lubrication).")
+    screen = first_screen(values, tables, PAIR)
+    assert screen.status == "As required so far:" and screen.colour == "grey"
 
 
 @pytest.mark.parametrize(("required", "colour"), [(None, "grey"), (1.5, "green"), (1.3, "red")])
