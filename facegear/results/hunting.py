@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import FacegearError
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -32,6 +33,7 @@ class HuntingResult(Result):
         """One row a mesh cycle: share of each mesh in its group's load."""
         return self.content["cycles"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Share of each mesh in its group's load over the hunting cycle."""
         from facegear.plots.hunting import hunting_figure
@@ -52,6 +54,7 @@ class SensitivityResult(Result):
         """K_gamma against the bearing stiffness of the pinions of each role."""
         return self.content["scan"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """The errors that matter most."""
         from facegear.plots.hunting import sensitivity_figure
