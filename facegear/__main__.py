@@ -77,7 +77,9 @@ def parser() -> argparse.ArgumentParser:
     figures.add_argument("--results", default="results", help="folder of stored results to read (results)")
     figures.add_argument("--output", type=Path, help="folder to write to (figures/ of the case's results)")
     figures.set_defaults(command=_figures)
-    check = commands.add_parser("check", help="read and check a config, and compute nothing")
+    check = commands.add_parser(
+        "check", help="find mistakes, implausible values and what would fail later, in seconds"
+    )
     check.add_argument("config", type=Path, help=CONFIG)
     check.set_defaults(command=_check)
     limits = commands.add_parser("limits", help="between which radii the face of a gear may lie")
@@ -223,10 +225,19 @@ def _printed(stage: str, summary: str) -> None:
 
 
 def _check(given: argparse.Namespace) -> int:
-    from facegear.config.cases import expand_cases
+    """Exit code 1 where a run would fail."""
+    from facegear.checking import check_config
+    from facegear.config.yaml_file import read_yaml
 
-    cases = expand_cases(load_config(given.config))
-    print(f"{given.config}: no mistakes; {len(cases)} case{'s' * (len(cases) > 1)}: {', '.join(cases)}")
+    result = check_config(load_config(given.config), read_yaml(given.config))
+    for line in result.remarks:
+        print(line)
+    if result.failures:
+        for line in result.failures:
+            print(f"{given.config}: would fail later: {line}", file=sys.stderr)
+        return 1
+    count = len(result.cases)
+    print(f"{given.config}: no mistakes; {count} case{'s' * (count > 1)}: {', '.join(result.cases)}")
     return 0
 
 
