@@ -404,7 +404,8 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
         )
     if "harmonics" in tables:
         kept = tables["harmonics"].iloc[-1]
-        rows.append(("stiffness left out by the truncated series (N/m)", kept["truncation_error_n_per_m"]))
+        left_out = 1e-6 * kept["truncation_error_n_per_m"]
+        rows.append(("stiffness left out by the truncated series (N/µm)", left_out))
     if "summary" in tables:
         rows.append(("widest 95 % half-width of a load-sharing mean", tables["summary"]["half_width"].max()))
     frame = pd.DataFrame(rows, columns=["quantity", "value"])

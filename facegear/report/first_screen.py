@@ -247,7 +247,7 @@ def _k_gamma(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> I
     first = largest.index[0]
     others = [f"{kind} {factor:.2f}" for kind, factor in largest.items() if kind != first]
     yield Key(
-        "Load sharing K_γ",
+        "Load sharing K_gamma",
         f"{largest.iloc[0]:.2f}",
         "; ".join([str(first), *others]),
         "Largest mean load of a mesh over its nominal even share, "

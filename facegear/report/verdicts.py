@@ -155,10 +155,10 @@ def _lubricated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], f
         needed = "an FZG stage or a scuffing temperature" if failure == "scuffing" else "allowed_film_ratio"
         return Verdict(OIL[failure], GREY, f"Not judged: the oil's card does not give {needed}.")
     row = first_largest_row(losses.assign(spare=-losses[column]), "spare")
-    at = f"bin {row['bin']} of the duty cycle" if row["bin"] > 0 else "the nominal load"
+    at = f"in bin {row['bin']} of the duty cycle" if row["bin"] > 0 else "at the nominal load"
     margin = f", {format_number(row['scuffing_margin_k'])} K to the limit" if failure == "scuffing" else ""
     safety = f"{row[column]:.2f}"
-    reason = f"{row['mesh']}, {row['flank']} flank, at {at}: safety {safety} of {SAFE:g}{margin}."
+    reason = f"{row['mesh']}, {row['flank']} flank, {at}: safety {safety} of {SAFE:g}{margin}."
     red = row[column] < SAFE
     marks = () if row["within_torques_solved"] else (BEYOND,)
     failed = f"safety of {row['mesh']} against {failure} is {safety} of {SAFE:g}" if red else ""

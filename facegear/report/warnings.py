@@ -121,11 +121,18 @@ def warnings(
 def _friction_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
     """Yield what lies outside the limits of the friction model."""
     limits = tables.get("limits", pd.DataFrame())
-    for row in limits.itertuples():
-        if row.loss_outside_percent > 0.0:
-            share = f"{format_number(row.loss_outside_percent, 2)} % of the loss at {row.torque_n_m:g} N m"
-            words = f"{share} lies outside the limits of {row.friction_model}: {row.limit}."
-            yield ResultWarning("Friction", LIMITED, words)
+    if limits.empty:
+        return
+    outside = limits[limits["loss_outside_percent"] > 0.0]
+    for (model, limit), rows in outside.groupby(["friction_model", "limit"], sort=False):
+        worst = rows.loc[rows["loss_outside_percent"].idxmax()]
+        share = (
+            f"{format_number(worst['loss_outside_percent'], 2)} % of the loss at {worst['torque_n_m']:g} N m"
+        )
+        others = len(rows) - 1
+        more = f", and less at {count_noun(others, 'other torque')}," if others else ""
+        words = f"{share}{more} lies outside the limits of {model}: {limit}."
+        yield ResultWarning("Friction", LIMITED, words)
 
 
 def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:

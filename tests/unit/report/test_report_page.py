@@ -87,7 +87,7 @@ def test_a_wide_table_shows_eight_columns_and_the_others_on_demand(tmp_path):
     wide = pd.DataFrame({f"part_{n}": ["x"] for n in range(11)})
     table = Table("Wide", wide, main=("part_9", "part_3"))
     assert table.header()[:3] == ["part 9", "part 3", "part 0"]
-    assert table.on_demand() == [False] * 2 + [True] * 9 and sum(Table("Wide", wide).more()) == 3
+    assert table.on_demand() == [False] * 2 + [True] * 9 and sum(Table("Wide", wide).on_demand()) == 3
     text = render("Case", "Lead", [Chapter("C", "", (), (table,))])
     assert "all 11 columns" in text and text.count('class="more"') == 18
     assert (
