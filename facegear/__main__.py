@@ -15,6 +15,8 @@ from facegear.io.atomic import atomic_path, require_writable, require_writable_f
 from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
+INTERRUPTED = 130
+"""Exit code of a command that was stopped by Ctrl-C, as shells have it."""
 CONFIG = "config file (yaml)"
 
 
@@ -202,8 +204,19 @@ def _report(given: argparse.Namespace) -> int:
 
     gearbox = facegear.load(given.config, given.results)
     path = given.output or Path(f"{gearbox.config.case}.html")
-    print(gearbox.report(path, _printed))
-    return 0
+    failures: list[str] = []
+
+    def print_stage(stage: str, summary: str) -> None:
+        failures.extend([stage] * summary.startswith("not computed: "))
+        _printed(stage, summary)
+
+    try:
+        page = gearbox.report(path, print_stage)
+    except KeyboardInterrupt:
+        print("report: stopped; the same command goes on from here", file=sys.stderr)
+        return INTERRUPTED
+    print(page)
+    return 1 if failures else 0
 
 
 def _figures(given: argparse.Namespace) -> int:

@@ -575,8 +575,29 @@ class Gearbox:
     def report(self, path: str | Path, on_stage: Callable[[str, str], None] | None = None) -> Path:
         """Write the report of all that the config asks for on one page that needs no other file.
 
-        `on_stage` is called with the name of each stage and its summary as soon as it is known. Returns the
-        path. Raises MissingExtra where a library of the report is not installed, and what the stages raise.
+        A stage that fails is named at the head of the page with its reason; all else is computed. Until the
+        page is complete, what is computed is kept beside it in a folder that ends in ``.partial``: a report
+        that was stopped goes on from there.
+
+        Parameters
+        ----------
+        path : str or Path
+            Page to write, which ends in ``.html``.
+        on_stage : callable, optional
+            Called with ``report`` and about how long it will take, and then with the name of each stage and
+            its summary, or ``not computed:`` and the reason, as soon as it is known.
+
+        Returns
+        -------
+        Path
+            The page.
+
+        Raises
+        ------
+        FacegearError
+            For a path that cannot be written.
+        MissingExtra
+            Where a library of the report is not installed.
         """
         return self._whole_case(on_stage).write_report(path)
 
