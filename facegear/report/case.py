@@ -219,8 +219,8 @@ def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> s
         counts = [count_noun(count, f"{role} pinion") for role, count in roles.items()]
         parts = [*counts, count_noun(len(transmission["face_gears"]), "face gear")]
     versions = {item for manifest in manifests for item in manifest["versions"].items()}
-    made = sorted(f"{name} {version}" for name, version in versions if name == "facegear")
-    return " · ".join([", ".join(parts), *made])
+    program = sorted(f"{name} {version}" for name, version in versions if name == "facegear")
+    return " · ".join([", ".join(parts), *program])
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""What a reader sees first: one sentence, key numbers, verdicts with reasons, warnings by subject."""
+"""First screen of a report: one sentence, key numbers, verdicts with reasons, warnings by subject."""
 
 import numpy as np
 import pandas as pd
