@@ -109,12 +109,15 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
     """
     if arrays is None:
         return None
-    swept = pattern(arrays)
-    torques = np.array(sorted(swept.pressure))
+    passage_map = pattern(arrays)
+    torques = np.array(sorted(passage_map.pressure))
     enough = torques[torques >= (torques[-1] if torque is None else 0.999 * torque)]
     torque_shown = float(enough[0] if enough.size else torques[-1])
-    pressure, edge_kind = swept.pressure[torque_shown], swept.where[torque_shown]
-    width, height = 1e3 * swept.points[..., 1], 1e3 * np.hypot(swept.points[..., 0], swept.points[..., 2])
+    pressure, edge_kind = passage_map.pressure[torque_shown], passage_map.where[torque_shown]
+    width, height = (
+        1e3 * passage_map.points[..., 1],
+        1e3 * np.hypot(passage_map.points[..., 0], passage_map.points[..., 2]),
+    )
     left, top, right, bottom = 34.0, 12.0, WIDTH - 8.0, HEIGHT - 40.0
     x = left + (width - width.min()) / max(np.ptp(width), 1e-9) * (right - left)
     y = bottom - (height - height.min()) / max(np.ptp(height), 1e-9) * (bottom - top)

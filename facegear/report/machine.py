@@ -237,7 +237,7 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
         frame = frame.assign(**{f"against {base.name}": own, f"in {base.name}": there})
         differ = count_noun(sum(changed), "key differs", "keys differ")
         caption += f"; {differ} from {base.name}, which it extends"
-    config = Table(caption, frame, folded=True, exact=True)
+    config = Table(caption, frame, is_folded=True, exact=True)
     if values["transmission"] is None:
         return [config]
     pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")

@@ -41,7 +41,7 @@ class Table:
         The rows; a unit ends a column's name.
     digits : int
         Significant digits of numbers, dimensionless.
-    folded : bool
+    is_folded : bool
         Whether a click opens the table.
     main : sequence of str
         Columns shown at once, in this order; the first SHOWN_COLUMNS if empty. A click shows the others.
@@ -52,7 +52,7 @@ class Table:
     caption: str
     frame: pd.DataFrame
     digits: int = 4
-    folded: bool = False
+    is_folded: bool = False
     main: Sequence[str] = ()
     exact: bool = False
 
@@ -121,7 +121,7 @@ class Table:
         Returns
         -------
         float
-            Size in pt, within PRINT_SIZES.
+            Size within PRINT_SIZES, in points of 0.353 mm.
         """
         cells = [self.header(), *self.rows()]
         longest = [

@@ -81,16 +81,16 @@ def _teeth(pair: Mapping[str, Any] | None) -> Iterator[Verdict]:
     if pair is None:
         return
     gap = pair["interference"] or pair["smallest_gap"]
-    place = (
+    location = (
         f"gear's {gap['gear_part']} to pinion's {gap['pinion_part']}, radius {gap['gear_radius_mm']:.1f} mm"
     )
     if pair["interference"]:
         depth = f"{format_number(abs(gap['gap_um']))} µm"
-        reason = f"The bodies interfere by {depth} ({place})."
+        reason = f"The bodies interfere by {depth} ({location})."
         yield Verdict("Teeth", RED, reason, failure=f"the teeth interfere by {depth}")
     else:
         gap_um = format_number(gap["gap_um"])
-        yield Verdict("Teeth", GREEN, f"No interference; smallest gap {gap_um} µm ({place}).")
+        yield Verdict("Teeth", GREEN, f"No interference; smallest gap {gap_um} µm ({location}).")
 
 
 def flank_of(row: Any) -> str:
@@ -313,14 +313,14 @@ def loads_beyond(tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
             yield f"{outside:,} of {count_noun(len(table), singular, plural)} {exceed} it"
 
 
-def status_line(judgements: Sequence[Verdict], finding: str) -> tuple[str, str, str]:
+def status_line(judgements: Sequence[Verdict], summary: str) -> tuple[str, str, str]:
     """Return colour, first words and the rest of the sentence that a page begins with.
 
     Parameters
     ----------
     judgements : sequence of Verdict
         The verdicts.
-    finding : str
+    summary : str
         A sentence on what else was found, empty for none.
 
     Returns
@@ -330,7 +330,7 @@ def status_line(judgements: Sequence[Verdict], finding: str) -> tuple[str, str, 
     """
     red = [verdict for verdict in judgements if verdict.colour == RED]
     green = sum(verdict.colour == GREEN for verdict in judgements)
-    tail = f" {finding}" if finding else ""
+    tail = f" {summary}" if summary else ""
     if red:
         left = len(red) - 1
         other_red = f", and {count_noun(left, 'other verdict is', 'other verdicts are')} red" if left else ""

@@ -64,13 +64,13 @@ def grouped_warnings(
     list of (str, list of str)
         Subject and its lines, the subject with the most serious warning first, lines likewise.
     """
-    collected = [*warnings(values, tables, pair), *map(_of_note, notes)]
-    collected = sorted(collected, key=lambda warning: warning.weight)
-    subjects = dict.fromkeys(warning.subject for warning in collected)
+    by_weight = [*warnings(values, tables, pair), *map(_of_note, notes)]
+    by_weight = sorted(by_weight, key=lambda warning: warning.weight)
+    subjects = dict.fromkeys(warning.subject for warning in by_weight)
     return [
         (
             subject,
-            [warning.words for warning in collected if warning.subject == subject],
+            [warning.words for warning in by_weight if warning.subject == subject],
         )
         for subject in subjects
     ]
