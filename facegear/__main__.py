@@ -87,7 +87,7 @@ def parser() -> argparse.ArgumentParser:
         limits.add_argument(flag(name), type=kind, required=default is None, default=default, help=text)
     limits.set_defaults(command=_limits)
     compare = commands.add_parser("compare", help="what moved between two folders of results, and why")
-    compare.add_argument("old", help="a folder of results, or a release's stored answer such as 0.1.0/quick")
+    compare.add_argument("old", help="a folder of results, or a stored answer such as current/quick")
     compare.add_argument("new", help="the same")
     compare.add_argument(
         "--page", type=Path, help="write an html page with the curves of both over each other"
@@ -121,13 +121,14 @@ def installed_version() -> str:
 def _new(given: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
     from facegear.variants.first_machine import Known, first_machine
-    from facegear.variants.gear_unit import known_of_rexs
+    from facegear.variants.gear_unit import RexsPinions, known_of_rexs
 
     if given.config.exists():
         raise FacegearError(f"{given.config}: exists already; choose another name")
     if given.config.suffix not in (".yaml", ".yml"):
         raise FacegearError(f"{given.config}: must end in .yaml")
-    read = {} if given.rexs is None else known_of_rexs(given.rexs)
+    rexs = RexsPinions({}, ()) if given.rexs is None else known_of_rexs(given.rexs)
+    read = dict(rexs.values)
     if given.idlers and given.pinions is None and "pinions" in read:
         read["pinions"] = max(read["pinions"] - given.idlers, 0)
     own = {name: value for name, value in vars(given).items() if value is not None}
@@ -142,7 +143,7 @@ def _new(given: argparse.Namespace) -> int:
             load_config(temporary)
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
-    print(*machine.expected, sep="\n")
+    print(*rexs.notes, *machine.expected, sep="\n")
     print(f"{given.config}: written; `facegear report {given.config}` computes it")
     return 0
 

@@ -62,7 +62,8 @@ class MissingExtra(FacegearError):
     """A library that is installed only with an extra of the package: names both."""
 
     def __init__(self, library: str, extra: str) -> None:
-        super().__init__(f'{library} is not installed; get it with: pip install "facegear[{extra}]"')
+        where = "in the folder of facegear's sources"
+        super().__init__(f'{library} is not installed; get it with: pip install ".[{extra}]" ({where})')
         self.library, self.extra = library, extra
 
 

@@ -411,7 +411,11 @@ class Gearbox:
         longest_period: int | None = None,
         starts: int | None = None,
     ) -> "BranchesResult":
-        """Every periodic motion over speed, stable or not, beside the sweep: folds, margins, coexistence.
+        """Periodic motions over speed, stable or not, beside the sweep: folds, margins, coexistence.
+
+        These are all motions that branches join to the first one, to those of the sweep or to those of the
+        random starts, up to the longest period, with their images under the machine's symmetries. A motion
+        that no branch leads to is missing if no start has found it; docs/branches.md lists all bounds.
 
         Speeds, the longest period followed through doublings and the number of random `starts` as in section
         `branches` of the config unless given, its defaults where there is no such section. Raises
@@ -526,9 +530,9 @@ class Gearbox:
         """
         from facegear.results.tooth_errors import ToothErrorsResult
 
-        bodies = filter(None, (self.config.tooth_pair.pinion, self.config.tooth_pair.face_gear))
-        grids = [body.flanks.grids for body in bodies]
-        if grids and all(grid.tooth is None for given in grids for grid in given):
+        pair = self.config.tooth_pair
+        flanks = [body.flanks for body in (pair.pinion, pair.face_gear) if body is not None]
+        if flanks and all(grid.tooth is None for given in flanks for grid in given.grids):
             allowed = "given for single teeth of pinion or face_gear: all are alike"
             raise ConfigError("tooth_pair.pinion.flanks.grids", [], allowed)
         return self._chain.result(ToothErrorsResult)

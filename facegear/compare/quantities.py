@@ -59,8 +59,8 @@ class Table:
         Numerical error of columns that begin with a text, relative; the longest beginning counts. A column
         without one has no stated error.
     zero
-        Magnitudes up to which numbers of a column count as zero, for what is left of equations that are
-        solved to rounding.
+        Magnitudes up to which numbers of a column, or of a quantity, count as zero, for what is left of
+        equations that are solved to rounding.
     motion
         Columns, where present, that name the class of motion of a row.
     item
@@ -95,6 +95,8 @@ RESIDUALS = {"kkt_residual": 1e-12, "torque_residual": 1e-10}
 """Relative residuals up to which a contact counts as solved."""
 MOTION = {"value": 8.6e-4, "energy_fraction": 1.8e-3, "resonance_rpm": ROUNDED, "order": ROUNDED}
 """docs/dynamics.md: periodic motions against a tolerance of 1e-10 and 4096 samples; energies are squares."""
+MOTION_RESIDUAL = {"residual": 1e-7}
+"""Change over a period, over the scale, up to which a motion counts as periodic at the nominal speed."""
 MULTIPLIERS = 1e-5
 """docs/dynamics.md: of the nominal motion, whose tolerance is finer than that of a sweep."""
 JUMPS = {**MOTION, "deflection": 8.6e-4, "leading_multiplier": 5e-3}
@@ -123,10 +125,12 @@ TABLES: Mapping[str, Table] = {
     "contact/by_torque.csv": Table(("torque_n_m",), errors=CONTACT),
     "contact/ltca.csv": Table(("torque_n_m", "position"), errors=CONTACT, zero=RESIDUALS),
     "stiffness/harmonics.csv": Table(
-        ("order",), errors={"a_n": 3e-3, "b_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
+        ("order",), errors={"sin_n": 3e-3, "cos_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
     ),
     "stiffness/tvms.csv": Table(("position",), errors={"k_": 3e-3}),
-    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"),
+    "dynamics/summary.csv": Table(
+        ("quantity", "body_or_mesh"), "quantity", MOTION, zero=MOTION_RESIDUAL, item="body_or_mesh"
+    ),
     "dynamics/response.csv": Table(
         ("mesh", "mesh_cycle"), errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4, "time_s": ROUNDED}
     ),

@@ -99,9 +99,14 @@ def _lines(model: type[Section], values: Mapping[str, Any], mistakes: list[Error
     return [
         line
         for location, details in zip(locations, mistakes, strict=True)
-        if details["type"] != "missing" or location not in meant
+        if (details["type"] != "missing" or location not in meant) and not _follows(details)
         for line in _messages(model, details, location)
     ]
+
+
+def _follows(details: ErrorDetails) -> bool:
+    """Whether a list is too short only without its items that were refused, each with a line of its own."""
+    return details["type"] == "too_short" and len(details["input"]) >= details["ctx"]["min_length"]
 
 
 def _messages(model: type[Section], details: ErrorDetails, location: list[int | str]) -> list[str]:
@@ -119,6 +124,11 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
         return [f"{key} = {_shown(details['input'])}: unknown key; {suggestion(str(location[-1]), allowed)}"]
     if kind == "missing":
         return [f"{key} = (missing): this key is required"]
+    if kind in ("too_short", "too_long"):
+        words, name = ("at least", "min_length") if kind == "too_short" else ("at most", "max_length")
+        count = details["ctx"][name]
+        items = f"{words} {count} item{'s' * (count != 1)}"
+        return [f"{key} = {_shown(details['input'])}: must have {items}, not {len(details['input'])}"]
     message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
     message = message.replace("should ", "must ", 1)
     return [f"{key} = {_shown(details['input'])}: {message[:1].lower()}{message[1:]}"]

@@ -33,10 +33,13 @@ def face_limits(
     shaper_tip_rounding_modules: float = 0.0,
 ) -> FaceRange:
     """Radii between which the face may lie. Raises ConfigError for numbers that no pair can have."""
-    if not 5 <= pinion_teeth < face_gear_teeth:
-        raise ConfigError("pinion_teeth", pinion_teeth, f"from 5 to less than the gear's {face_gear_teeth}")
-    if not 0.0 < module_mm <= 100.0:
-        raise ConfigError("module_mm", module_mm, "above 0, at most 100")
+    if not 5 <= pinion_teeth <= 500:
+        raise ConfigError("pinion_teeth", pinion_teeth, "from 5 to 500")
+    if not pinion_teeth < face_gear_teeth <= 2000:
+        allowed = f"more than the pinion's {pinion_teeth}, at most 2000"
+        raise ConfigError("face_gear_teeth", face_gear_teeth, allowed)
+    if not 0.1 <= module_mm <= 100.0:
+        raise ConfigError("module_mm", module_mm, "from 0.1 to 100")
     if not 10.0 <= pressure_angle_deg <= 40.0:
         raise ConfigError("pressure_angle_deg", pressure_angle_deg, "from 10 to 40")
     for name, value, low, high in (

@@ -26,9 +26,16 @@ BUILDERS: dict[str, Callable[[PairDesign, MeshSizes], FeTooth]] = {
 
 
 def gear_flank(
-    design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
+    design: PairDesign,
+    body: str,
+    sizes: MeshSizes,
+    material: Material,
+    plan: ContactPlan,
+    section: bool = True,
 ) -> GearFlank:
     """Contact surface, flank compliance and, where asked for, gauges of the pinion or the face gear.
+
+    section: whether gauges come with the error of their section.
 
     Raises InvalidInput for a sector with more teeth than the gear and for a mesh with elements turned inside
     out, FacegearError if the mesh cannot be factorised.
@@ -39,7 +46,7 @@ def gear_flank(
     teeth, neighbours, ends = extent(tooth, body, plan)
     gauges, rows = None, None
     if plan.root_stress:
-        errors = section_errors(design, body, BUILDERS[body], sizes, material)
+        errors = section_errors(design, body, BUILDERS[body], sizes, material) if section else None
         gauges, rows = root_gauges(tooth, material, errors)
     compliance = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element, rows)
     return GearFlank(side, compliance, gauges)

@@ -189,7 +189,7 @@ class _Search:
         felt, mapped = self._felt(contacts, signs, shift)
         if _rank(felt) < self.system.size:
             return None
-        matrix = np.linalg.lstsq(felt, mapped, rcond=None)[0]
+        matrix = np.asarray(np.linalg.lstsq(felt, mapped, rcond=None)[0], dtype=np.float64)
         if not _near(matrix @ matrix.T, np.eye(self.system.size), 1.0).all():
             return None
         if not _near(felt @ matrix, mapped, 1.0).all() or not self._keeps_the_rest(matrix):

@@ -22,6 +22,21 @@ LOST = (
 )
 """What a file does not hold of a machine."""
 
+READ_UNITS = {
+    "mass_of_component": "kg",
+    "radial_stiffness": "N / m",
+    "axial_stiffness": "N / m",
+    "elastic_modulus": "MPa",
+    "poisson_ratio": "none",
+    "number_of_teeth": "none",
+    "normal_module": "mm",
+    "face_width": "mm",
+    "inner_diameter": "mm",
+    "normal_pressure_angle": "deg",
+    "helix_angle": "deg",
+}
+"""Attributes that are read, and the unit that REXS 2.0 gives each."""
+
 
 @dataclass(frozen=True)
 class Spur:
@@ -123,9 +138,11 @@ def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -
 def read_rexs(path: str | Path) -> Unit:
     """The gear unit of a file, whoever wrote it: every shaft, with its first cylindrical gear and bearing.
 
-    Raises FacegearError for what is no REXS file, for an attribute that is no number, for a part that a
-    relation names and that is not there, and for a gear without number of teeth or module.
+    Raises FacegearError for what is no REXS file in XML, for an attribute that is no number or has another
+    unit than REXS gives it, for ids that stand twice, for a part that a relation names and that is not there,
+    for a helical gear, and for a gear without number of teeth or module.
     """
+    _refuse_other_forms(Path(path))
     try:
         root = Xml.parse(path).getroot()
     except (OSError, ValueError, LookupError, Xml.ParseError) as error:
@@ -138,14 +155,30 @@ def read_rexs(path: str | Path) -> Unit:
         raise FacegearError(f"{path}: {fault}") from None
 
 
+def _refuse_other_forms(path: Path) -> None:
+    """Raise FacegearError for the zipped and the JSON form of REXS, by name."""
+    try:
+        with path.open("rb") as file:
+            start = file.read(64).lstrip(b"\xef\xbb\xbf \t\r\n")
+    except OSError as error:
+        raise FacegearError(f"{path}: not a readable REXS file ({error})") from None
+    for first, form in ((b"PK", "zipped (.rexsz)"), (b"{", "JSON (.rexsj)")):
+        if start.startswith(first):
+            raise FacegearError(f"{path}: this is the {form} form of REXS; save it as XML (.rexs)")
+
+
 class _Fault(Exception):
     """Why a REXS file cannot be used, in one line without its name."""
 
 
 def _unit(root: Xml.Element) -> Unit:
-    parts = {_attribute(part, "id"): part for part in root.iter("component")}
-    for part in parts.values():
+    parts: Parts = {}
+    for part in root.iter("component"):
+        number = _attribute(part, "id")
+        if number in parts:
+            raise _Fault(f"component id {number[:40]!r} stands twice: must be unique")
         _attribute(part, "type")
+        parts[number] = part
     relations = [
         (
             _attribute(relation, "type"),
@@ -209,15 +242,15 @@ def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
     count, module = (_value(parts[gear], key) for key in ("number_of_teeth", "normal_module"))
     if count is None or module is None:
         raise _Fault(f"gear {gear} has no number of teeth or no normal module")
+    for part in (gear, *_flanks_of(gear, relations)):
+        helix = _value(parts[part], "helix_angle")
+        if helix:
+            raise _Fault(
+                f"gear {gear}: helix_angle = {helix:g} deg: must be 0, as only spur pinions are read"
+            )
     if count != round(count):
         raise _Fault(f"gear {gear}: number_of_teeth = {count:g}: must be a whole number")
-    flanks = [
-        number
-        for kind, members in relations
-        if kind == "flank" and members.get("gear") == gear
-        for number in members.values()
-    ]
-    angles = [_value(parts[number], "normal_pressure_angle") for number in flanks]
+    angles = [_value(parts[number], "normal_pressure_angle") for number in _flanks_of(gear, relations)]
     bore = _value(parts[gear], "inner_diameter")
     return Spur(
         teeth=round(count),
@@ -228,9 +261,30 @@ def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
     )
 
 
+def _flanks_of(gear: str, relations: Relations) -> list[str]:
+    """The gear itself and its flanks."""
+    return [
+        number
+        for kind, members in relations
+        if kind == "flank" and members.get("gear") == gear
+        for number in members.values()
+    ]
+
+
 def _value(part: Xml.Element | None, key: str) -> float | None:
-    """A finite number of a component; None where it is not given."""
-    text = None if part is None else part.findtext(f"attribute[@id='{key}']")
+    """A finite number of a component in the unit of REXS; None where it is not given."""
+    given = [] if part is None else part.findall(f"attribute[@id='{key}']")
+    if part is not None and len(given) > 1:
+        raise _Fault(f"component {part.attrib['id']}: attribute {key} stands twice: must be unique")
+    text = given[0].text if given else None
+    if (
+        part is not None
+        and given
+        and (unit := given[0].attrib.get("unit", READ_UNITS[key])) != READ_UNITS[key]
+    ):
+        raise _Fault(
+            f"component {part.attrib['id']}: unit of {key} = {unit[:40]!r}: must be {READ_UNITS[key]!r}"
+        )
     if part is None or text is None or not text.strip():
         return None
     try:

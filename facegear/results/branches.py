@@ -15,7 +15,10 @@ FIGURES = ("amplitudes", "fractions", "multipliers")
 
 
 class BranchesResult(Result):
-    """Every periodic motion found over speed, stable or not, and the points where motions end or change."""
+    """Periodic motions found over speed, stable or not, and the points where motions end or change.
+
+    Mirror images of motions that break a symmetry of the machine are branches of their own, see images().
+    """
 
     STAGE: ClassVar = "branches"
     BESIDE: ClassVar = {"sweep": ("dynamics_sweep", "sweep")}
@@ -23,6 +26,12 @@ class BranchesResult(Result):
     def table(self) -> pd.DataFrame:
         """One row a branch, point and mesh: speed, stable or not, deflections, peak force, contact."""
         return self.content["branches"].copy()
+
+    def images(self) -> pd.DataFrame:
+        """Return branch and image_of: the branches that are mirror images, and the followed ones they map."""
+        ends = self.content["ends"]
+        rows = ends[ends["image_of"].astype(str) != ""]
+        return rows[["branch", "image_of"]].astype(int).reset_index(drop=True)
 
     def special_points(self) -> pd.DataFrame:
         """One row a fold, period doubling, Neimark-Sacker point, branch point or graze, with its proof."""

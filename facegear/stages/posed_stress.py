@@ -1,6 +1,7 @@
 """Pressure and root stress of every mesh, its teeth where the machine's own forces put them."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,8 @@ def posed_stress(
     tables = []
     for number, posed in enumerate(met_contacts(design, pair(tooth_pair).materials, flanks, plan, asked)):
         roots: dict[str, RootStress] = {
-            body: passing(body, flank, posed.loads) for body, flank in zip(BODIES, flanks, strict=True)
+            body: replace(passing(body, flank, posed.loads), error=stress[f"{body}_error"])
+            for body, flank in zip(BODIES, flanks, strict=True)
         }
         arrays |= root_arrays_of(number, roots)
         tables.append(posed.by_torque.assign(contact=number))

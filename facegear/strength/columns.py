@@ -119,13 +119,16 @@ DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 SAFETY_FINITE = tuple(
     name
     for name in SAFETY_COLUMNS
-    if name
-    not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability", "reason", "caveat")
+    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability")
+    and name not in ("reason", "caveat")
 )
-ROOT_STRESS_BY_FLANK_FINITE = tuple(name for name in ROOT_STRESS_BY_FLANK_COLUMNS if name != "at_30_deg_mpa")
-ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")
-"""Columns whose numbers are always finite: life may last for ever, 30 degrees lie beside the gauges, and
-edges may carry all load, where pressure has no limit."""
+MAY_BE_UNKNOWN = ("largest_error_mpa", "at_30_deg_mpa")
+ROOT_STRESS_BY_FLANK_FINITE = tuple(
+    name for name in ROOT_STRESS_BY_FLANK_COLUMNS if name not in MAY_BE_UNKNOWN
+)
+ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name not in MAY_BE_UNKNOWN)
+"""Columns whose numbers are always finite: life may last for ever, 30 degrees lie beside the gauges, the
+error of a mesh of few elements is not known, and edges may carry all load, where pressure has no limit."""
 
 DYNAMIC_STRESS_COLUMNS = (
     "mesh",

@@ -19,6 +19,7 @@ from facegear.config.machines import case_machine
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.model import resolved
 from facegear.config.strength import Strength, rating_request
+from facegear.config.transmission import MAX_PINIONS
 from facegear.config.yaml_file import read_yaml
 from facegear.contact.resolution import COARSEST, half_width
 from facegear.errors import ConfigError, FacegearError
@@ -60,6 +61,8 @@ LEAST_LOADED = 0.05
 """Part of the largest mesh load below which the contact analysis does not follow a mesh."""
 SPEEDS = (0.2, 1.5)
 """First and last speed of the sweep over the nominal one."""
+BOUNDS = {"torque_n_m": (1e-5, 1e6), "speed_rpm": (1.0, 1e5), "pinions": (1, MAX_PINIONS)}
+"""Smallest and largest values; the config has loads and speeds beyond them."""
 TORQUES = 4
 """Torques of the contact analysis."""
 PROFILE_CUTS = 3
@@ -145,11 +148,14 @@ def first_machine(known: Known) -> FirstMachine:
     ConfigError
         For numbers that no machine can have, and teeth that do not exist, with the geometric reason.
     """
-    for key in ("torque_n_m", "speed_rpm", "pinions"):
-        if not getattr(known, key) > 0.0:
-            raise ConfigError(key, getattr(known, key), "above 0")
+    for key, (low, high) in BOUNDS.items():
+        if not low <= getattr(known, key) <= high:
+            raise ConfigError(key, getattr(known, key), f"from {low:g} to {high:g}")
     if known.idlers < 0:
         raise ConfigError("idlers", known.idlers, "0 or more")
+    if known.pinions + known.idlers > MAX_PINIONS:
+        most = MAX_PINIONS - known.idlers
+        raise ConfigError("pinions", known.pinions, f"at most {most}, with {known.idlers} idlers beside them")
     draft = Draft(known)
     if known.idlers:
         wishes = known.input_bearing_n_per_m, known.idler_bearing_n_per_m, known.gear_bearing_n_per_m

@@ -1,5 +1,6 @@
 """What REXS holds of a machine."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,9 @@ from facegear.config.model import Config
 from facegear.errors import ConfigError, FacegearError
 from facegear.exchange.rexs import Shaft, Spur, Unit, read_rexs
 from facegear.transmission.layout import Body
+
+RIGID = 1e12
+"""Stiffness of a bearing, N/m, from which it counts as rigid: ten thousand times that of a mesh."""
 
 
 def gear_unit(config: Config) -> Unit:
@@ -41,8 +45,24 @@ def _gear(name: str, body: Body) -> Shaft:
     return Shaft(name, body.mass, min(x, y), z)
 
 
-def known_of_rexs(path: str | Path) -> dict[str, Any]:
-    """What a REXS file says of a starting config, by the fields of `facegear.variants.first_machine.Known`.
+@dataclass(frozen=True)
+class RexsPinions:
+    """The equal pinions of a REXS file.
+
+    Attributes
+    ----------
+    values : dict
+        By the fields of `facegear.variants.first_machine.Known`; only what the file gives.
+    notes : tuple of str
+        What was changed on the way, a line each.
+    """
+
+    values: dict[str, Any]
+    notes: tuple[str, ...]
+
+
+def known_of_rexs(path: str | Path) -> RexsPinions:
+    """Return what a REXS file says of a starting config.
 
     That is the pinions, with what their bearings and bodies are given; face gears, roles, torques and speeds
     it has not. Raises FacegearError for a file without cylindrical gears, or with several kinds of them.
@@ -67,4 +87,10 @@ def known_of_rexs(path: str | Path) -> dict[str, Any]:
         "idler_bearing_n_per_m": first.radial,
         "axial_bearing_n_per_m": first.axial,
     }
-    return {name: value for name, value in known.items() if value is not None}
+    values = {name: value for name, value in known.items() if value is not None}
+    notes = []
+    for name in [name for name in values if name.endswith("_n_per_m") and values[name] >= RIGID]:
+        if name != "idler_bearing_n_per_m":
+            notes.append(f"{path}: {name} = {values[name]:g}: taken as rigid, {RIGID:g} N/m")
+        values[name] = RIGID
+    return RexsPinions(values, tuple(notes))

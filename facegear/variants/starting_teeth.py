@@ -158,8 +158,8 @@ def _require_numbers(wishes: ToothWishes) -> None:
     if not 5 <= wishes.pinion_teeth < wishes.face_gear_teeth:
         allowed = f"from 5 to less than the gear's {wishes.face_gear_teeth}"
         raise ConfigError("pinion_teeth", wishes.pinion_teeth, allowed)
-    if not 0.0 < wishes.module_mm <= 100.0:
-        raise ConfigError("module_mm", wishes.module_mm, "above 0, at most 100")
+    if not 0.1 <= wishes.module_mm <= 100.0:
+        raise ConfigError("module_mm", wishes.module_mm, "from 0.1 to 100")
     if not 10.0 <= wishes.pressure_angle_deg <= 40.0:
         raise ConfigError("pressure_angle_deg", wishes.pressure_angle_deg, "from 10 to 40")
 

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from facegear.__main__ import main
+from facegear.__main__ import LIMITS, main
+from facegear.questions import QUESTIONS, flag
 
 ROOT = Path(__file__).parents[2]
 TEETH = ("limits", "--pinion-teeth", "25", "--face-gear-teeth", "160", "--module-mm", "6.35")
@@ -29,6 +30,46 @@ def test_a_mistake_on_the_command_line_ends_in_one_line(capsys, arguments, line)
     assert main(arguments) == 1
     message = capsys.readouterr().err
     assert message.startswith(line) and message.count("\n") == 1
+
+
+BASE = {
+    "pinion_teeth": 25,
+    "face_gear_teeth": 160,
+    "module_mm": 4,
+    "torque_n_m": 100,
+    "speed_rpm": 1000,
+}
+ABSURD = ("1e-300", "1e300", "inf", "nan", "-1", "1000000000")
+
+
+@pytest.mark.parametrize("key", QUESTIONS)
+def test_an_absurd_number_for_a_new_config_is_one_line_with_its_argument(key, tmp_path, capsys):
+    """A billion pinions were listed one by one."""
+    for value in ABSURD:
+        words = [word for name, text in {**BASE, key: value}.items() for word in (flag(name), str(text))]
+        try:
+            code = main(("new", str(tmp_path / "own.yaml"), *words))
+        except SystemExit as stop:  # argparse says what is no whole number
+            assert stop.code == 2
+            capsys.readouterr()
+            continue
+        message = capsys.readouterr().err
+        assert code == 1 and message.count("\n") == 1 and (key in message or "pinion" in message)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("key", LIMITS)
+def test_an_absurd_number_for_the_limits_is_an_answer_or_one_line(key, capsys):
+    """A billion teeth ended in a ValueError of the root finder."""
+    for value in ABSURD:
+        given = {name: BASE[name] for name in ("pinion_teeth", "face_gear_teeth", "module_mm")} | {key: value}
+        words = [word for name, text in given.items() for word in (flag(name), str(text))]
+        try:
+            code = main(("limits", *words))
+        except SystemExit as stop:
+            code = stop.code
+        said = capsys.readouterr()
+        assert code == 2 or (said.out + said.err).count("\n") == 1
 
 
 def test_a_file_that_the_system_refuses_ends_in_one_line(monkeypatch, capsys):

@@ -9,6 +9,7 @@ from forked_python import run_together
 import facegear
 import facegear.__main__ as command_line
 
+SOURCES = "in the folder of facegear's sources)"
 MEAN = {"mesh_stiffness.mesh_law": "constant_load", "modal.stiffness": "average"}
 """Values with which modes take no contact."""
 
@@ -33,7 +34,7 @@ except MissingExtra as error:
 
 @pytest.mark.parametrize("call", ["contact()", "load_sharing()"])
 def test_teeth_without_finite_elements_name_the_extra(call):
-    line = 'skfem is not installed; get it with: pip install "facegear[fe]"'
+    line = 'skfem is not installed; get it with: pip install ".[fe]" (' + SOURCES
     assert message("skfem", f"gearbox.{call}") == line
 
 
@@ -42,7 +43,7 @@ def test_modes_of_a_given_mean_stiffness_need_no_extra():
 
 
 def test_a_report_without_its_template_engine_names_the_extra():
-    line = 'jinja2 is not installed; get it with: pip install "facegear[workflow]"'
+    line = 'jinja2 is not installed; get it with: pip install ".[workflow]" (' + SOURCES
     assert message("jinja2", "import facegear.report.page") == line
 
 
@@ -56,11 +57,11 @@ def test_run_says_what_it_lacks_for_single_files(tmp_path, monkeypatch, capsys, 
         monkeypatch.setattr(command_line, "ROOT", tmp_path)
     assert command_line.main(("run", str(tmp_path / "own.yaml"), "-n")) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert ('pip install "facegear[workflow]"' if missing == "snakemake" else "from its repository") in line
+    assert ('pip install ".[workflow]"' if missing == "snakemake" else "from its repository") in line
 
 
 def test_a_workbook_without_its_library_names_the_extra():
-    line = 'openpyxl is not installed; get it with: pip install "facegear[excel]"'
+    line = 'openpyxl is not installed; get it with: pip install ".[excel]" (' + SOURCES
     assert message("openpyxl", f"gearbox.with_values({MEAN}).modes().to_excel('modes.xlsx')") == line
 
 

@@ -12,6 +12,7 @@ import pytest
 from projects import dry_run, environment
 
 import facegear.__main__ as command_line
+from facegear.compare.answers import stored
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "results" / "README.md"]
@@ -24,6 +25,67 @@ COMMANDS = sorted(
         if line.split("#")[0].strip()
     }
 )
+
+
+INLINE = sorted(
+    {
+        (page, code)
+        for page in (*PAGES, ROOT / "CONTRIBUTING.md", *sorted((ROOT / "examples").glob("*.ipynb")))
+        for code in re.findall(
+            r"`((?:snakemake|pip|make|facegear|python -m) [^`\n]+)`",
+            re.sub(r"```.*?```", "", page.read_text().replace(chr(92) + chr(34), chr(34)), flags=re.S),
+        )
+    }
+)
+"""Commands inside a line of a page, which name a thing to do; some are beginnings of a command."""
+
+
+def assert_installs_from_sources(what):
+    """The package is on no index: pip installs the folder it is in, with extras that exist."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    match = re.fullmatch(r"\.(?:\[([a-z,]+)\])?", what)
+    assert match, f"pip finds {what} on no index"
+    assert set(match[1].split(",") if match[1] else ()) <= project["optional-dependencies"].keys()
+
+
+def assert_runs(words):
+    """Snakemake asks for cores or a profile wherever jobs run, and takes all words after --configfile."""
+    assert {"--cores", "--workflow-profile", "-n", "--report"} & {*words}, "no --cores"
+    if "--configfile" in words:
+        after = words[words.index("--configfile") + 1 :]
+        assert len(after) < 2 or after[1].startswith("-"), "no -- before the targets"
+
+
+@pytest.mark.parametrize(("page", "command"), INLINE, ids=[code for _, code in INLINE])
+def test_a_command_inside_a_line_can_work(page, command):
+    """Those in blocks alone were tried, and these had no --cores, or a package index that has no facegear."""
+    words = shlex.split(command.split(" > ")[0])
+    if words[:2] == ["pip", "install"] and len(words) > 2:
+        assert_installs_from_sources(words[2])
+    elif words[0] == "snakemake" and words[-1] != "--configfile":
+        assert_runs(words)
+    elif words[0] == "make":
+        assert re.search(rf"^{words[1]}:", (ROOT / "Makefile").read_text(), re.M)
+    elif words[0] == "facegear" and len(words) > 2:
+        assert callable(command_line.parser().parse_args(words[1:]).command)
+    elif words[:2] == ["python", "-m"]:
+        assert find_spec(words[2]), words[2]
+
+
+def test_stored_answers_that_pages_and_help_name_exist():
+    """The help named one of a release that stored none."""
+    pages = [page.read_text() for page in (*PAGES, ROOT / "CONTRIBUTING.md")]
+    parsers = command_line.parser()._subparsers._group_actions[0].choices.values()
+    texts = [*pages, *(" ".join(parser.format_help().split()) for parser in parsers)]
+    named = {name for text in texts for name in re.findall(r"\b((?:current|\d+\.\d+\.\d+)/[a-z]+)\b", text)}
+    assert "current/quick" in named and named <= set(stored())
+
+
+def test_no_message_names_a_package_index():
+    """A message that an extra is missing told users to ask an index for it."""
+    for file in sorted((ROOT / "facegear").rglob("*.py")):
+        for what in re.findall(r'pip install "?([^"\s)]+)', file.read_text()):
+            assert what.startswith(".["), f"{file}: {what}"
 
 
 def test_the_pages_show_commands():
@@ -39,8 +101,7 @@ def test_shown_command_is_accepted(command):
         assert (ROOT / words[-1]).parent.is_dir()
         return
     if words[:2] == ["pip", "install"]:
-        extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-        assert words[2].removeprefix("facegear[").removesuffix("]") in extras
+        assert_installs_from_sources(words[2])
         return
     if "workflow/profiles/slurm" in words and find_spec("snakemake_executor_plugin_slurm") is None:
         pytest.skip("snakemake-executor-plugin-slurm is not installed (extra `cluster`, as by `make ci`)")
@@ -52,6 +113,7 @@ def test_shown_command_is_accepted(command):
             [*words, "-n"], cwd=ROOT, capture_output=True, text=True, env=environment(), check=False
         )
     elif words[0] == "snakemake":
+        assert_runs(words)
         arguments = [str(ROOT / word) if word.startswith("config/") else word for word in words[1:]]
         if arguments[:2] == ["--cores", "2"]:  # as all runs of the tests
             del arguments[:2]

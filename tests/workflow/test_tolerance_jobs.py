@@ -1,7 +1,6 @@
 """Samples as jobs: what exists is kept, a killed chunk goes on inside, cores and chunks change no bit."""
 
 import os
-import re
 import signal
 import subprocess
 import time
@@ -85,8 +84,8 @@ def killed(found, target, jobs_too):
 def test_a_killed_chunk_goes_on_inside_and_gives_the_same_table(whole, tmp_path):
     found, target = project(tmp_path, 64, 64)
     killed(found, target, jobs_too=True)
-    done = found.run(*target)
-    assert re.search(r"64 samples, [1-9]\d* of them", done.stderr), done.stderr
+    found.run(*target)
+    assert not list(tmp_path.rglob("*.partial"))
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / FILE), whole, check_exact=True)
 
 

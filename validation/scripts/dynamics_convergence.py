@@ -8,6 +8,7 @@ from facegear.config.machines import wired_machine
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
 from facegear.dynamics.sweeps.sweep import joined
+from facegear.dynamics.symmetries import mesh_images
 from facegear.io import arrays, tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -31,7 +32,7 @@ with stage(snakemake) as run:
         piece = joined([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
         again = rerun(model, piece, plan.settings, progress.step)
         longer = watched_longer(model, piece, again, plan.settings)
-        frames.append(convergence_table(name, piece, again, longer))
+        frames.append(convergence_table(name, piece, again, longer, mesh_images(model.system)))
     table = pd.concat(frames, ignore_index=True)
     tables.write(snakemake.output.table, table)
     run.summary(not_converged(table))

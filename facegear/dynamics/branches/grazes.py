@@ -81,14 +81,19 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     maxima = min(point.extrema.shape[2] for point in points)
     extrema = [point.extrema[:, :, :maxima] for point in points]
     near = [_near(extrema[0], extrema[1], level, reach) for level in levels]
-    if not any(number.any() for number in near):
+    counts = [_above(point.extrema, levels) for point in points]
+    born = np.argwhere((counts[0] != counts[1]).all(axis=-1) & np.isfinite(levels))
+    if not len(born) and not any(number.any() for number in near):
         return None
-    slopes = [segment.extremum_slope(fraction, high - low)[:, :, :maxima] for fraction in (low, high)]
+    whole = [segment.extremum_slope(fraction, high - low) for fraction in (low, high)]
+    slopes = [slope[:, :, :maxima] for slope in whole]
+    looks_of = [*_dips(extrema, slopes, levels, near)]
+    looks_of += _ripples([point.extrema for point in points], whole, levels, counts, born)
     before, after = (_passages(point.extrema, levels) for point in points)
-    for looks in dict.fromkeys(_dips(extrema, slopes, levels, near)):
+    for looks in dict.fromkeys(looks_of):
         fractions = [low + look * (high - low) for look in looks]
-        counts = [before, *(_passages(segment.extrema(fraction), levels) for fraction in fractions), after]
-        steps = np.diff(counts, axis=0)
+        passed = [before, *(_passages(segment.extrema(fraction), levels) for fraction in fractions), after]
+        steps = np.diff(passed, axis=0)
         if ((steps > 0).any(axis=0) & (steps < 0).any(axis=0)).any():
             return fractions[0]
     return None
@@ -136,3 +141,22 @@ def _dips(
             returning = np.flatnonzero((heights[row, :-1] < 0.0) & (heights[row, 1:] > 0.0))
             if returning.size:
                 yield float(t[returning[0]]), float(t[returning[0] + 1])
+
+
+def _ripples(
+    extrema: list[Array], slopes: list[Array], levels: Array, counts: list[Integers], born: Integers
+) -> Iterator[tuple[float]]:
+    """Where only one of a maximum and a minimum that are born in a stretch may lie above an edge that both
+    are above at one end: between the places at which straight lines through them meet the edge.
+    """
+    for side, mesh in born:
+        ranks = np.minimum(counts[0][side, mesh], counts[1][side, mesh])
+        end = int((counts[1] > counts[0])[side, mesh, 0])
+        places = []
+        for kind, rank in enumerate(ranks):
+            height = extrema[end][mesh, kind, rank] - levels[side, mesh]
+            slope = slopes[end][mesh, kind, rank]
+            places.append(end - height / slope if slope != 0.0 else np.nan)
+        look = float(np.mean(places))
+        if 0.0 < look < 1.0:
+            yield (look,)

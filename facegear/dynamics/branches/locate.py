@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.between import hidden_change, may_change
+from facegear.dynamics.branches.between import hidden_change, is_damped, may_change
 from facegear.dynamics.branches.grazes import grazes, hidden_graze
 from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
@@ -20,6 +20,8 @@ SHORTEST = 1e-10
 """Part of a step down to which points that lie together are distinguished."""
 DEEPEST = 7
 """How often a stretch is halved on the mere chance that stability or contact changes twice in it."""
+DEEPEST_UNDAMPED = 2
+"""The same where all multipliers lie on the unit circle, where closer looks only tell rounding."""
 APART = 1e-6
 """Special points that lie closer on a step share the stretch between two points of the branch."""
 ASIDE = 1e-6
@@ -95,15 +97,17 @@ def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[
         return _loosening(segment, low, high, depth)
     events, mixed = _events(segment.period_map, first, second)
     between = None
+    may_halve = depth < (DEEPEST if is_damped(segment, low, high) else DEEPEST_UNDAMPED)
     if mixed and high - low > SHORTEST:
         between = 0.5 * (low + high)
-    elif depth < DEEPEST:
+    elif may_halve:
         between = _hidden(segment, low, high)
     if between is None:
         specials = [_refined(segment, low, high, event) for event in events]
-        between = _leap(segment.period_map, specials, low, high)
-        if between is None and depth < DEEPEST and may_change(segment, low, high):
-            between = _kink(specials, low, high)
+        if may_halve:
+            between = _leap(segment.period_map, specials, low, high)
+            if between is None and may_change(segment, low, high):
+                between = _kink(specials, low, high)
     if between is None:
         return specials
     return _between(segment, low, between, depth + 1) + _between(segment, between, high, depth + 1)
@@ -149,7 +153,8 @@ def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -
         between = hidden_graze(segment, low, high)
     if between is None:
         specials = [_refined(segment, low, high, event) for event in events]
-        between = _leap(segment.period_map, specials, low, high)
+        if depth < DEEPEST:
+            between = _leap(segment.period_map, specials, low, high)
     if between is None:
         return specials
     return _grazes_between(segment, low, between, depth + 1) + _grazes_between(

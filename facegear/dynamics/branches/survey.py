@@ -52,10 +52,10 @@ def survey(
 
     Every branch that a symmetry of the system does not map to itself has its images behind it, which are not
     followed but mapped. These are all periodic motions that hang together with a motion of the start or of
-    `motions` by branches of up to longest_period mesh periods, with these bounds: motions that no branch
-    leads to and no start has found are missing; where several multipliers pass one together, as at equal
-    pinions all around, one of the branches that leave the point is followed with its images; and what leaves
-    a Neimark-Sacker point is not periodic.
+    `motions` by branches of up to longest_period mesh periods, with these bounds. Motions that no branch
+    leads to and no start has found are missing, also where a branch of `motions` ends on such a branch.
+    Where several multipliers pass one together, as at equal pinions all around, one of the branches that
+    leave the point is followed with its images. What leaves a Neimark-Sacker point is not periodic.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def survey(
     max_branches
         Largest number of branches that are followed, without their images.
     progress
-        Is told of each branch.
+        Called with a line about each branch.
     """
     search = _Search(run, longest_period, max_branches, progress)
     search.follow(*start, "the first motion")

@@ -8,13 +8,10 @@ import numpy as np
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.mirror_images import held_symmetries
 from facegear.dynamics.steady_state.simulate import Model, simulate
-from facegear.dynamics.sweeps.jumps import distance
 from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.rms_distance import SAME, distance
 from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds
 from facegear.dynamics.symmetries import Symmetry, symmetries
-
-SAME = 5e-3
-"""Relative difference of the AC RMS of periodic motions that counts as the same orbit."""
 
 
 class SeamKind(StrEnum):

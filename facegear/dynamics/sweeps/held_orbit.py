@@ -5,31 +5,41 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
 from facegear.dynamics.steady_state.orbits import UNIT_TOLERANCE, Orbit, shoot
 from facegear.dynamics.steady_state.simulate import Model
+from facegear.dynamics.sweeps.rms_distance import MIN_CHANGE, distance
 from facegear.errors import NotConverged
 from facegear.transmission.machine import mesh_frequency
 
 FINE = 1e-8
 """Tolerance of a step, in length scales: special points are then exact to 1e-6 of the speed or better."""
-PARTS = 8
+PARTS = 2
 """A range of speeds is searched in at least so many steps, so that a short unstable part is not skipped."""
 NEAR = 0.2
-"""Largest change of an orbit's state in one step, in length scales; else the step is halved. Another orbit
-that Newton's method may come to lies farther away, or the step is halved until it does."""
+"""Largest change of an orbit's state in one step, in length scales; else the step is halved."""
+SMOOTH = 0.95 * MIN_CHANGE
+"""Largest relative change of a mesh's AC RMS in one step; else the step is halved. What still changes by more
+within the resolution is another orbit, to which Newton's method came across a fold."""
+SAMPLES = 256
+"""Samples in a mesh period for the AC RMS, which errs by less than 1e-3."""
 
 
 @dataclass(frozen=True, eq=False)
 class HeldOrbit:
-    """An orbit of `period` mesh periods at a speed (rpm), and its state."""
+    """An orbit of `period` mesh periods at a speed (rpm), its state, and the AC RMS (meshes,), m, of the mesh
+    deflections.
+    """
 
     speed: float
     period: int
     state: State
+    ac_rms: Array
 
 
 def machine_follower(model: Model, settings: Settings) -> "OrbitFollower":
@@ -64,17 +74,19 @@ class OrbitFollower:
         """Return the last orbit that is found stable on the way to a speed, and the speed (rpm), at most
         `resolution` beyond it, at which it is not; None in place of it if it is stable up to the end.
         """
-        step = (end - orbit.speed) / PARTS
+        whole = abs(end - orbit.speed)
+        onward, step, again = 1.0 if end > orbit.speed else -1.0, whole / PARTS, False
         while orbit.speed != end:
-            left = end - orbit.speed
-            target = end if abs(left) <= 1.001 * abs(step) else orbit.speed + step
+            left = abs(end - orbit.speed)
+            target = end if left <= 1.001 * step else orbit.speed + onward * step
             stable = self._stable(target, orbit.state, orbit.period)
-            if stable is not None:
-                orbit = stable
+            if stable is not None and distance(stable.ac_rms, orbit.ac_rms) <= SMOOTH:
+                step = min(2.0 * step, whole / PARTS) if again else step
+                orbit, again = stable, True
             elif abs(target - orbit.speed) <= resolution:
                 return orbit, target
             else:
-                step *= 0.5
+                step, again = 0.5 * min(step, left), False
         return orbit, None
 
     def aside(self, last: HeldOrbit, speed: float, kick: float) -> State:
@@ -94,7 +106,10 @@ class OrbitFollower:
         integrator, orbit = self._near(speed, state, period)
         if orbit is None or abs(orbit.multipliers[0]) > 1.0 + UNIT_TOLERANCE:
             return None
-        return HeldOrbit(speed, period, integrator.by_time(orbit.state))
+        samples = integrator.run(orbit.state, period, samples=SAMPLES).samples
+        system = integrator.system
+        deflections = by_mesh(system, each_deflection(system, samples, SAMPLES))
+        return HeldOrbit(speed, period, integrator.by_time(orbit.state), deflections.std(axis=0))
 
     def _near(self, speed: float, state: State, period: int) -> tuple[Integrator, Orbit | None]:
         """The orbit of a period at a speed to which a state belongs, stable or not, with its integrator."""

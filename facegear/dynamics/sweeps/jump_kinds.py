@@ -7,7 +7,8 @@ class JumpKind(StrEnum):
     """What an abrupt change of the response between two speeds is.
 
     JUMP: the periodic motion before it ends or loses its stability there, and another periodic one follows.
-    STEP: the sweep left a periodic motion that is stable at both speeds, because its step was too large.
+    STEP: another periodic motion follows, but no loss of stability was found: the sweep left a motion that is
+    stable at both speeds, because its step was too large, or the orbit could not be followed.
     IRREGULAR: the motion on one side is not periodic.
     """
 

@@ -5,7 +5,7 @@ its stability. That speed belongs to the motion, so it depends neither on the sp
 far a run is from the edge of its basin. Motions that are not periodic are bracketed by bisection.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,19 +17,15 @@ from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
+from facegear.dynamics.sweeps.rms_distance import FLOOR, MIN_CHANGE, SAME, distance, image_distance
 from facegear.dynamics.sweeps.sweep import Piece
 from facegear.ties import first_largest
 
-MIN_CHANGE = 0.1
-"""Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
 ABRUPT = 3.0
 """A jump is this many times the change over the speeds around it."""
-FLOOR = 1e-3
-"""AC RMS below this fraction of the largest is not compared."""
-SAME = 5e-3
-"""Relative difference of the AC RMS of periodic motions that counts as the same orbit."""
-MAX_CHANGES = 8
-"""Smooth changes of the motion, such as period doublings, that are passed on the way to a jump."""
+MAX_CHANGES = 4
+"""Smooth changes of the motion, such as period doublings, that are followed on the way to a jump; what comes
+after them is bracketed by bisection."""
 KICKS = (0.01, 0.05, 0.2)
 """Disturbances of an orbit that has just lost its stability, in length scales; the first after which a run
 settles counts. Without any it takes some 10,000 periods to leave an orbit with a multiplier of 1.0005."""
@@ -90,19 +86,24 @@ class Jump:
         return JumpKind.JUMP if self.followed else JumpKind.STEP
 
 
-def suspects(piece: Piece) -> list[int]:
-    """Positions i where the response jumps on the way from speed i to i + 1."""
+def suspects(piece: Piece) -> dict[int, bool]:
+    """Return positions i where the response may jump on the way from speed i to i + 1, and if abruptly.
+
+    Abrupt is what is larger than the changes around it. Between periodic motions every change that is large
+    enough for a jump counts, since following the orbit tells a jump from a steep curve.
+    """
     ac_rms, interval = piece.deflection_ac_rms, piece.deflection_ac_rms_interval
     floor = FLOOR * ac_rms.max()
     logs = np.log(np.maximum(ac_rms, floor))
     doubt = interval / np.maximum(ac_rms, floor)
     change = np.abs(np.diff(logs, axis=0)) - 2.0 * (doubt[1:] + doubt[:-1])
-    largest = change.max(axis=1)
     around = np.full_like(change, 0.0)
     around[1:] = np.maximum(around[1:], change[:-1])
     around[:-1] = np.maximum(around[:-1], change[1:])
-    abrupt = (change > ABRUPT * around) & (change > np.log1p(MIN_CHANGE))
-    return [int(i) for i in np.flatnonzero(abrupt.any(axis=1) & (largest > 0.0))]
+    large = change > np.log1p(MIN_CHANGE)
+    abrupt = (large & (change > ABRUPT * around)).any(axis=1)
+    steep = large.any(axis=1) & piece.periodic[1:] & piece.periodic[:-1]
+    return {int(i): bool(abrupt[i]) for i in np.flatnonzero(abrupt | steep)}
 
 
 def refine(
@@ -112,31 +113,49 @@ def refine(
     follower: OrbitFollower,
     resolution: float,
     images: Integers,
+    thorough: bool,
 ) -> Course[Jump | None]:
     """Find where the motion at a position of a sweep is lost before the next position; None if it is not.
 
-    images (images, meshes): how symmetries of the machine exchange meshes. Mirror images are one motion.
+    Parameters
+    ----------
+    piece, position
+        The sweep, and the number of the speed before the change.
+    respond
+        The response at a speed (rpm) from a state.
+    follower
+        Follows orbits over the speed.
+    resolution
+        Width of the bracket, rpm.
+    images : (images, meshes)
+        How symmetries of the machine exchange meshes. Mirror images are one motion.
+    thorough
+        Whether to bisect where no orbit can be followed, and to wait for a motion that settles slowly.
     """
     before, end = (_stored_side(piece, i) for i in (position, position + 1))
     step = abs(end.speed - before.speed)
     for _ in range(MAX_CHANGES):
         orbit = follower.orbit(before.speed, before.state, before.period)
+        if orbit is None and not thorough:
+            return None
         if orbit is None:
             before, after = yield from bracket(before, end, respond, resolution, images)
             return _jump(piece, position, before, after, images, step, False)
         last, beyond = follower.until_lost(orbit, end.speed, resolution)
         if beyond is None:
-            still = yield from _seen(end.speed, last, respond)
-            if image_distance(still.ac_rms, end.ac_rms, images) <= SAME and still.period == end.period:
+            if image_distance(last.ac_rms, end.ac_rms, images) <= SAME and last.period == end.period:
                 return None
             return _jump(piece, position, before, end, images, step, False)
         before = yield from _seen(last.speed, last, respond)
-        after = yield from _beyond(last, beyond, follower, respond)
+        after = yield from _beyond(last, beyond, follower, respond, KICKS if thorough else KICKS[:1])
         if abrupt(before, after, images):
             width = abs(after.speed - before.speed)
             return _jump(piece, position, before, after, images, width, True)
         before = after
-    return None
+    if not thorough:
+        return None
+    before, after = yield from bracket(before, end, respond, resolution, images)
+    return _jump(piece, position, before, after, images, step, False)
 
 
 def _seen(speed: float, orbit: HeldOrbit, respond: Respond) -> Course[JumpSide]:
@@ -145,13 +164,15 @@ def _seen(speed: float, orbit: HeldOrbit, respond: Respond) -> Course[JumpSide]:
     return side(speed, response)
 
 
-def _beyond(last: HeldOrbit, speed: float, follower: OrbitFollower, respond: Respond) -> Course[JumpSide]:
+def _beyond(
+    last: HeldOrbit, speed: float, follower: OrbitFollower, respond: Respond, kicks: Sequence[float]
+) -> Course[JumpSide]:
     """What follows an orbit at a speed at which it is lost.
 
     It may be left, and the next motion approached, so slowly that no run settles: then a run goes on once,
     and larger disturbances are tried. A class that other starts have taken back stays undecided.
     """
-    for kick in KICKS:
+    for kick in kicks:
         state = follower.aside(last, speed, kick)
         for _ in range(RUNS):
             response = yield from respond(speed, state)
@@ -239,14 +260,3 @@ def side(speed: float, response: SteadyState) -> JumpSide:
         symmetry_broken=symmetry_broken(response),
         state=response.state,
     )
-
-
-def distance(first: Array, second: Array) -> float:
-    """Largest ratio between two sets of AC RMS, as a logarithm, with the same floor as in `suspects`."""
-    floor = FLOOR * max(first.max(), second.max(), 1e-300)
-    return float(np.abs(np.log(np.maximum(first, floor) / np.maximum(second, floor))).max())
-
-
-def image_distance(first: Array, second: Array, images: Integers) -> float:
-    """Smallest distance() of one set of AC RMS from the images (images, meshes) of another."""
-    return min(distance(first, second[image]) for image in images)

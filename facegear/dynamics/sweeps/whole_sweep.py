@@ -35,7 +35,7 @@ def whole_sweep(
 
     follower, images = machine_follower(model, plan.settings), mesh_images(model.system)
 
-    def bracketed(piece: Piece, position: int) -> Course[Jump | None]:
+    def bracketed(piece: Piece, position: int, thorough: bool) -> Course[Jump | None]:
         jump = yield from refine(
             piece,
             position,
@@ -43,13 +43,14 @@ def whole_sweep(
             follower,
             plan.jump_resolution_rpm,
             images,
+            thorough,
         )
         step()
         return jump
 
-    where = [(name, position) for name, (piece, _) in whole.items() for position in suspects(piece)]
-    jumps = _on_threads([bracketed(whole[name][0], position) for name, position in where], threads)
-    named = [(name, jump) for (name, _), jump in zip(where, jumps, strict=True)]
+    where = [(name, *suspect) for name, (piece, _) in whole.items() for suspect in suspects(piece).items()]
+    jumps = _on_threads([bracketed(whole[name][0], at, abrupt) for name, at, abrupt in where], threads)
+    named = [(name, jump) for (name, _, _), jump in zip(where, jumps, strict=True)]
     return {
         name: Direction(piece, seams, [jump for of, jump in named if of == name and jump is not None])
         for name, (piece, seams) in whole.items()

@@ -29,6 +29,7 @@ LOAD_ROWS = (
     Stage(
         name="root_stress",
         title="Root stress of both gears",
+        needs={**PAIR, "mesh": "mesh", "contact": "contact"},
         upstream={**FLANKS, "loads": From("contact", "loads")},
         files={
             "summary": File("strength/root_stress.csv", "facegear.strength.columns:ROOT_STRESS_FINITE"),

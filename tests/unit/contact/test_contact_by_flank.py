@@ -12,11 +12,12 @@ from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact import analysis
-from facegear.contact.gear_flank import to_arrays
+from facegear.contact.gear_flank import from_arrays, to_arrays
 from facegear.contact.pair import gear_flank
+from facegear.geometry.bodies import BODIES
 from facegear.geometry.flank_errors import FLANKS, GEARS, errors_at
 from facegear.stages.contact import contents
-from facegear.stages.root_stress import root_stress
+from facegear.stages.root_stress import root_contents
 from facegear.strength.root_tables import root_from_arrays
 
 CONTACT = {
@@ -72,7 +73,8 @@ def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, fou
 
 def test_an_offset_parts_the_root_stress_of_both_flanks_and_each_is_given(bodies, found):
     """An offset of 50 um counted for both flanks alike, 652 and 704 MPa at 1000 N m."""
-    stress = root_stress(*map(to_arrays, bodies), found["loads"]).content
+    flanks = dict(zip(BODIES, (from_arrays(to_arrays(body)) for body in bodies), strict=True))
+    stress = root_contents(flanks, found["loads"], dict.fromkeys(BODIES, 0.0))
     message = stress["by_flank"].set_index(["gear", "flank", "body", "fillet"])["largest_mpa"]
     drive, back = (message["upper", flank, "face_gear", "loaded"] for flank in FLANKS)
     assert back > 1.03 * drive

@@ -23,10 +23,13 @@ from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
 from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep
+from facegear.dynamics.symmetries import mesh_images
 from facegear.io import arrays
 from facegear.plots.campbell import campbell
 from validation.dynamics.convergence import Watched, convergence_table, not_converged, watched_longer
 
+AS_THEY_ARE = np.arange(10)[None]
+"""Images of a machine without symmetries."""
 SETTINGS = Settings(tolerance=1e-5, settle=256, window=64, periodic_residual=1e-7, extensions=0)
 
 
@@ -241,7 +244,7 @@ def test_irregular_motion_has_a_positive_exponent_and_an_interval_on_its_rms(mod
     assert (gap < 3.0 * doubt).mean() >= 0.8
 
 
-def test_convergence_names_the_speeds_that_moved_or_changed_class(whole):
+def test_convergence_names_the_speeds_that_moved_or_changed_class(model, whole):
     piece = whole["up"].piece
     first, second, third = np.flatnonzero(piece.periodic)[:3]
     ac_rms, period = piece.deflection_ac_rms.copy(), piece.period.copy()
@@ -252,7 +255,7 @@ def test_convergence_names_the_speeds_that_moved_or_changed_class(whole):
         third: Watched(("period-1", "period-1", "chaotic", "period-1"), None, ac_rms[third]),
     }
     finer = replace(piece, deflection_ac_rms=ac_rms, period=period)
-    table = convergence_table("up", piece, finer, watched)
+    table = convergence_table("up", piece, finer, watched, mesh_images(model.system))
     assert table["verdict"][first] == "moved"
     assert table["rms_change"][first] == pytest.approx(0.02)
     assert (table["verdict"][second], table["verdict"][third]) == ("converged", "sensitive")
@@ -282,7 +285,7 @@ def test_a_class_that_changes_is_judged_by_what_four_long_runs_agree_on(
     piece = replace(piece, motion=np.array([named]), period=np.array([period]))
     watched = Watched(("any",) * 4, in_all_four, piece.deflection_ac_rms[0])
     finer = replace(piece, period=np.array([in_all_four or 5]))
-    assert convergence_table("up", piece, finer, {0: watched})["verdict"][0] == verdict
+    assert convergence_table("up", piece, finer, {0: watched}, AS_THEY_ARE)["verdict"][0] == verdict
 
 
 def test_an_orbit_that_one_run_took_for_another_is_watched_longer_from_both_states(model, whole):
@@ -291,3 +294,18 @@ def test_an_orbit_that_one_run_took_for_another_is_watched_longer_from_both_stat
     watched = watched_longer(model, piece, other, SETTINGS)[0]
     assert watched.labels == ("period-1",) * 4 and watched.period == 1
     np.testing.assert_allclose(watched.ac_rms, piece.deflection_ac_rms[0], rtol=1e-3)
+
+
+def test_convergence_counts_the_mirror_image_of_a_motion_as_the_same(model, whole):
+    piece = whole["up"].piece.part(slice(0, 1))
+    uneven = piece.deflection_ac_rms * np.linspace(1.0, 1.1, piece.deflection_ac_rms.shape[1])
+    image = mesh_images(model.system)[1]
+    first, other = (
+        replace(piece, deflection_ac_rms=uneven),
+        replace(piece, deflection_ac_rms=uneven[:, image]),
+    )
+    verdicts = [
+        convergence_table("up", first, other, {}, images)["verdict"][0]
+        for images in (mesh_images(model.system), AS_THEY_ARE)
+    ]
+    assert verdicts == ["converged", "moved"]

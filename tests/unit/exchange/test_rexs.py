@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import facegear
 from facegear.errors import FacegearError
 from facegear.exchange.rexs import LOST, Shaft, Spur, Unit, read_rexs, write_rexs
-from facegear.variants.gear_unit import gear_unit
+from facegear.variants.gear_unit import gear_unit, known_of_rexs
 
 CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
 KNOWN = {
@@ -112,6 +112,7 @@ TWO_SHAFTS = (
     '<component id="2" type="cylindrical_gear"><attribute id="number_of_teeth">25</attribute>'
     '<attribute id="normal_module">4</attribute></component></components></model>'
 )
+HELICAL = "gear 2: helix_angle = 15 deg: must be 0, as only spur pinions are read"
 REPLACED = [
     (">1.5<", ">heavy<", "component 1: mass_of_component = 'heavy': must be a finite number"),
     (">1.5<", ">1e999<", "component 1: mass_of_component = '1e999': must be a finite number"),
@@ -122,6 +123,14 @@ REPLACED = [
     (' type="shaft"', "", "has no attribute type"),
     (' role="part"', "", "an element ref (id='2') has no attribute role"),
     ('<ref id="2"', '<ref id="7"', "names component '7', which is absent"),
+    ('<component id="2"', '<component id="1"', "component id '1' stands twice: must be unique"),
+    ('"number_of_teeth"', '"helix_angle">15</attribute><attribute id="number_of_teeth"', HELICAL),
+    ('"normal_module"', '"normal_module" unit="inch"', "unit of normal_module = 'inch': must be 'mm'"),
+    (
+        '"normal_module"',
+        '"normal_module">4</attribute><attribute id="normal_module"',
+        "normal_module stands twice",
+    ),
 ]
 
 
@@ -136,3 +145,25 @@ def test_a_fault_inside_a_file_is_named_in_one_line(tmp_path, old, new, line):
     with pytest.raises(FacegearError) as caught:
         read_rexs(path)
     assert line in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "form"), [(b"PK\x03\x04rest", "zipped (.rexsz)"), (b' {"model": {}}', "JSON (.rexsj)")]
+)
+def test_other_forms_of_rexs_are_named(tmp_path, content, form):
+    path = tmp_path / "own.rexs"
+    path.write_bytes(content)
+    with pytest.raises(FacegearError) as caught:
+        read_rexs(path)
+    assert str(caught.value) == f"{path}: this is the {form} form of REXS; save it as XML (.rexs)"
+
+
+def test_axial_stiffness_is_taken_over_and_a_rigid_bearing_is_noted(tmp_path):
+    """A bearing of 1e20 N/m was refused without a word on what is allowed, and axial stiffness was lost."""
+    spur = Spur(teeth=25, module=4.0, width=30.0, pressure_angle=20.0, bore=20.0)
+    unit = Unit((Shaft("one", mass=2.0, radial=1e20, axial=3e8, spur=spur),), None, None)
+    path = write_rexs(tmp_path / "own.rexs", unit, "2026-01-01T00:00:00+00:00", "1.0")
+    found = known_of_rexs(path)
+    assert found.values["axial_bearing_n_per_m"] == 3e8
+    assert found.values["input_bearing_n_per_m"] == 1e12
+    assert found.notes == (f"{path}: input_bearing_n_per_m = 1e+20: taken as rigid, 1e+12 N/m",)

@@ -184,7 +184,7 @@ def test_a_given_value_stands_in_the_config(key, value, place, tmp_path):
 
 
 def test_a_machine_without_load_is_refused_in_one_line():
-    with pytest.raises(ConfigError, match=r"^torque_n_m = 0: must be above 0$"):
+    with pytest.raises(ConfigError, match=r"^torque_n_m = 0: must be from 1e-05 to 1e\+06$"):
         first_machine(Known("own", 23, 143, 3.75, 0, 7500))
 
 

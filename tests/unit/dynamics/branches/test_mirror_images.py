@@ -80,23 +80,29 @@ def machine_survey():
     u = float(np.log(9400.0))
     response = simulate(model, 9400.0, Settings(tolerance=1e-7))
     start = at_parameter(period_map, period_map.weighted(response.state, u), u)
-    run = ContinuationSettings(9400.0, 9800.0)
-    return model, period_map, survey((period_map, start), [], run, 1, 9)
+    motions = [(period_map, motion.point, "starts") for motion in motions_of_starts(model, period_map, 8, 2)]
+    run = ContinuationSettings(9400.0, 9500.0)
+    return model, period_map, survey((period_map, start), motions, run, 1, 9)
 
 
-def test_images_of_a_machines_branch_are_those_that_starts_end_on():
-    """Exchanging the idlers left and right maps one to the other."""
+def motions_of_starts(model, period_map, count, seed):
+    """Motions of one mesh period at 9450 rpm on which random starts end."""
+    rest = period_map.weighted(static_start(model), float(np.log(9450.0)))
+    aside = np.random.default_rng(seed).uniform(-0.3, 0.3, size=(count, rest.size))
+    motions = explore(period_map, 9450.0, rest + aside, QUICK)
+    return [motion for motion in motions if motion.point is not None and motion.period == 1]
+
+
+def test_with_its_images_a_few_starts_show_every_motion_that_many_starts_find():
+    """Exchanging the idlers left and right maps three of the seven stable motions to another one."""
     model, period_map, found = machine_survey()
-    images = [branch for branch in found.branches if branch.image_of is not None]
-    assert images
-    u = float(np.log(9700.0))
-    rest = period_map.weighted(static_start(model), u)
-    starts = rest + 0.3 * np.random.default_rng(2).uniform(-1.0, 1.0, size=(12, rest.size))
-    motions = explore(period_map, 9700.0, starts, QUICK)
-    periodic = [one for one in motions if one.point is not None and one.period == 1]
-    assert len(periodic) >= 2
-    for motion in periodic:
+    motions = motions_of_starts(model, period_map, 60, 3)
+    assert len(motions) >= 6
+    for motion in motions:
         assert sum(lies_on(branch, motion.point, 1) for branch in found.branches) == 1
+    stable = [number for number, _ in stable_at(found.branches, 9450.0)]
+    assert len(stable) == len(motions)
+    assert sum(found.branches[number].image_of is not None for number in stable) == 3
 
 
 def test_an_image_has_the_multipliers_and_special_points_that_following_it_gives():
