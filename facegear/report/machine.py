@@ -193,7 +193,7 @@ def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> st
         return ""
     size, cut = (float(table[name].iloc[0]) for name in ("e_peak_to_peak_um", "e_truncation_error_um"))
     words = (
-        f"{size:.3g} um peak to peak, the {len(table) - 1} orders kept within {cut:.2g} um of it"
+        f"{size:.3g} µm peak to peak, the {len(table) - 1} orders kept within {cut:.2g} µm of it"
         if size > 0.0
         else "constant, so e(t) from contact is zero"
     )
