@@ -21,7 +21,15 @@ class SweepResult(Result):
     STAGE: ClassVar = "dynamics_sweep"
     BESIDE: ClassVar = {"frequencies": ("modal", "frequencies")}
 
-    def table(self) -> "xr.Dataset":
+    def table(self) -> pd.DataFrame:
+        """Return every number of the sweep, one row each.
+
+        Columns: `direction` (up or down), `speed_rpm` of the pinions, `quantity` (with its unit at the end,
+        such as `deflection_ac_rms_um`), `body_or_mesh`, `value`, and `class` of the motion there.
+        """
+        return self.content["sweep"].copy()
+
+    def dataset(self) -> "xr.Dataset":
         """Every quantity (unit at the end of its name) over direction, speed_rpm and mesh or body.
 
         `class` is the class of motion; a value that does not exist at a speed is NaN.
