@@ -28,6 +28,9 @@ class StageOutput:
 class Result:
     """One stage's results; `source` says whether they were computed now or stored by the workflow.
 
+    Its tables are pandas frames; the unit of a column stands at the end of its name (`_um`, `_n_per_m`), and
+    a column without one is a name, a count, a fraction or a ratio.
+
     - STAGE: name of the stage
     - BESIDE: parts that are shown with them, each from a file of another stage
     """
