@@ -10,6 +10,11 @@ def one_blas_thread() -> Iterator[None]:
 
     Fronts of an elimination and matrices of a contact or of a machine are small. Threads that wait for one
     another at full speed take several times the processor time there, and on a busy machine longer as well.
+
+    Returns
+    -------
+    Iterator[None]
+        A context, with nothing to be used inside.
     """
     import scipy.linalg  # noqa: F401 - brings a BLAS of its own; only what is loaded can be limited
     from threadpoolctl import threadpool_limits

@@ -611,6 +611,25 @@ class Gearbox:
         """
         return self._whole_case(on_stage).write_report(path)
 
+    def summary(self) -> str:
+        """Write what is known of the machine as lines for the terminal; geometry is all that it computes.
+
+        Returns
+        -------
+        str
+            Status, key numbers, verdicts with their reasons, and gear data as on a drawing. What was computed
+            in this session, or is stored and current, is in it.
+
+        Examples
+        --------
+        >>> import facegear
+        >>> print(facegear.example().summary().splitlines()[2])
+        Teeth, module         23 / 143   (3.75 mm, ratio 6.217)
+        """
+        from facegear.results.summary import summary_text
+
+        return summary_text(Chain(self._values, self.store, expand_cases(self.config)))
+
     def run(self, folder: str | Path, on_stage: Callable[[str, str], None] | None = None) -> Path:
         """Compute all that the config asks for in this process and write it, with figures and report.
 

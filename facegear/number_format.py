@@ -6,7 +6,7 @@ PLAIN = (1e-3, 1e6)
 """Numbers from the first up to the second are written without a power of ten, a free choice."""
 
 
-def format_number(value: float, digits: int = 3, *, grouped: bool = True) -> str:
+def format_number(value: float, digits: int = 3, *, group_digits: bool = True) -> str:
     """Write a number with `digits` significant digits; whole numbers are written in full.
 
     Parameters
@@ -15,7 +15,7 @@ def format_number(value: float, digits: int = 3, *, grouped: bool = True) -> str
         The number, any unit.
     digits : int
         Significant digits, dimensionless. Below 1e-3 and from 1e6 on a power of ten follows.
-    grouped : bool
+    group_digits : bool
         Whether a comma stands before every three digits of the whole part.
 
     Returns
@@ -36,10 +36,10 @@ def format_number(value: float, digits: int = 3, *, grouped: bool = True) -> str
         mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         return f"{_without_end_zeros(mantissa)}e{int(exponent)}"
     decimals = max(digits - 1 - floor(log10(abs(value))), 0)
-    return _without_end_zeros(f"{value:{',' if grouped else ''}.{decimals}f}")
+    return _without_end_zeros(f"{value:{',' if group_digits else ''}.{decimals}f}")
 
 
-def counted(number: int, singular: str, plural: str = "") -> str:
+def count_noun(number: int, singular: str, plural: str = "") -> str:
     """Write a count with its noun.
 
     Parameters
@@ -56,7 +56,7 @@ def counted(number: int, singular: str, plural: str = "") -> str:
 
     Examples
     --------
-    >>> counted(1, "case"), counted(0, "case"), counted(3200, "mesh", "meshes")
+    >>> count_noun(1, "case"), count_noun(0, "case"), count_noun(3200, "mesh", "meshes")
     ('1 case', '0 cases', '3,200 meshes')
     """
     return f"{number:,} {singular if number == 1 else plural or singular + 's'}"

@@ -15,25 +15,63 @@ TIE = 1e-4
 
 
 def first_largest(values: Array) -> int:
-    """Position of the first of values (n,) that are as large as the largest; NaN counts as smaller."""
-    return int(np.flatnonzero(values >= _least_tied(np.nanmax(values)))[0])
+    """Find the first of the values that are as large as the largest.
+
+    Parameters
+    ----------
+    values : (n,)
+        Numbers of one unit; NaN counts as smaller than all others.
+
+    Returns
+    -------
+    int
+        Position of the value, from 0 to n - 1.
+    """
+    return int(np.flatnonzero(values >= _smallest_tie(np.nanmax(values)))[0])
 
 
 def first_largest_row(table: pd.DataFrame, column: str) -> pd.Series:
-    """Row of a table whose number in a column is as large as the largest, the first of several."""
+    """Find the first row of a table whose number is as large as the largest of its column.
+
+    Parameters
+    ----------
+    table : DataFrame
+        At least one row, of any units.
+    column : str
+        Name of a column of numbers.
+
+    Returns
+    -------
+    Series
+        The row, in the units of the table.
+    """
     return table.iloc[first_largest(table[column].to_numpy(float))]
 
 
 def first_largest_rows(table: pd.DataFrame, column: str, keys: list[str], sort: bool = False) -> pd.DataFrame:
-    """One row for each group of `keys`, the first as large as its largest, in the order of appearance or,
-    with `sort`, of the keys.
+    """Find the first row of each group whose number is as large as the largest of its group.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Rows of any units.
+    column : str
+        Name of a column of numbers.
+    keys : list of str
+        Columns whose values are equal within a group.
+    sort : bool
+        Whether groups come in the order of their keys, not of their appearance.
+
+    Returns
+    -------
+    DataFrame
+        One row for each group, in the units of the table.
     """
-    grouped = table.groupby(keys, sort=sort)[column]
-    tied = table[column] >= _least_tied(grouped.transform("max"))
-    levelled = table[column].mask(tied, grouped.transform("max"))
+    largest = table.groupby(keys, sort=sort)[column].transform("max")
+    levelled = table[column].mask(table[column] >= _smallest_tie(largest), largest)
     return table.loc[levelled.groupby([table[key] for key in keys], sort=sort).idxmax()]
 
 
-def _least_tied(largest: Any) -> Any:
+def _smallest_tie(largest: Any) -> Any:
     """Smallest number that counts as equal to the largest, of numbers or arrays of them."""
     return largest - TIE * abs(largest)

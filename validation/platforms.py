@@ -1,4 +1,4 @@
-"""What moves between processors and threads: `python -m validation.platforms [PLATFORM ...]`.
+"""Measure what moves between processors and threads: `python -m validation.platforms [PLATFORM ...]`.
 
 Processes of their own run the same tests natively and with lowered levels of instructions in NumPy, OpenBLAS
 and numba, on one and two threads. A level can only be lower than that of the machine. Every number of the
@@ -113,13 +113,18 @@ def run_on(name: str) -> None:
 def _pytest(name: str, ending: str, *options: str) -> int:
     """Exit code of pytest on a platform; what it prints goes to a file."""
     platform = PLATFORMS[name]
-    own = {**os.environ, **platform.environment, **dict.fromkeys(THREADS, str(platform.threads))}
+    environment = {**os.environ, **platform.environment, **dict.fromkeys(THREADS, str(platform.threads))}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "faulthandler", "--tb=short", *options]
     with numbers_of(name).with_suffix(ending).open("w", encoding="utf-8") as log:
-        done = subprocess.run(
-            command, cwd=ROOT, env={**own, "PYTHONPATH": str(ROOT)}, stdout=log, stderr=log, check=False
+        process = subprocess.run(
+            command,
+            cwd=ROOT,
+            env={**environment, "PYTHONPATH": str(ROOT)},
+            stdout=log,
+            stderr=log,
+            check=False,
         )
-    return done.returncode
+    return process.returncode
 
 
 def numbers_of(name: str) -> Path:
@@ -179,21 +184,40 @@ def table_of_platforms() -> pd.DataFrame:
 
 
 def outcomes(name: str, report: Path) -> dict[str, object]:
-    """One row, OUTCOME_COLUMNS, of a report in JUnit's format: tests that passed, and those that did not."""
+    """Count the tests that passed on a platform, and name those that did not.
+
+    Parameters
+    ----------
+    name : str
+        The platform.
+    report : Path
+        File in JUnit's format.
+
+    Returns
+    -------
+    dict
+        One row, OUTCOME_COLUMNS; numbers of tests.
+    """
     cases = list(ElementTree.parse(report).getroot().iter("testcase"))
-    failed = [each for each in cases if each.find("failure") is not None or each.find("error") is not None]
-    skipped = sum(each.find("skipped") is not None for each in cases)
-    names = " ".join(f"{each.get('classname')}::{each.get('name')}" for each in failed)
+    failures = [case for case in cases if case.find("failure") is not None or case.find("error") is not None]
+    skipped = sum(case.find("skipped") is not None for case in cases)
+    names = " ".join(f"{case.get('classname')}::{case.get('name')}" for case in failures)
     return {
         "platform": name,
-        "passed": len(cases) - len(failed) - skipped,
-        "failed": len(failed),
+        "passed": len(cases) - len(failures) - skipped,
+        "failed": len(failures),
         "failed_tests": names,
     }
 
 
 def table_of_outcomes() -> pd.DataFrame:
-    """OUTCOME_COLUMNS, a row for each platform that has run."""
+    """Collect the outcomes of all platforms that have run.
+
+    Returns
+    -------
+    DataFrame
+        OUTCOME_COLUMNS, a row for each platform; numbers of tests.
+    """
     reports = {name: numbers_of(name).with_suffix(".xml") for name in PLATFORMS}
     rows = [outcomes(name, report) for name, report in reports.items() if report.exists()]
     return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
@@ -213,27 +237,44 @@ def platforms_table(measured: pd.DataFrame) -> str:
     return "\n".join(lines)
 
 
-def outcomes_table(measured: pd.DataFrame) -> str:
-    """Markdown: how many tests passed on each platform, and the names of those that did not."""
+def outcomes_table(table: pd.DataFrame) -> str:
+    """Write in Markdown how many tests passed on each platform, and the names of those that did not.
+
+    Parameters
+    ----------
+    table : DataFrame
+        OUTCOME_COLUMNS; numbers of tests.
+
+    Returns
+    -------
+    str
+        A table of Markdown.
+    """
     lines = ["| platform | passed | failed | names |", "|---|---|---|---|"]
-    for row in measured.fillna("").itertuples():
+    for row in table.fillna("").itertuples():
         lines.append(f"| {row.platform} | {row.passed} | {row.failed} | {row.failed_tests or '-'} |")
     return "\n".join(lines)
 
 
 def main(names: list[str]) -> int:
-    """Run on the platforms named, or on all; the tables are written after each. 1 where a test failed."""
+    """Run on the platforms named, or on all, and write the tables after each.
+
+    Returns
+    -------
+    int
+        Exit code: 1 where a test failed, else 0.
+    """
     for name in names or PLATFORMS:
         run_on(name)
-        measured = table_of_outcomes()
-        row = measured.set_index("platform").loc[name]
+        table = table_of_outcomes()
+        row = table.set_index("platform").loc[name]
         end = numbers_of(name).with_suffix(".end").read_text(encoding="utf-8")
         print(f"{name}: references {end}; {row['passed']} tests passed, {row['failed']} failed", flush=True)
         if row["failed"]:
             print(f"  {row['failed_tests']}", flush=True)
         if numbers_of(next(iter(PLATFORMS))).exists():
             table_of_platforms().to_csv(MEASURED, index=False, float_format="%.3g", lineterminator="\n")
-        measured.to_csv(OUTCOMES, index=False, lineterminator="\n")
+        table.to_csv(OUTCOMES, index=False, lineterminator="\n")
     ends = [numbers_of(name).with_suffix(".end").read_text(encoding="utf-8") for name in names or PLATFORMS]
     return int(bool(table_of_outcomes()["failed"].sum()) or any(end != end_of(0) for end in ends))
 

@@ -30,8 +30,8 @@ A4: ViewportSize = {"width": 710, "height": 1030}
 """Pixels of a page of A4 within its margins."""
 TIMES = 5
 """How often a page is opened for the times printed."""
-SWEPT = "open_fraction"
-"""The quantity of a sweep that the report reads; its classes stand beside each."""
+SWEPT, VIBRATION = "open_fraction", "deflection_ac_rms_um"
+"""Quantities of a sweep that the report reads: of all meshes, and of the one that vibrates most."""
 RECORDED = ("rule", "summary", "seconds", "made_at", "code", "versions")
 """What the report says of each rule."""
 RIGHT_EDGES = """() => {
@@ -100,12 +100,16 @@ def _range(values: pd.Series) -> list[tuple[str, float]]:
 
 
 def stored_tables(folder: Path) -> dict[str, pd.DataFrame]:
-    """What the report of a case reads, by name; of a sweep the quantity SWEPT."""
+    """What the report of a case reads, by name; of a sweep SWEPT and VIBRATION."""
     wanted = [(name, file) for name, files in REPORTED.items() for file in files]
     paths = [folder / STAGES[name].files[file].path for name, file in (*wanted, ("duty_loads", "duty_loads"))]
     read = {table_name(path): tables.read(path, allow_empty=True) for path in paths if path.exists()}
     if "sweep" in read:
-        read["sweep"] = read["sweep"].loc[lambda sweep: sweep["quantity"] == SWEPT]
+        sweep = read["sweep"]
+        vibration = sweep[sweep["quantity"] == VIBRATION]
+        loudest = vibration.loc[vibration["value"].idxmax(), "body_or_mesh"]
+        shown = (sweep["quantity"] == VIBRATION) & (sweep["body_or_mesh"] == loudest)
+        read["sweep"] = sweep[(sweep["quantity"] == SWEPT) | shown]
     return read
 
 

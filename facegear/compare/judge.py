@@ -111,7 +111,7 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
     speeds = _bracket_names(before, after, table)
     groups = pd.concat([_without_item(frame, table) for frame in (before, after)])
     before, after = (
-        _by_row(frame, table, known) for frame, known in zip((before, after), speeds, strict=True)
+        _by_row(frame, table, speed) for frame, speed in zip((before, after), speeds, strict=True)
     )
     groups = dict(zip([*before.index, *after.index], groups, strict=True))
     shared = before.index.intersection(after.index, sort=False)
@@ -125,13 +125,13 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
         rows = this.loc[this.index.difference(other.index, sort=False)]
         frame = _one_sided(name, [*rows.index.astype(str), *lost], verdict)
         elsewhere = other.loc[other.index.difference(this.index, sort=False)]
-        exchanged = {groups[row] for row in elsewhere.index[_flagged(elsewhere, SYMMETRY_BROKEN)]}
-        in_both = np.fromiter((groups[row] in exchanged for row in rows.index), dtype=bool, count=len(rows))
+        mirrors = {groups[row] for row in elsewhere.index[_flagged(elsewhere, SYMMETRY_BROKEN)]}
+        in_both = np.fromiter((groups[row] in mirrors for row in rows.index), dtype=bool, count=len(rows))
         not_rows = np.zeros(len(lost), dtype=bool)
         open_rows = np.concatenate([_flagged(rows, AFTER_IRREGULAR), not_rows])
         images = np.concatenate([_flagged(rows, SYMMETRY_BROKEN) & in_both, not_rows])
-        judged = frame["verdict"].mask(open_rows, Verdict.ROUNDING).mask(images, Verdict.MIRROR)
-        parts.append(frame.assign(verdict=judged))
+        verdicts = frame["verdict"].mask(open_rows, Verdict.ROUNDING).mask(images, Verdict.MIRROR)
+        parts.append(frame.assign(verdict=verdicts))
     return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
 
 
@@ -168,30 +168,30 @@ def _bracket_names(
     if table.bracket is None:
         return None, None
     names = after[table.bracket.before].astype(float)
-    middles, errors = zip(*(_located(frame, table.bracket) for frame in (before, after)), strict=True)
-    taken: set[int] = set()
+    middles, errors = zip(*(_bracket_places(frame, table.bracket) for frame in (before, after)), strict=True)
+    used_rows: set[int] = set()
     for old in range(len(before)):
         apart = np.abs(middles[1] - middles[0][old])
         like = (after[list(table.keys)] == before[list(table.keys)].iloc[old]).all(axis=1).to_numpy()
         near = [int(new) for new in np.flatnonzero(like & (apart <= errors[0][old] + errors[1]))]
-        free = [new for new in near if new not in taken]
+        free = [new for new in near if new not in used_rows]
         if free:
             new = min(free, key=apart.__getitem__)
-            taken.add(new)
+            used_rows.add(new)
             names.iloc[new] = before[table.bracket.before].iloc[old]
     return before[table.bracket.before], names
 
 
-def _located(frame: pd.DataFrame, bracket: Bracket) -> tuple[np.ndarray, np.ndarray]:
+def _bracket_places(frame: pd.DataFrame, bracket: Bracket) -> tuple[np.ndarray, np.ndarray]:
     """Middle of the bracket of each row, and how far its true speed may lie from it, both (rows,)."""
     first, last = (frame[column].to_numpy(float) for column in (bracket.before, bracket.after))
     width = np.abs(last - first)
-    stated = frame[bracket.error].to_numpy(float) if bracket.error in frame.columns else width
-    return 0.5 * (first + last), np.maximum(stated, width)
+    stated_error = frame[bracket.error].to_numpy(float) if bracket.error in frame.columns else width
+    return 0.5 * (first + last), np.maximum(stated_error, width)
 
 
 def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
-    """What names a row but for the mesh or body, shape (rows,)."""
+    """Return the name of each row without its mesh or body, shape (rows,)."""
     keys = [key for key in table.keys if key in frame.columns and key != table.item]
     if not keys or table.item is None:
         return pd.Series(np.arange(len(frame)).astype(str), index=frame.index)
@@ -206,14 +206,19 @@ def _judge_column(
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     shown = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
     open_rows = _flagged(before, AFTER_IRREGULAR) & _flagged(after, AFTER_IRREGULAR)
-    broken = _flagged(before, SYMMETRY_BROKEN) & _flagged(after, SYMMETRY_BROKEN)
+    has_image = _flagged(before, SYMMETRY_BROKEN) & _flagged(after, SYMMETRY_BROKEN)
     if not numeric:
         same = (old.fillna("").astype(str) == new.fillna("").astype(str)).to_numpy()
         return shown.assign(
             relative_change=np.nan,
             numerical_error=np.nan,
             verdict=np.select(
-                [same, open_rows, _both_irregular(old, new, table), broken & (column not in table.motion)],
+                [
+                    same,
+                    open_rows,
+                    _both_irregular(old, new, table),
+                    has_image & (column not in table.motion),
+                ],
                 [Verdict.SAME, Verdict.ROUNDING, Verdict.IRREGULAR, Verdict.MIRROR],
                 Verdict.LABEL,
             ),
@@ -223,7 +228,9 @@ def _judge_column(
     change, scale = _relative_change(before_zero, after_zero, before.get(table.quantity))
     errors = _errors(table, before, after, column, scale)
     irregular = _irregular(before, table) | _irregular(after, table)
-    images = broken & _same_but_for_items(before_zero, after_zero, before.get(table.quantity), group, errors)
+    images = has_image & _same_but_for_items(
+        before_zero, after_zero, before.get(table.quantity), group, errors
+    )
     with np.errstate(invalid="ignore"):
         within = change <= errors
     verdict = np.select(
@@ -250,16 +257,16 @@ def _errors(
     A bracket's speeds are known up to the errors of both tables, and what changes over a bracket is known no
     better where the bracket lies elsewhere.
     """
-    plain, elsewhere = (table.error(column, other) for other in (False, True))
+    plain, elsewhere = table.error(column), table.error(column, elsewhere=True)
     errors = np.full(len(before), np.nan if plain is None else plain)
     bracket = table.bracket
     if bracket is None:
         return errors
-    moved = (before[bracket.before] != after[bracket.before]).to_numpy()
-    errors[moved] = np.nan if elsewhere is None else elsewhere
+    has_moved = (before[bracket.before] != after[bracket.before]).to_numpy()
+    errors[has_moved] = np.nan if elsewhere is None else elsewhere
     if column in (bracket.before, bracket.after, bracket.error):
-        allowed = sum(_located(frame, bracket)[1] for frame in (before, after))
-        return np.divide(allowed, scale, out=np.zeros(len(before)), where=scale > 0.0)
+        speed_error = sum(_bracket_places(frame, bracket)[1] for frame in (before, after))
+        return np.divide(speed_error, scale, out=np.zeros(len(before)), where=scale > 0.0)
     return errors
 
 
@@ -270,18 +277,18 @@ def _same_but_for_items(
     sizes = pd.DataFrame(
         {"old": old.abs().to_numpy(), "new": new.abs().to_numpy(), "group": group.to_numpy()}
     )
-    ordered = [sizes.sort_values(["group", side], kind="stable") for side in ("old", "new")]
-    pair = [pd.Series(part[side].to_numpy()) for part, side in zip(ordered, ("old", "new"), strict=True)]
+    by_size = [sizes.sort_values(["group", side], kind="stable") for side in ("old", "new")]
+    pair = [pd.Series(part[side].to_numpy()) for part, side in zip(by_size, ("old", "new"), strict=True)]
     change, _ = _relative_change(
-        pair[0], pair[1], None if quantity is None else _by_group(ordered[0], quantity)
+        pair[0], pair[1], None if quantity is None else _by_group(by_size[0], quantity)
     )
-    allowed = np.nan_to_num(np.maximum(errors[ordered[0].index], REPEATABLE), nan=REPEATABLE)
-    fits = pd.Series(change <= allowed).groupby(ordered[0]["group"].to_numpy()).all()
+    tolerance = np.nan_to_num(np.maximum(errors[by_size[0].index], REPEATABLE), nan=REPEATABLE)
+    fits = pd.Series(change <= tolerance).groupby(by_size[0]["group"].to_numpy()).all()
     return group.map(fits).to_numpy(dtype=bool)
 
 
-def _by_group(ordered: pd.DataFrame, quantity: pd.Series) -> pd.Series:
-    return pd.Series(quantity.to_numpy()[ordered.index])
+def _by_group(by_size: pd.DataFrame, quantity: pd.Series) -> pd.Series:
+    return pd.Series(quantity.to_numpy()[by_size.index])
 
 
 def _relative_change(

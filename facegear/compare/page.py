@@ -13,7 +13,8 @@ from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.plots.compare import curves_compared
 from facegear.plots.style import save
-from facegear.report.page import Chapter, Picture, Table, render, words
+from facegear.report.page import Chapter, Picture, Table, render
+from facegear.report.table import words
 
 SHOWN = 8
 """Most rows of one table that the page lists."""

@@ -139,11 +139,11 @@ def pair_gaps(design: PairDesign, places: Array, planes: int = PLANES) -> PairGa
     )
     on = np.isfinite(gap)
     roll, y, radius, depth = (np.where(on, part, 0.0) for part in (roll, y, radius, depth))
-    places: dict[Body, tuple[Array, Array]] = {
+    on_gears: dict[Body, tuple[Array, Array]] = {
         "pinion": pinion.deviation_place(design, roll, y),
         "face_gear": (radius, depth),
     }
-    return PairGaps(error, gap, places)
+    return PairGaps(error, gap, on_gears)
 
 
 def _tip_edge_gaps(

@@ -96,13 +96,6 @@ def titles_by_name(case: Case) -> dict[str, str]:
     return {str(study["name"]): str(study["title"]) for study in case.values["studies"]}
 
 
-def captions(case: Case) -> list[str]:
-    """What stands below the figures of each study: the inputs of the machine."""
-    from facegear.report.inputs import inputs_caption
-
-    return [inputs_caption(case.values, study["figures"] is not None) for study in case.values["studies"]]
-
-
 def contact_points(case: Case) -> Points:
     """The machine itself and all points that stand side by side with it.
 

@@ -35,13 +35,13 @@ def contact_curves(ltca: pd.DataFrame) -> Figure:
         for torque, colour in zip(torques, colours, strict=True):
             rows = closed(ltca[ltca["torque_n_m"] == torque])
             error.plot(rows["position"], rows["ste_um"], color=colour, label=f"{torque:g} N m")
-            stiffness.plot(rows["position"], 1e-8 * rows["k_average_n_per_m"], color=colour)
-            stiffness.plot(rows["position"], 1e-8 * rows["k_local_n_per_m"], "--", color=colour, lw=0.9)
+            stiffness.plot(rows["position"], 1e-6 * rows["k_average_n_per_m"], color=colour)
+            stiffness.plot(rows["position"], 1e-6 * rows["k_local_n_per_m"], "--", color=colour, lw=0.9)
         unloaded = closed(ltca[ltca["torque_n_m"] == torques[0]])
         error.plot(unloaded["position"], unloaded["unloaded_ste_um"], "k:", label="unloaded")
         error.set(ylabel="Static transmission error (µm)")
         legend_above(error, 3)
-        stiffness.set(ylabel="Stiffness (10$^8$ N/m)\naverage solid, local dashed")
+        stiffness.set(ylabel="Stiffness (N/µm)\naverage solid, local dashed")
         for axis, torque in zip(axes[2:], torques[[0, -1]], strict=True):
             rows = closed(ltca[ltca["torque_n_m"] == torque])
             for column, name in zip(SHARES, PAIR_NAMES, strict=True):

@@ -24,11 +24,11 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
             rows = closed(case.over_pitch(torque))
             look = {"color": COLOURS[number % len(COLOURS)], "ls": LINES[number // len(COLOURS) % len(LINES)]}
             error.plot(rows["position"], _variation(rows["ste_um"]), label=case.label_at(torque), **look)
-            stiffness.plot(rows["position"], 1e-8 * rows["k_average_n_per_m"], **look)
+            stiffness.plot(rows["position"], 1e-6 * rows["k_average_n_per_m"], **look)
             path.plot(rows["position"], rows["path_radius_mm"], **look)
             path.axhline(case.unloaded_path_mm, **{**look, "ls": ":"}, lw=0.9)
         error.set(ylabel="Static transmission error\nless its mean (µm)")
-        stiffness.set(ylabel="Average stiffness (10$^8$ N/m)")
+        stiffness.set(ylabel="Average stiffness (N/µm)")
         path.set(ylabel="Radius of the contact (mm)\nloaded; dotted: unloaded, mean", xlim=(0, 1))
         path.set_xlabel("Position (pitches)")
         figure.legend(*error.get_legend_handles_labels(), loc="outside lower center", ncols=2)

@@ -1,6 +1,5 @@
 """Load-sharing coefficients over one mesh cycle, one line a point of a study."""
 
-import textwrap
 from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
@@ -16,16 +15,13 @@ YLABEL = {
     "inputs": "Load sharing coefficient of\n upper and lower face gear",
     "idlers": "Load sharing coefficient of\n idler pinions and tail rotor idler",
 }
-CAPTION_WIDTH, CAPTION_LINES = 62, 6
-LINE_HEIGHT = 0.16
-"""Height in inches of each line of the caption beyond CAPTION_LINES, by which the figure grows."""
+ENTRY_HEIGHT = 0.2
+"""Inches by which a figure grows with each entry of its legend, 9 pt and its gap."""
 ENVELOPE = 0.02
 """An envelope narrower than this is a line, and not drawn."""
 
 
-def sharing_figure(
-    curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title: str, caption: str
-) -> Figure:
+def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title: str) -> Figure:
     """Coefficient against time over one mesh cycle.
 
     Where the motion is not period-one a single cycle is drawn over the envelope of all cycles. Gaps are
@@ -36,10 +32,9 @@ def sharing_figure(
     rows = rows[rows["group"] == group]
     means = summary[(summary["group"] == group) & (summary["study"] == rows["study"].iloc[0])]
     means = means.set_index("point")
-    lines = textwrap.wrap(caption, CAPTION_WIDTH)
     with styled():
-        height = 5.0 + LINE_HEIGHT * max(0, len(lines) - CAPTION_LINES)
-        figure, axis = plt.subplots(figsize=(NARROW, height))
+        points = rows["point"].nunique()
+        figure, axis = plt.subplots(figsize=(NARROW, 3.6 + ENTRY_HEIGHT * points))
         for number, (point, curve) in enumerate(rows.groupby("point", sort=False)):
             _draw(axis, curve, means.loc[point], number)
         axis.set_xlim(0.0, 1e4 * rows["time_s"].max() * len(curve) / (len(curve) - 1))
@@ -48,8 +43,7 @@ def sharing_figure(
         axis.set_xlabel("Time over one mesh cycle (10$^{-4}$ s)")
         axis.set_ylabel(YLABEL[kind])
         axis.set_title(f"{title}: {group}", fontsize=9)
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=1)
-        figure.supxlabel("\n".join(lines), fontsize=9, color="0.35", ha="center")
+        figure.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=1)
     return figure
 
 
@@ -79,13 +73,11 @@ def figures(
     studies: Sequence[pd.DataFrame],
     summary: pd.DataFrame,
     titles: Sequence[str],
-    captions: Sequence[str],
     groups: Sequence[str],
 ) -> list[Figure]:
     """A figure for each study and kind of group."""
-    labelled = zip(studies, titles, captions, strict=True)
     return [
-        sharing_figure(table, summary, kind, title, text)
-        for table, title, text in labelled
+        sharing_figure(table, summary, kind, title)
+        for table, title in zip(studies, titles, strict=True)
         for kind in groups
     ]

@@ -1,13 +1,15 @@
 """One look for all figures, and the one place that writes them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
+from facegear.errors import FacegearError
 from facegear.io.atomic import atomic_path
 from facegear.plots import interactive
 
@@ -65,6 +67,32 @@ def save(figure: Figure, *paths: str | Path) -> None:
                 else:
                     figure.savefig(temporary, metadata={"Date": None} if suffix == ".svg" else None)
     plt.close(figure)
+
+
+def rename_texts(figure: Figure, labels: Mapping[str, str]) -> None:
+    """Write other words for texts of a figure.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    labels : mapping of str to str
+        New words by the text that stands in the figure.
+
+    Raises
+    ------
+    FacegearError
+        For a text that the figure does not have.
+    """
+    texts = [text for text in figure.findobj(Text) if text.get_text()]
+    words = {text.get_text() for text in texts}
+    for before in labels:
+        if before not in words:
+            listed = ", ".join(repr(text) for text in sorted(words))
+            raise FacegearError(f"labels: {before!r} is no text of this figure, which has {listed}")
+    for text in texts:
+        if text.get_text() in labels:
+            text.set_text(labels[text.get_text()])
 
 
 def lay_out(figure: Figure) -> None:

@@ -86,15 +86,18 @@ def parts_of(snakemake: Any) -> list[Part]:
         Part(
             params.stage,
             (case,),
-            *(
-                {key.removesuffix(f"__{n}"): path for key, path in all_.items() if key.endswith(f"__{n}")}
-                for all_ in (given, made)
-            ),
+            _ending(f"__{n}", given),
+            _ending(f"__{n}", made),
             {**own, "needs": params.needs[n]},
             rebuild,
         )
         for n, case in enumerate(params.cases)
     ]
+
+
+def _ending(end: str, paths: Paths) -> Paths:
+    """Paths whose names have an ending, under the names without it."""
+    return {name.removesuffix(end): path for name, path in paths.items() if name.endswith(end)}
 
 
 @contextmanager
@@ -151,9 +154,9 @@ def recorded(part: Part) -> Iterator[StageRun]:
     for path in part.files:
         for left in path.parent.glob(f".[0-9]*.{glob.escape(path.name)}"):  # by a job that was killed
             left.unlink(missing_ok=True)
-    for path in part.inputs:
-        if Path(path).parts[0] == RESULTS:
-            require_manifest(path)
+    for given in part.inputs:
+        if Path(given).parts[0] == RESULTS:
+            require_manifest(given)
     yield run
     if not run.text:
         run.summary("wrote " + ", ".join(path.name for path in part.files))
@@ -210,7 +213,7 @@ class _Copied:
 def _copied(log: BinaryIO) -> Iterator[None]:
     """Copy standard error to a log, and a traceback to the log alone: Python prints it to the terminal."""
     try:
-        with redirect_stderr(_Copied(log)):  # type: ignore[type-var]
+        with redirect_stderr(_Copied(log)):
             yield
     except Exception:
         with suppress(OSError):

@@ -1,16 +1,29 @@
 """What the report of a case holds, from the machine as configured to what made each file."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from facegear.report.contents import CHAPTERS, FRICTION, POSES, SHAFTS, STUDIED_CONTACT, caption_of
-from facegear.report.glance import glance_chapter
+from facegear.arrays import Arrays
+from facegear.number_format import count_noun
+from facegear.report.contents import (
+    CHAPTERS,
+    FRICTION,
+    POSES,
+    SHAFTS,
+    SHARING,
+    STUDIED_CONTACT,
+    caption_of,
+)
+from facegear.report.first_screen import first_screen
+from facegear.report.inputs import inputs_caption
 from facegear.report.machine import Base, machine_chapter
-from facegear.report.page import Chapter, Picture, Table, View, render
+from facegear.report.page import Chapter, Picture, View, render
 from facegear.report.poses import pose_tables, pose_text
+from facegear.report.table import Table
 from facegear.ties import first_largest_rows
 
 BY_TORQUE = (
@@ -22,9 +35,9 @@ BY_TORQUE = (
     "axis"
 )
 BEARINGS = (
-    "Force of every body on its bearing at the nominal speed. static: at rest under the mean torques; peak: "
-    "the largest magnitude. x of a pinion is tangential and y is along the gears' axis; the axis of a face "
-    "gear is z"
+    "Reactions of the bearing of every body at the nominal speed. static: at rest under the mean torques; "
+    "peak: the largest magnitude in each direction. x of a pinion is tangential and y is along the gears' "
+    "axis; the axis of a face gear is z"
 )
 ROOT_STRESS = (
     "Largest and smallest stress of each fillet over a passage. loaded: the fillet below the flank that "
@@ -61,8 +74,8 @@ SAFETY = (
     "what tip "
     "edges carry under the largest torque, where pressure has no limit. life: the shortest of all; inf: no "
     "load does damage. reliability: at the end of the duty cycle, where the material card gives a Weibull "
-    "shape and a load does damage. green: as safe as required; amber: less safe than required, but outlasts "
-    "the duty cycle; red: fails within the duty cycle"
+    "shape and a load does damage. green: as safe as required; red: less safe, for the reason given. caveat: "
+    "what the method does not know; it never changes the colour"
 )
 RATING = "Every kind of failure with its limits; the stress is that of the hardest load"
 DUTY_LOADS = (
@@ -106,8 +119,30 @@ JUMPS = (
     "that multiple meets the mode's frequency; blank where the jump is more than "
     f"{100 * NEAR_RESONANCE:.0f} % away from it, and so belongs to no linear resonance of that mode"
 )
+SAFETY_SHOWN = (
+    *("body", "flank", "verdict", "bending_safety", "standard_bending_safety"),
+    *("pitting_safety", "life_hours", "reason"),
+)
+DYNAMIC_SHOWN = (
+    *("mesh", "mean_force_n", "largest_force_n", "dynamic_factor"),
+    *("pinion_running_mpa", "face_gear_running_mpa", "pressure_bound_mpa", "within_torques_solved"),
+)
+FOLLOWING_SHOWN = (
+    *("group", "speed_rpm", "torque_n_m", "mesh_cycles", "mean", "k_gamma", "k_v", "k_gamma_static"),
+)
+BY_TORQUE_SHOWN = (
+    *("torque_n_m", "k_average_mean_n_per_m", "k_local_mean_n_per_m", "ste_peak_to_peak_um"),
+    *("pressure_mpa", "pressure_error_mpa", "tip_line_load_n_per_mm", "fillet_share"),
+)
+OVER_SPEED_SHOWN = (
+    *("motion", "speed_rpm", "mesh", "largest_force_n", "dynamic_factor"),
+    *("pinion_mpa", "face_gear_mpa", "pressure_mpa"),
+)
+"""Columns of the widest tables that are shown at once."""
+REACTIONS = ("radial", "x", "y", "z")
+"""Directions of a bearing's reactions, in the order of columns."""
 DRAWINGS = ("layout", "machine", "tooth_pair")
-"""Figures that show the machine; the first that exists stands on the first screen."""
+"""Figures that show the machine; the first that exists stands in the chapter on the machine."""
 LONG_TABLE = 40
 """Rows of natural frequencies above which their table is folded."""
 
@@ -122,22 +157,23 @@ def case_report(
     bodies: View | None = None,
     base: Base | None = None,
     notes: Sequence[str] = (),
+    pressure: Arrays | None = None,
 ) -> str:
     """The HTML page of a case.
 
     values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules;
     pair: the record of the tooth geometry, view: the pair in mesh, bodies: modes of face gears that bend, if
     they were computed; base: the config file that the case's own extends; notes: what a run says of its
-    config when it starts.
+    config when it starts; pressure: arrays of the contact analysis.
     Chapters without a picture or table are left out.
     """
     known = {name for _, _, names in CHAPTERS for name in names}
     others = [name for name in pictures if name not in known and name not in DRAWINGS]
     studied = [name for name in others if name.startswith("contact_")]
-    added = {STUDIED_CONTACT: studied, "Load sharing": [name for name in others if name not in studied]}
+    added = {STUDIED_CONTACT: studied, SHARING: [name for name in others if name not in studied]}
     drawing = next((name for name in DRAWINGS if name in pictures), None)
     drawn = () if drawing is None else (Picture(pictures[drawing], caption_of(drawing, values)),)
-    chapters = [glance_chapter(values, tables, drawn, pair, notes), machine_chapter(values, tables, base)]
+    chapters = [machine_chapter(values, tables, pair, drawn, base)]
     for title, text, names in CHAPTERS:
         shown = [*names, *added.get(title, ())]
         shown_pictures = [
@@ -148,17 +184,43 @@ def case_report(
         own = _tables(title, tables, values["dynamics"]["speed_rpm"])
         seen = {"Loaded contact": view, "Modes": bodies}.get(title)
         said = pose_text(tables) if title == POSES else ""
+        if title == SHARING and values["transmission"] is not None:
+            published = any(study["figures"] is not None for study in values["studies"])
+            said = f"{inputs_caption(values, published)}."
         if shown_pictures or own or seen:
             chapters.append(Chapter(title, f"{text}\n\n{said}", shown_pictures, own, seen))
     if "scorecard" in tables:
         chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))
     chapters.append(_provenance(manifests))
-    lead = (
-        f"Results of facegear for the case {values['case']}, in the order of computation. "
-        "Every table can be saved as csv."
-    )
-    return render(f"facegear: {values['case']}", lead, chapters)
+    first = first_screen(values, tables, pair, pressure, notes)
+    return render(str(values["case"]), lead(values, manifests), chapters, first)
+
+
+def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> str:
+    """Return the line below the title: what machine it is, and what computed it.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the config.
+    manifests : sequence of mapping
+        Records of the stages; of each its versions.
+
+    Returns
+    -------
+    str
+        One line.
+    """
+    transmission = values["transmission"]
+    parts = ["Pinion and face gear"]
+    if transmission is not None:
+        roles = Counter(pinion["role"] for pinion in transmission["pinions"])
+        counts = [count_noun(count, f"{role} pinion") for role, count in roles.items()]
+        parts = [*counts, count_noun(len(transmission["face_gears"]), "face gear")]
+    versions = {item for manifest in manifests for item in manifest["versions"].items()}
+    made = sorted(f"{name} {version}" for name, version in versions if name == "facegear")
+    return " · ".join([", ".join(parts), *made])
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
@@ -176,38 +238,42 @@ def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
 
 def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:
     if title == "Loaded contact" and "by_torque" in tables:
-        return [Table(BY_TORQUE, tables["by_torque"], 4)]
+        return [Table(BY_TORQUE, tables["by_torque"], main=BY_TORQUE_SHOWN)]
     if title == "Root stress" and "root_stress" in tables:
-        return [Table(ROOT_STRESS, tables["root_stress"], 4)]
+        return [Table(ROOT_STRESS, tables["root_stress"])]
     if title == FRICTION and "friction" in tables:
         return _friction(tables)
     if title == STUDIED_CONTACT and "studies" in tables:
-        return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS], 4)]
+        return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS])]
     if title == "Strength" and "root_stress" in tables:
         rated = _rated(tables) if "rating" in tables else []
-        moving = [Table(DYNAMIC, tables["dynamic_stress"], 4)] if "dynamic_stress" in tables else []
+        moving = (
+            [Table(DYNAMIC, tables["dynamic_stress"], main=DYNAMIC_SHOWN)]
+            if "dynamic_stress" in tables
+            else []
+        )
         moving += _over_speed(tables, speed_rpm)
-        return [*rated, *moving, Table(ROOT_STRESS, tables["root_stress"], 4)]
+        return [*rated, *moving, Table(ROOT_STRESS, tables["root_stress"])]
     if title == "Mesh stiffness" and "harmonics" in tables:
-        return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
+        return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4])]
     if title == "Modes" and "frequencies" in tables:
-        held = [Table(MODE_CONTACTS, tables["contacts"], 4)] if "contacts" in tables else []
+        held = [Table(MODE_CONTACTS, tables["contacts"])] if "contacts" in tables else []
         rows = mode_rows(tables["frequencies"])
         words = "Natural frequencies; equal ones share a row"
-        return [*held, Table(words, rows, 6, folded=len(rows) > LONG_TABLE)]
+        return [*held, Table(words, rows, folded=len(rows) > LONG_TABLE)]
     if title == POSES:
         return pose_tables(tables)
     if title == SHAFTS:
-        listed = [Table(words, tables[name], 4) for name, words in SHAFT_TABLES.items() if name in tables]
+        listed = [Table(words, tables[name]) for name, words in SHAFT_TABLES.items() if name in tables]
         return [table for table in listed if len(table.frame)]
     if title.startswith("Nominal"):
-        bearings = [Table(BEARINGS, tables["bearings"], 4)] if "bearings" in tables else []
+        bearings = [Table(BEARINGS, bearing_reactions(tables["bearings"]))] if "bearings" in tables else []
         return [*bearings, *_jumps(tables)]
     if title == "Load sharing at rest" and "following_groups" in tables:
-        return [Table(FOLLOWING, tables["following_groups"], 4)]
+        return [Table(FOLLOWING, tables["following_groups"], main=FOLLOWING_SHOWN)]
     if title == "Tolerances" and "percentiles" in tables:
-        limits = Table("Percentiles with their confidence intervals", tables["percentiles"], 4)
-        fractions = Table("Fraction of the samples for which each statement holds", tables["fractions"], 4)
+        limits = Table("Percentiles with their confidence intervals", tables["percentiles"])
+        fractions = Table("Fraction of the samples for which each statement holds", tables["fractions"])
         missed = Table(
             "Error from taking only some of the mesh cycles: relative; of fractions and temperatures "
             "the difference",
@@ -215,7 +281,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
             2,
         )
         return [limits, fractions, *([] if tables["sampling"].empty else [missed])]
-    if title == "Load sharing" and "summary" in tables:
+    if title == SHARING and "summary" in tables:
         columns = [
             "study",
             "label",
@@ -227,34 +293,34 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
             "lost_fraction",
             "motion",
         ]
-        return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns], 4)]
+        return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns])]
     return []
 
 
 def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     shown = tables["safety"].dropna(axis="columns", how="all")
-    listed = [Table(SAFETY, shown, 4), Table(RATING, tables["rating"], 4, folded=True)]
+    listed = [Table(SAFETY, shown, main=SAFETY_SHOWN), Table(RATING, tables["rating"], folded=True)]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
         hardest = first_largest_rows(loads, "largest_force_n", ["bin"], sort=True)
-        listed += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
+        listed += [Table(DUTY_LOADS, hardest), Table(EVERY_LOAD, loads, folded=True)]
     return listed
 
 
 def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     shown = tables["friction"].dropna(axis="columns", how="all")
-    listed = [Table("One mesh at the nominal speed, by torque", shown, 4)]
+    listed = [Table("One mesh at the nominal speed, by torque", shown)]
     if "machine_loss" in tables:
         whole = tables["machine_loss"].dropna(axis="columns", how="all")
         meshes = tables["mesh_losses"].dropna(axis="columns", how="all")
         listed = [
-            Table("The machine; bin 0 is the nominal load, bin -1 the whole duty cycle", whole, 4),
+            Table("The machine; bin 0 is the nominal load, bin -1 the whole duty cycle", whole),
             *listed,
-            Table("Every loaded flank", meshes, 4, folded=True),
-            Table("Heat of every body", tables["body_heat"], 4, folded=True),
+            Table("Every loaded flank", meshes, folded=True),
+            Table("Heat of every body", tables["body_heat"], folded=True),
         ]
     if "friction_studies" in tables:
-        listed.append(Table("The studies' cases side by side", tables["friction_studies"], 4))
+        listed.append(Table("The studies' cases side by side", tables["friction_studies"]))
     limits = tables["limits"]
     return [
         *listed,
@@ -272,7 +338,7 @@ def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Ta
     nearest = table["speed_rpm"].iloc[(table["speed_rpm"] - speed_rpm).abs().argmin()]
     hardest = first_largest_rows(table, "largest_force_n", ["motion"])
     shown = pd.concat([table[table["speed_rpm"] == nearest], hardest]).drop_duplicates()
-    return [Table(OVER_SPEED, shown, 4)]
+    return [Table(OVER_SPEED, shown, main=OVER_SPEED_SHOWN)]
 
 
 def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
@@ -288,7 +354,7 @@ def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         energy_fraction=jumps["energy_fraction"],
         linear_resonance_rpm=linear.where(away <= NEAR_RESONANCE),
     )
-    return [Table(JUMPS, shown, 6)]
+    return [Table(JUMPS, shown)]
 
 
 def _scorecard(frame: pd.DataFrame) -> Chapter:
@@ -305,7 +371,28 @@ def _scorecard(frame: pd.DataFrame) -> Chapter:
     )
     claims = frame[["where", "claim", "paper", "shown", "unit", "verdict", "reason"]]
     claims = claims.rename(columns={"shown": "ours"})
-    return Chapter("Scorecard", text, (), [Table("Verdicts", counts), Table("Claims", claims, 5)])
+    return Chapter("Scorecard", text, (), [Table("Verdicts", counts), Table("Claims", claims)])
+
+
+def bearing_reactions(bearings: pd.DataFrame) -> pd.DataFrame:
+    """Return the forces on bearings with a row a bearing.
+
+    Parameters
+    ----------
+    bearings : DataFrame
+        Table `bearings` of stage dynamics_response: a row a body and direction, forces in N.
+
+    Returns
+    -------
+    DataFrame
+        Column `bearing`, and for each direction, the radial one first, the force at rest and the peak, N.
+    """
+    table = pd.DataFrame({"bearing": list(dict.fromkeys(bearings["body"]))})
+    for direction in sorted(dict.fromkeys(bearings["direction"]), key=REACTIONS.index):
+        forces = bearings[bearings["direction"] == direction].set_index("body").loc[table["bearing"]]
+        for name in ("static", "peak"):
+            table[f"{name}_{direction}_n"] = forces[f"{name}_n"].to_numpy()
+    return table
 
 
 def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
@@ -317,7 +404,8 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
         )
     if "harmonics" in tables:
         kept = tables["harmonics"].iloc[-1]
-        rows.append(("stiffness left out by the truncated series (N/m)", kept["truncation_error_n_per_m"]))
+        left_out = 1e-6 * kept["truncation_error_n_per_m"]
+        rows.append(("stiffness left out by the truncated series (N/µm)", left_out))
     if "summary" in tables:
         rows.append(("widest 95 % half-width of a load-sharing mean", tables["summary"]["half_width"].max()))
     frame = pd.DataFrame(rows, columns=["quantity", "value"])
@@ -340,4 +428,4 @@ def _provenance(manifests: Sequence[Mapping[str, Any]]) -> Chapter:
         "Figures are drawn from these outputs alone; their own manifests are not listed."
     )
     stored = pd.DataFrame(list(versions.items()), columns=["library", "version"])
-    return Chapter("Provenance", text, (), [Table("Rules", frame, 4), Table("Versions", stored)])
+    return Chapter("Provenance", text, (), [Table("Rules", frame), Table("Versions", stored)])

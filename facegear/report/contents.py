@@ -109,6 +109,7 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 
 FRICTION = "Friction and heat"
 SHAFTS = "Shafts"
+SHARING = "Load sharing"
 POSES = "Teeth where forces put them"
 STUDIED_CONTACT = "Studies of the contact"
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
@@ -201,7 +202,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         ("search_front", "search_hypervolume"),
     ),
     (
-        "Load sharing",
+        SHARING,
         "Equations (25) and (26) on magnitudes. Instants at which no path carries load have no coefficient "
         "and are counted as undefined.",
         (),

@@ -5,19 +5,19 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
+from facegear.number_format import count_noun, format_number
+from facegear.report.balance import BALANCED, rated
+from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
 from facegear.report.inputs import SOURCES
-from facegear.report.page import Chapter, Table, number
+from facegear.report.page import Chapter, Picture
+from facegear.report.table import Table
 
 KINEMATICS = {
     "geometric": "geometric, lever arms and signs as gears have them",
     "printed": "printed, equation (13) of the source paper to the letter (docs/theory.md)",
 }
-BALANCED = 1e-9
-"""Relative difference of power in and out that is rounding."""
 NAMES = ("case", "reproduction")
 """Keys that say nothing of the machine."""
-EXACT = 12
-"""Significant digits of the config's numbers."""
 
 
 class Base(NamedTuple):
@@ -33,44 +33,69 @@ NUMBERS = {
     "k_gamma": ("Mesh load factor K_gamma, largest, running", "", 4),
     "k_v": ("Dynamic factor K_v, largest, running", "", 4),
     "loss_percent": ("Friction loss of all meshes at the nominal load", "%", 3),
-    "gear_ratio": ("Gear ratio (gear teeth over pinion teeth)", "", 5),
-    "speed_ratio": ("Ratio of speeds, input over output pinion", "", 5),
-    "pinion_speed_rpm": ("Speed of the pinions", "rpm", 6),
-    "gear_speed_rpm": ("Speed of the face gears", "rpm", 6),
-    "output_torque_n_m": ("Torque of the output gear", "N m", 5),
-    "output_pinions_n_m": ("Torque of the output pinions", "N m", 5),
-    "mesh_frequency_hz": ("Mesh frequency", "Hz", 6),
-    "power_in_kw": ("Power brought in", "kW", 5),
-    "power_out_kw": ("Power taken out", "kW", 5),
-    "power_out_without_friction_kw": ("Power taken out, without friction", "kW", 5),
-    "power_out_with_friction_kw": ("Power taken out, less the friction loss of the meshes", "kW", 5),
+    "gear_ratio": ("Gear ratio (gear teeth over pinion teeth)", "", 4),
+    "speed_ratio": ("Ratio of speeds, input over output pinion", "", 4),
+    "pinion_speed_rpm": ("Speed of the pinions", "rpm", 4),
+    "gear_speed_rpm": ("Speed of the face gears", "rpm", 4),
+    "output_torque_n_m": ("Torque of the output gear", "N m", 4),
+    "output_pinions_n_m": ("Torque of the output pinions", "N m", 4),
+    "mesh_frequency_hz": ("Mesh frequency", "Hz", 4),
+    "power_in_kw": ("Power brought in", "kW", 4),
+    "power_out_kw": ("Power taken out", "kW", 4),
+    "power_out_without_friction_kw": ("Power taken out, without friction", "kW", 4),
+    "power_out_with_friction_kw": ("Power taken out, less the friction loss of the meshes", "kW", 4),
     "contact_ratio": ("Contact ratio, unloaded", "", 4),
-    "face_width_mm": ("Face width of the gear", "mm", 5),
-    "face_limits_mm": ("Radii without undercut and pointed teeth", "mm", 6),
-    "backlash_um": ("Backlash along the line of action, smallest", "um", 4),
-    "nominal_path_mm": ("Radius of the contact path, nominal", "mm", 6),
-    "unloaded_path_mm": ("Radius of the contact path, unloaded as assembled", "mm", 6),
+    "face_width_mm": ("Face width of the gear", "mm", 4),
+    "face_limits_mm": ("Radii without undercut and pointed teeth", "mm", 4),
+    "backlash_um": ("Backlash along the line of action, smallest", "µm", 4),
+    "nominal_path_mm": ("Radius of the contact path, nominal", "mm", 4),
+    "unloaded_path_mm": ("Radius of the contact path, unloaded as assembled", "mm", 4),
     "path_shift_mm": ("Shift of the unloaded contact path, positive outwards", "mm", 3),
 }
 """Key numbers in their order: words, unit, significant digits."""
 
 
 def machine_chapter(
-    values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], base: Base | None = None
+    values: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    pair: Mapping[str, Any] | None = None,
+    drawn: Sequence[Picture] = (),
+    base: Base | None = None,
 ) -> Chapter:
-    """Config, torques and powers; `tables` may hold ratings, bodies, meshes."""
-    listed = []
+    """Write the chapter on the machine.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the config.
+    tables : mapping of str to DataFrame
+        Tables of the report by name; may hold ratings, bodies, meshes.
+    pair : mapping or None
+        Record of the tooth geometry, where it was computed.
+    drawn : sequence of Picture
+        Drawings of the machine.
+    base : Base or None
+        The config file that the case's own extends.
+
+    Returns
+    -------
+    Chapter
+        Key numbers, data of both gears, torques, powers and config.
+    """
+    numbers = key_numbers(tables, pair)
+    listed = [Table("Key numbers", numbers)] if len(numbers) else []
+    if pair is not None:
+        listed.append(Table(DATA_SHEET, data_sheet_table(pair)))
     if "bodies" in tables:
-        listed = [
-            Table("Torque and power of every body; positive values are brought in", tables["bodies"], 5),
+        listed += [
+            Table("Torque and power of every body; positive values are brought in", tables["bodies"]),
             Table(
                 "Every mesh at rest, with mean stiffness; the force acts along the line of action",
                 tables["meshes"],
-                5,
             ),
         ]
     config = _config_tables(values, base)
-    return Chapter("The machine as configured", _text(values, tables), (), [*listed, *config])
+    return Chapter("The machine as configured", _text(values, tables), drawn, [*listed, *config])
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
@@ -81,7 +106,7 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
         if name in known:
             value = known[name]
             parts = value if isinstance(value, tuple) else (value,)
-            rows.append((words, " to ".join(number(part, digits) for part in parts), unit))
+            rows.append((words, " to ".join(format_number(part, digits) for part in parts), unit))
     return pd.DataFrame(rows, columns=["quantity", "value", "unit"])
 
 
@@ -113,27 +138,6 @@ def _signed(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
     return numbers
 
 
-def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
-    """Numbers of the ratings by quantity, and the torques of what takes most power; empty without a machine.
-
-    That is a gear, or pinions: then neither the number of teeth nor the gear's speed is that of the output.
-    """
-    if "ratings" not in tables:
-        return {}
-    numbers = dict(tables["ratings"].itertuples(index=False))
-    driven = tables["bodies"][tables["bodies"]["power_kw"] < 0.0]
-    gears = driven["role"] == "face gear"
-    if len(driven) and driven.loc[~gears, "power_kw"].sum() < driven.loc[gears, "power_kw"].sum():
-        torques = dict.fromkeys(sorted(driven.loc[~gears, "torque_n_m"].abs()))
-        return {
-            **{name: value for name, value in numbers.items() if name != "gear_ratio"},
-            "speed_ratio": 1.0,
-            "output_pinions_n_m": tuple(torques),
-        }
-    torques = tables["bodies"].loc[tables["bodies"]["role"] == "face gear", "torque_n_m"]
-    return numbers | {"output_torque_n_m": float(torques.abs().max())}
-
-
 def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
     radii, limits = pair["radii_mm"], pair["limits_mm"]
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
@@ -161,9 +165,10 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
             "No transmission is configured: teeth, contact and stiffness alone."
         )
     torque = transmission["torque"]
+    pinions = count_noun(len(transmission["pinions"]), "pinion")
+    gears = count_noun(len(transmission["face_gears"]), "face gear")
     return (
-        f"{_count(transmission['pinions'], 'pinion')} of {pair['pinion_teeth']} teeth and "
-        f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
+        f"{pinions} of {pair['pinion_teeth']} teeth and {gears} of {pair['face_gear_teeth']} teeth, {teeth}"
         f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
         f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. Mesh stiffness: {source}. "
         f"{_materials(values)}{_error(transmission['transmission_error'], tables)}"
@@ -217,10 +222,6 @@ def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
     )
 
 
-def _count(items: Sequence[Any], name: str) -> str:
-    return f"{len(items)} {name}" + ("" if len(items) == 1 else "s")
-
-
 def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
     """The pinions, and every key of the config that holds something; changes against the file extended."""
     rows = _keys(values)
@@ -234,8 +235,9 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
         own = ["changed" if differs else "" for differs in changed]
         there = [before.get(key, "") if rows.get(key) != before.get(key) else "" for key in frame["key"]]
         frame = frame.assign(**{f"against {base.name}": own, f"in {base.name}": there})
-        caption += f"; {sum(changed)} keys differ from {base.name}, which it extends"
-    config = Table(caption, frame, EXACT, folded=True)
+        differ = count_noun(sum(changed), "key differs", "keys differ")
+        caption += f"; {differ} from {base.name}, which it extends"
+    config = Table(caption, frame, folded=True, exact=True)
     if values["transmission"] is None:
         return [config]
     pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
@@ -257,9 +259,3 @@ def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
             return [row for i, item in enumerate(value) for row in _flat(f"{key}[{i}]", item)]
         return [(key, ", ".join(str(item) for item in value))]
     return [(key, value)]
-
-
-def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """The summary of load sharing of the machine itself; empty where there is none."""
-    summary = tables.get("summary")
-    return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]

@@ -49,6 +49,7 @@
       if (name[0] === "x" && kept) axis.range = kept;
     }
     return Object.assign(layout, {
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: style("--quiet"), activecolor: style("--text") },
       autosize: true, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
       font: { family: "system-ui, Segoe UI, Helvetica, Arial, sans-serif", size: 12, color: style("--text") },
       hoverlabel: { bgcolor: style("--card"), bordercolor: style("--rule"), font: { color: style("--text") } },

@@ -5,7 +5,8 @@ from operator import itemgetter
 
 import pandas as pd
 
-from facegear.report.page import Table, number
+from facegear.number_format import format_number
+from facegear.report.page import Table
 
 MESHES = (
     "Where contacts run under the mean torques: paths along the pinion, unloaded, and loaded where the "
@@ -82,12 +83,13 @@ def _path(loaded: pd.DataFrame) -> list[str]:
         ("inner", near["to_inner_end_mm"]), ("outer", near["to_outer_end_mm"]), key=itemgetter(1)
     )
     nearest = f"The unloaded contact of {near['mesh']}"
+    distance = format_number(abs(margin), 2)
     left = (
-        f"{nearest} comes nearest to an end of the face: {number(margin, 2)} mm are left to the {end} one."
+        f"{nearest} comes nearest to an end of the face: {distance} mm are left to the {end} one."
         if margin >= 0.0
-        else f"{nearest} lies {number(-margin, 2)} mm beyond the {end} end of the face."
+        else f"{nearest} lies {distance} mm beyond the {end} end of the face."
     )
-    before, after = number(shifted["path_as_assembled_mm"], 4), number(shifted["path_mm"], 4)
+    before, after = format_number(shifted["path_as_assembled_mm"], 4), format_number(shifted["path_mm"], 4)
     moved = (
         f"The loaded contact of {shifted['mesh']} moves furthest, from {before} mm as assembled to {after} mm"
     )
@@ -106,11 +108,11 @@ def _pattern(loaded: pd.DataFrame) -> str:
             names = "every mesh" if len(reached) == len(loaded) else ", ".join(reached)
             said.append(f"the loaded pattern of {names} reaches the {end} end of the face")
         else:
-            said.append(f"{number(left.min(), 2)} mm of the face stay free at its {end} end")
+            said.append(f"{format_number(left.min(), 2)} mm of the face stay free at its {end} end")
     for tip in ("pinion", "gear"):
         left = loaded[f"{PATTERN}{tip}_tip_mm"]
         if left.min() > 0.0:
-            said.append(f"the pattern stays {number(left.min(), 2)} mm from the tip of the {tip}")
+            said.append(f"the pattern stays {format_number(left.min(), 2)} mm from the tip of the {tip}")
     text = "; ".join(said)
     return f"{text[0].upper()}{text[1:]}."
 
@@ -129,8 +131,8 @@ def _force(meshes: pd.DataFrame) -> str:
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
     changed = (after - before).abs().idxmax()
     return (
-        f"The force of {meshes['mesh'][changed]} changes most, from {number(before[changed], 4)} N to "
-        f"{number(after[changed], 4)} N."
+        f"The force of {meshes['mesh'][changed]} changes most, from {format_number(before[changed], 4)} N to "
+        f"{format_number(after[changed], 4)} N."
     )
 
 

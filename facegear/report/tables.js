@@ -5,7 +5,7 @@
 
   function compare(a, b) {
     if (a === "" || b === "") return (a === "") - (b === "");
-    const [x, y] = [Number(a.replace("inf", "Infinity")), Number(b.replace("inf", "Infinity"))];
+    const [x, y] = [a, b].map((text) => Number(text.replaceAll(",", "").replace("inf", "Infinity")));
     return Number.isNaN(x) || Number.isNaN(y) ? a.localeCompare(b, "en", { numeric: true }) : x - y;
   }
 

@@ -1,6 +1,10 @@
 """Units in names of columns and keys, as they are written."""
 
+from facegear.number_format import format_number
+
 UNITS = {
+    "kn": "kN",
+    "n_per_um": "N/µm",
     "n_per_mm": "N/mm",
     "n_per_m": "N/m",
     "n_m_per_rad": "N m/rad",
@@ -9,16 +13,21 @@ UNITS = {
     "deg": "deg",
     "mpa": "MPa",
     "hz": "Hz",
-    "um": "um",
+    "um": "µm",
     "mm": "mm",
     "kw": "kW",
     "kg_m2": "kg m2",
     "kg": "kg",
-    "urad": "urad",
+    "urad": "µrad",
     "percent": "%",
     "n": "N",
 }
 """Units that end a column's name, as they are written."""
+ENGINEERING = {"n_per_m": ("n_per_um", 1e-6, 0.0), "n": ("kn", 1e-3, 1e3)}
+"""Unit in which a table is written instead, its factor, and the largest number from which it is."""
+
+UNNAMED = ("transmission", "tooth_pair", "dynamics", "contact", "load_sharing")
+"""Sections whose keys say what they are without the section's name."""
 
 
 def unit_of(name: str) -> str:
@@ -29,3 +38,36 @@ def unit_of(name: str) -> str:
 def ending_of(name: str) -> str:
     """The unit in a column's name, a key of UNITS; nothing where it has none."""
     return next((ending for ending in UNITS if f"_{ending} " in f"{name} "), "")
+
+
+def value_in_words(key: str, value: object) -> str:
+    """Write a changed key of the config with its value as a legend reads it.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key of the config; its unit ends its name.
+    value : object
+        The value, in the unit of the key.
+
+    Returns
+    -------
+    str
+        Words, number and unit.
+
+    Examples
+    --------
+    >>> value_in_words("transmission.backlash_um", 80)
+    'backlash 80 µm'
+    >>> value_in_words("mesh_stiffness.mean_n_per_m", 4.1e8)
+    'mesh stiffness mean 410 N/µm'
+    """
+    parts = [part for part in key.split(".") if not part.isdigit()]
+    named = parts[1:] if parts[0] in UNNAMED and len(parts) > 1 else parts
+    ending = next(filter(None, map(ending_of, reversed(named))), "")
+    words = " ".join(f"{part} ".replace(f"_{ending} ", " ").strip() for part in named).replace("_", " ")
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return f"{words} {value}"
+    unit, factor, _ = ENGINEERING.get(ending, (ending, 1.0, 0.0)) if ending != "n" else (ending, 1.0, 0.0)
+    written = format_number(factor * value, 4)
+    return f"{words} {written} {UNITS[unit]}" if unit else f"{words} {written}"

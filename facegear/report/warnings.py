@@ -1,168 +1,241 @@
-"""What to keep in mind about the numbers of a report."""
+"""What limits the numbers of a report: notes by subject, most serious first."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from math import nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
 from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.hertz import DENTED
 from facegear.geometry.design import BACKLASH_DIFFERS_UM
-from facegear.report.machine import BALANCED, nominal, rated
-from facegear.report.page import number
+from facegear.number_format import count_noun, format_number
+from facegear.report.balance import nominal
 
 POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
+MOST_NAMED = 3
+"""Meshes that a line names; of more it says how many."""
+WRONG, LIMITED, CHOSEN = 0, 1, 2
+"""How serious a warning is: numbers do not hold; they hold within limits; an input was given or chosen."""
+SECTIONS = {
+    "tooth_pair": "Teeth",
+    "mesh": "Contact",
+    "contact": "Contact",
+    "mesh_stiffness": "Stiffness",
+    "strength": "Strength",
+    "lubrication": "Friction",
+    "dynamics": "Motion",
+    "load_sharing": "Load sharing",
+    "tolerances": "Tolerances",
+}
+"""Subject of a note about a section of the config; any other section is about the machine."""
+
+
+class ResultWarning(NamedTuple):
+    """One warning: its subject, how serious it is (WRONG, LIMITED, CHOSEN), one line of words."""
+
+    subject: str
+    weight: int
+    words: str
+
+
+def grouped_warnings(
+    values: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    pair: Mapping[str, Any] | None,
+    notes: Sequence[str] = (),
+) -> list[tuple[str, list[str]]]:
+    """Collect the warnings of a case by subject.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the config.
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+    pair : mapping or None
+        Record of the tooth geometry, where it was computed.
+    notes : sequence of str
+        What a run says of its config when it starts, as `key: words`.
+
+    Returns
+    -------
+    list of (str, list of str)
+        Subject and its lines, the subject with the most serious warning first, lines likewise.
+    """
+    found = [*warnings(values, tables, pair), *map(_of_note, notes)]
+    subjects = dict.fromkeys(warning.subject for warning in sorted(found, key=lambda one: one.weight))
+    return [
+        (
+            subject,
+            [one.words for one in sorted(found, key=lambda one: one.weight) if one.subject == subject],
+        )
+        for subject in subjects
+    ]
+
+
+def _of_note(note: str) -> ResultWarning:
+    key, _, _ = note.partition(":")
+    section = key.split(".")[0].split(" ")[0]
+    return ResultWarning(SECTIONS.get(section, "Machine"), CHOSEN, _line(note))
+
+
+def _line(words: str) -> str:
+    """Return words that end in a full stop."""
+    return words if words.endswith((".", "!")) else f"{words}."
 
 
 def warnings(
     values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None
-) -> Iterator[tuple[str, str]]:
-    """Subject and what to keep in mind, from the config and the results."""
+) -> Iterator[ResultWarning]:
+    """Yield what to keep in mind, from the config and the results, in the order of computation."""
     if pair is not None and pair["interference"]:
-        yield (
-            "teeth",
-            "the bodies interfere: the loaded contact counts the load in the fillets but gives no pressure "
-            "there and no mean stiffness; all that follows without contact leaves the interference out",
+        yield ResultWarning(
+            "Teeth",
+            WRONG,
+            "The bodies interfere. Loaded contact counts the load in the fillets, but gives no pressure "
+            "there and no mean stiffness; everything without contact leaves the interference out.",
         )
     yield from _contact_warnings(values, tables)
-    yield from _beyond_warnings(tables)
+    yield from _friction_warnings(tables)
     transmission = values["transmission"]
     if transmission is None:
         return
     if pair is not None:
         own, teeth = transmission["backlash_um"], pair["backlash_um"]["smallest"]
         if own is not None and abs(own - teeth) > BACKLASH_DIFFERS_UM:
-            yield "backlash", f"the dynamics take {own:g} um, the teeth as assembled have {teeth:.1f} um"
-    missing = rated(tables).get("power_imbalance", 0.0)
-    if abs(missing) > BALANCED:
-        yield (
-            "power",
-            f"power brought in, less power taken out, is {100 * missing:.3g} % of the larger: lever arms as "
-            "printed are not those of the teeth",
-        )
+            taken = f"The dynamics take a backlash of {own:g} µm"
+            yield ResultWarning("Motion", LIMITED, f"{taken}; the teeth as assembled have {teeth:.1f} µm.")
     yield from _undecided_warnings(tables)
-    yield from _open_warnings(tables)
     yield from _sweep_warnings(tables)
     for row in nominal(tables).itertuples():
         if row.lost_fraction > 0.0:
-            yield (
-                f"load sharing, {row.group}",
-                f"a path is out of contact {100 * row.lost_fraction:.0f} % of the time",
-            )
+            share = f"{100 * row.lost_fraction:.0f} % of the time"
+            yield ResultWarning("Load sharing", LIMITED, f"{row.group}: a path is out of contact {share}.")
         if not str(row.motion).startswith("period-"):
-            yield f"load sharing, {row.group}", f"the motion is {row.motion}: numbers are averages"
+            words = f"{row.group}: the motion is {row.motion}, so numbers are averages."
+            yield ResultWarning("Load sharing", LIMITED, words)
 
 
-def _beyond_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
-    """Numbers that were taken from beyond what was solved, or where a model holds."""
-    for about, name, rows in (
-        ("strength", "rating", "ratings"),
-        ("stress over speed", "stress_over_speed", "motions and speeds"),
-        ("friction", "mesh_losses", "losses of a flank"),
-    ):
-        table = tables.get(name, pd.DataFrame())
-        if len(table) and not table["within_torques_solved"].all():
-            outside = int((~table["within_torques_solved"].astype(bool)).sum())
-            yield (
-                about,
-                f"{outside} of {len(table)} {rows} lie outside the torques of the contact analysis "
-                f"(contact.torques_n_m)",
-            )
-    for row in tables.get("limits", pd.DataFrame()).itertuples():
-        if row.loss_outside_percent > 0.0:
-            yield (
-                "friction",
-                f"{number(row.loss_outside_percent, 2)} % of the loss at {row.torque_n_m:g} N m lies outside "
-                f"the limits of {row.friction_model}: {row.limit}",
-            )
+def _friction_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
+    """Yield what lies outside the limits of the friction model."""
+    limits = tables.get("limits", pd.DataFrame())
+    if limits.empty:
+        return
+    outside = limits[limits["loss_outside_percent"] > 0.0]
+    for (model, limit), rows in outside.groupby(["friction_model", "limit"], sort=False):
+        worst = rows.loc[rows["loss_outside_percent"].idxmax()]
+        share = (
+            f"{format_number(worst['loss_outside_percent'], 2)} % of the loss at {worst['torque_n_m']:g} N m"
+        )
+        others = len(rows) - 1
+        more = f", and less at {count_noun(others, 'other torque')}," if others else ""
+        words = f"{share}{more} lies outside the limits of {model}: {limit}."
+        yield ResultWarning("Friction", LIMITED, words)
 
 
-def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
-    """Contacts of which the modes do not know whether they carry."""
+def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
+    """Yield contacts of which the modes do not know whether they carry."""
     contacts = tables.get("contacts", pd.DataFrame(columns=["contact", "state"]))
     names = contacts.loc[contacts["state"] == "undecided", "contact"]
     if len(names):
-        yield "modes", f"too little load to tell from rounding, taken as open: {', '.join(names)}"
+        words = f"Too little load to tell from rounding, taken as open: {', '.join(names)}."
+        yield ResultWarning("Modes", LIMITED, words)
 
 
-def _open_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
-    """Meshes that carry nothing at rest."""
-    if "meshes" not in tables:
-        return
-    open_ones = tables["meshes"].loc[tables["meshes"]["flank"] == "open", "mesh"]
-    if len(open_ones):
-        yield "meshes at rest", f"no load at {', '.join(open_ones)}"
-
-
-def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
-    """Speeds of the sweep without a periodic motion, and meshes out of contact."""
+def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
+    """Yield speeds of the sweep without a periodic motion, and meshes out of contact."""
     if "sweep" not in tables:
         return
     sweep = tables["sweep"]
     motions = sweep.drop_duplicates(["direction", "speed_rpm"])
     irregular = ~motions["periodic"].astype(bool)
     if irregular.any():
-        yield (
-            "speed sweep",
-            f"the motion is not periodic at {irregular.sum()} of {len(motions)} speeds, up and down counted "
-            "apart: numbers there are averages",
-        )
+        share = f"{irregular.sum()} of {count_noun(len(motions), 'speed')} (up and down sweeps together)"
+        words = f"Motion is not periodic at {share}. Values there are time averages."
+        yield ResultWarning("Motion", LIMITED, words)
     gaps = sweep[sweep["quantity"] == "open_fraction"].groupby("body_or_mesh", sort=False)["value"]
     min_open, max_open = gaps.min(), gaps.max()
     if (always := min_open.index[min_open >= 1.0]).size:
-        yield "speed sweep", f"open at every speed: {', '.join(always)}"
+        yield ResultWarning("Motion", WRONG, f"Open at every speed: {_named(always, len(min_open))}.")
     lost = max_open.index[(max_open > 0.0) & (min_open < 1.0)]
     if lost.size:
-        time = f"up to {number(100 * max_open[lost].max(), 2)} % of the time"
-        yield "speed sweep", f"contact is lost at some speeds, {time}: {', '.join(lost)}"
+        time = f"up to {format_number(100 * max_open[lost].max(), 2)} % of the time"
+        yield ResultWarning(
+            "Motion", LIMITED, f"Contact is lost at some speeds, {time}: {_named(lost, len(min_open))}."
+        )
+
+
+def _named(meshes: Sequence[str], of: int) -> str:
+    """Return names of meshes; of many only how many of all they are."""
+    if len(meshes) <= MOST_NAMED:
+        return ", ".join(meshes)
+    return f"all {of} meshes" if len(meshes) == of else f"{len(meshes)} of {of} meshes"
 
 
 def _contact_warnings(
     values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]
-) -> Iterator[tuple[str, str]]:
+) -> Iterator[ResultWarning]:
+    """Yield what the contact analysis does not know, a line a kind whatever the number of torques."""
     if values["mesh_stiffness"]["source"] == "fem_scaled":
-        yield "mesh stiffness", "only its shape is computed; its mean is given (mesh_stiffness.mean_n_per_m)"
+        words = "Only its shape is computed; its mean is given (mesh_stiffness.mean_n_per_m)."
+        yield ResultWarning("Stiffness", CHOSEN, words)
     if "ltca" in tables:
         columns = ["tip_line_load_n_per_mm", "tip_length_mm"]
         tips = tables["ltca"].groupby("torque_n_m")[columns].max()
         loaded = tips[tips["tip_length_mm"] > 0.0]
         if len(loaded):
             load, length = loaded.max()
-            yield (
-                "contact",
-                f"from {loaded.index[0]:g} N m on tip edges carry load, up to {load:.0f} N/mm over "
-                f"{length:.1f} mm; pressure at a sharp edge has no limit: tip relief or a chamfer takes "
-                "the load off the pinion's, root relief off the gear's",
+            yield ResultWarning(
+                "Contact",
+                LIMITED,
+                f"Edge contact: from {loaded.index[0]:g} N m on tip edges carry up to {load:.0f} N/mm over "
+                f"{length:.1f} mm, where pressure has no limit. Tip relief or a chamfer takes the load off "
+                "the pinion's tip, root relief off the gear's.",
             )
     if "by_torque" not in tables:
         return
     by_torque = tables["by_torque"]
-    for row in by_torque[by_torque["fillet_share"] >= FILLET_CONTACT].itertuples():
-        yield (
-            f"contact at {row.torque_n_m:g} N m",
-            f"tips press into fillets and carry up to {100 * row.fillet_share:.1f} % of the torque there, "
-            "which is kept out of pressure and root stress",
+    pressed = by_torque[by_torque["fillet_share"] >= FILLET_CONTACT]
+    if len(pressed):
+        yield ResultWarning(
+            "Contact",
+            LIMITED,
+            f"Tips press into fillets {_torques(pressed, by_torque)} and carry up to "
+            f"{100 * pressed['fillet_share'].max():.2g} % of the torque there, which is kept out of pressure "
+            "and root stress.",
         )
-    pressed = by_torque.get("pressure_mpa", pd.Series(nan, by_torque.index))
-    for row in by_torque[1e6 * pressed > DENTED].itertuples():
-        yield (
-            f"contact at {row.torque_n_m:g} N m",
-            f"a pressure of {row.pressure_mpa:.0f} MPa: from {1e-6 * DENTED:.0f} MPa on even hardened steel "
-            "yields (ISO 76), and elastic contact does not hold",
+    pressure = by_torque.get("pressure_mpa", pd.Series(nan, by_torque.index))
+    dented = by_torque[1e6 * pressure > DENTED]
+    if len(dented):
+        yield ResultWarning(
+            "Contact",
+            WRONG,
+            f"Pressure {_torques(dented, by_torque)} is up to {format_number(dented['pressure_mpa'].max())} "
+            f"MPa: from {format_number(1e-6 * DENTED)} MPa on even hardened steel yields (ISO 76), and "
+            "elastic contact does not hold.",
         )
     change = 1.0 - by_torque["ste_peak_to_peak_half_um"] / by_torque["ste_peak_to_peak_um"]
-    for row in by_torque[change > POSITIONS_MATTER].itertuples():
-        yield (
-            f"contact at {row.torque_n_m:g} N m",
-            f"peak-to-peak transmission error {row.ste_peak_to_peak_um:.2f} um, "
-            f"{row.ste_peak_to_peak_half_um:.2f} with half of the positions: more of them may change it",
+    coarse = by_torque[change > POSITIONS_MATTER]
+    if len(coarse):
+        row = coarse.loc[change[coarse.index].idxmax()]
+        yield ResultWarning(
+            "Contact",
+            LIMITED,
+            f"Transmission error {_torques(coarse, by_torque)} changes with the number of positions: at "
+            f"{row['torque_n_m']:g} N m {row['ste_peak_to_peak_um']:.2f} µm peak to peak, "
+            f"{row['ste_peak_to_peak_half_um']:.2f} µm with half of them (contact.positions_per_pitch).",
         )
-    if "meshes" in tables:
-        largest, solved = tables["meshes"]["pinion_torque_n_m"].abs().max(), by_torque["torque_n_m"].max()
-        if largest > solved * (1.0 + BALANCED):
-            yield (
-                "contact",
-                f"a mesh carries {largest:.0f} N m at rest, contact was solved up to {solved:g} N m",
-            )
+
+
+def _torques(some: pd.DataFrame, every: pd.DataFrame) -> str:
+    """Return at which torques some rows of a table by torque stand, in words."""
+    torques = some["torque_n_m"]
+    if len(some) == 1:
+        return f"at {torques.iloc[0]:g} N m"
+    if len(some) == len(every):
+        return "at every torque"
+    if torques.to_list() == every["torque_n_m"].to_list()[-len(some) :]:
+        return f"from {torques.iloc[0]:g} N m on"
+    return f"at {len(some)} of {len(every)} torques, {torques.min():g} to {torques.max():g} N m,"

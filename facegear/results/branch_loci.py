@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -22,6 +23,7 @@ class BranchLociResult(Result):
         """
         return self.content["loci"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """All loci with the operating point, a panel for each parameter."""
         from facegear.plots.branches import loci

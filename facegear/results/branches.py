@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -82,6 +83,7 @@ class BranchesResult(Result):
         """
         return self.content["swept"].copy()
 
+    @fit_for_paper
     def plot(self, what: str = "amplitudes", branch: int = 0) -> "Figure":
         """`amplitudes` over speed, `fractions` of random starts, or the `multipliers` of one branch."""
         from facegear.plots.branches import amplitudes, fractions, multipliers, typical_meshes

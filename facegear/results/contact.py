@@ -7,6 +7,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,6 +78,7 @@ class ContactResult(Result):
 
         return pressure_dataset(self.content["pressure"])
 
+    @fit_for_paper
     def plot(self, what: str = "pattern") -> "Figure":
         """`pattern`: largest pressure over a pitch; `curves`: transmission error, stiffness, load shares."""
         from facegear.plots.contact import contact_curves, contact_pattern

@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -53,6 +54,7 @@ class FrictionResult(Result):
         """
         return self.content["map"].copy()
 
+    @fit_for_paper
     def plot(self, what: str = "path") -> "Figure":
         """`path`: sliding and temperature along the path of contact; `flank`: loss and temperature over the
         flank; `efficiency`: over torque and speed.

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -79,6 +80,7 @@ class GearBodiesResult(Result):
         """
         return self.content["influence"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Sections with their first mode shapes."""
         from facegear.plots.gear_bodies import body_shapes

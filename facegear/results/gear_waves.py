@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -36,6 +37,7 @@ class GearWavesResult(Result):
         """
         return self.content["campbell_crossings"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Modes over pinion speed with mesh harmonics."""
         from facegear.plots.gear_waves import machine_campbell

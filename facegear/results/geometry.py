@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -30,6 +31,7 @@ class GeometryResult(Result):
         """Return the table of all quantities: the stage writes a record and arrays, but no table."""
         return {"geometry": self.table()}
 
+    @fit_for_paper
     def plot(self, what: str = "pair") -> "Figure":
         """`pair`: both gears in mesh; `sections` of both teeth; `separation` around the contact path."""
         from facegear.plots.tooth_pair import separation, tooth_pair, tooth_sections

@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import FacegearError
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -46,6 +47,7 @@ class HuntingResult(Result):
         """
         return self.content["cycles"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Share of each mesh in its group's load over the hunting cycle."""
         from facegear.plots.hunting import hunting_figure
@@ -72,6 +74,7 @@ class SensitivityResult(Result):
         """
         return self.content["scan"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """The errors that matter most."""
         from facegear.plots.hunting import sensitivity_figure

@@ -7,6 +7,7 @@ import pandas as pd
 
 from facegear.errors import FacegearError, chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -36,6 +37,7 @@ class LoadSharingResult(Result):
         """
         return self.content["curve"].copy()
 
+    @fit_for_paper
     def plot(
         self,
         kind: str | None = None,
@@ -49,7 +51,6 @@ class LoadSharingResult(Result):
         """
         from facegear.load_sharing.collect import collected
         from facegear.plots.load_sharing import sharing_figure
-        from facegear.report.inputs import inputs_in_words
 
         results = {label: self, **(beside or {})}
         frames = {
@@ -60,5 +61,4 @@ class LoadSharingResult(Result):
         if not group_kinds:
             raise FacegearError(f"{self.values['case']}: no meshes share a load, there is nothing to draw")
         shown = group_kinds[0] if kind is None else chosen(kind, group_kinds, "kind")
-        caption = "Inputs of the base case: " + "; ".join(inputs_in_words(self.values))
-        return sharing_figure(frames["curve"], frames["summary"], shown, title, caption)
+        return sharing_figure(frames["curve"], frames["summary"], shown, title)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -40,6 +41,7 @@ class MachineLossResult(Result):
         """
         return self.content["bodies"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Where loss arises and heat goes at the nominal load."""
         from facegear.plots.friction import machine_heat

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -36,6 +37,7 @@ class ModesResult(Result):
         """
         return self.content["contacts"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Typical mode shapes, one panel for each kind of mode."""
         from facegear.plots.modal import mode_shapes

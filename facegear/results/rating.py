@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -42,6 +43,7 @@ class RatingResult(Result):
         """
         return self.content["damage"].copy()
 
+    @fit_for_paper
     def plot(self, what: str = "life") -> "Figure":
         """Every bin of the duty cycle beside the stress that may be repeated so often, or its `damage`."""
         from facegear.plots.strength import damage_by_bin, life

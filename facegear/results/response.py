@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -36,6 +37,7 @@ class ResponseResult(Result):
         """
         return self.content["bearings"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Deflections along the line of action against time, and their spectra."""
         from facegear.plots.response import deflections

@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,6 +54,7 @@ class RootStressResult(Result):
             attrs={"units": "MPa"},
         )
 
+    @fit_for_paper
     def plot(self, what: str = "passage") -> "Figure":
         """Root stress over a tooth's `passage` through the mesh, or along the `face`."""
         from facegear.plots.strength import along_face_figure, passage_figure

@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -37,6 +38,7 @@ class SearchResult(Result):
         """
         return self.content["hypervolume"].copy()
 
+    @fit_for_paper
     def plot(self, kind: str = "front") -> "Figure":
         """One of front, hypervolume."""
         from facegear.plots.search import front_figure, hypervolume_figure

@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import FacegearError
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -30,6 +31,7 @@ class ShaftOrdersResult(Result):
         """
         return self.content["over_speed"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Forces at all orders at the nominal speed, and the largest orders over speed.
 

@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import FacegearError
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -53,6 +54,7 @@ class ShaftsResult(Result):
         """
         return self.content["deflections"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Shafts in side view with the forces on their bearings, over their deflections.
 

@@ -7,6 +7,7 @@ import pandas as pd
 
 from facegear.errors import FacegearError, chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 from facegear.stiffness.tables import series_of
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ class StiffnessResult(Result):
         stiffness = series_of(self.content["harmonics"])(cycles)
         return pd.DataFrame({"pinion_angle_deg": pitch * cycles, "k_n_per_m": stiffness})
 
+    @fit_for_paper
     def plot(self, what: str = "curve") -> "Figure":
         """`curve` over a mesh period, or amplitudes of its `harmonics`."""
         from facegear.plots.stiffness import harmonic_amplitudes, stiffness_curve

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -23,6 +24,7 @@ class StressOverSpeedResult(Result):
         """
         return self.content["stress_over_speed"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """Root stress, pressure and dynamic factor over speed."""
         from facegear.plots.stress_over_speed import stress_over_speed

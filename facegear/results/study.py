@@ -13,7 +13,9 @@ import pandas as pd
 from facegear.config.load import plain
 from facegear.config.studies import common_key
 from facegear.errors import FacegearError, extras_named
+from facegear.report.units import value_in_words
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -72,15 +74,41 @@ class Study:
         with extras_named():
             return write(path, {answer: self.table(answer, **arguments)})
 
+    @fit_for_paper
     def plot(self, answer: str, plot: Mapping[str, Any] | None = None, **arguments: Any) -> "Figure":
-        """All machines in the same axes, for answers whose plot takes others `beside` it.
+        """Draw all machines in the same axes, for answers whose plot takes others `beside` it.
 
-        `plot`: further arguments of that plot. Those answers are load_sharing and sweep.
+        `plot`: further arguments of that plot. Those answers are load_sharing and sweep. The legend names
+        what was changed in words, with units.
         """
         (label, first), *others = self.results(answer, **arguments).items()
         if answer not in ("load_sharing", "sweep"):
             raise FacegearError(f"answer = {answer!r}: must be one of load_sharing, sweep")
-        return first.plot(label=label, beside=dict(others), **(plot or {}))  # type: ignore[attr-defined]
+        named = {self._words(name): result for name, result in others}
+        return first.plot(label=self._words(label), beside=named, **(plot or {}))  # type: ignore[attr-defined]
+
+    def _words(self, label: str) -> str:
+        """Return the changes of a machine in words where its label holds their keys."""
+        changes = self.changes[label]
+        if label != combined_label(changes):
+            return label
+        return ", ".join(value_in_words(key, value) for key, value in changes.items())
+
+
+def combined_label(changes: Mapping[str, Any]) -> str:
+    """Return the label of a machine that is named by its changed keys.
+
+    Parameters
+    ----------
+    changes : mapping
+        Changed keys and their values.
+
+    Returns
+    -------
+    str
+        Keys and values.
+    """
+    return ", ".join(f"{key} = {value}" for key, value in changes.items())
 
 
 def _answer(method: Any, answer: str, arguments: Mapping[str, Any]) -> Any:
@@ -110,4 +138,4 @@ def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any
         if common_key([first], [second]):
             raise FacegearError(f"study: {second}: must not be set beside {first}, as one holds the other")
     combined = [dict(zip(axes, point, strict=True)) for point in product(*axes.values())]
-    return {", ".join(f"{key} = {value}" for key, value in point.items()): point for point in combined}
+    return {combined_label(point): point for point in combined}

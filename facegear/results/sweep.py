@@ -8,6 +8,7 @@ import pandas as pd
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.errors import FacegearError, chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,6 +71,7 @@ class SweepResult(Result):
         """
         return self.content["resonances"].copy()
 
+    @fit_for_paper
     def plot(
         self,
         what: str = "meshes",

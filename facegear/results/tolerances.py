@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -32,6 +33,7 @@ class LoadMapResult(Result):
         """
         return self.content["load_fractions"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """K_gamma of the worst path over torque and speed."""
         from facegear.plots.tolerances import load_map_figure
@@ -63,6 +65,7 @@ class TolerancesResult(Result):
         """
         return self.content["indices"].copy()
 
+    @fit_for_paper
     def plot(self, kind: str = "distributions") -> "Figure":
         """One of distributions, importance, scatter."""
         from facegear.plots.tolerances import distribution_figure, importance_figure, scatter_figure

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -22,6 +23,7 @@ class ToothErrorsResult(Result):
         """
         return self.content["orders"].copy()
 
+    @fit_for_paper
     def plot(self) -> "Figure":
         """What the teeth of either gear add under load, over one of its turns."""
         from facegear.plots.tooth_errors import tooth_error_figure

@@ -6,6 +6,7 @@ import pandas as pd
 
 from facegear.errors import chosen
 from facegear.results.base import Result
+from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -23,6 +24,7 @@ class TopographyResult(Result):
         """
         return self.content["points"].copy()
 
+    @fit_for_paper
     def plot(self, body: str = "face_gear") -> "Figure":
         """Chart of both flanks of `pinion` or `face_gear`."""
         from facegear.plots.topography import topography_figure

@@ -201,6 +201,7 @@ class WholeCase:
             self._view(),
             self._bodies(),
             notes=notes(self.chain.values),
+            pressure=self._part("contact", "pressure"),
         )
 
     def _figure_names(self, stage: Stage) -> Sequence[str]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Arrays
+from facegear.arrays import Array, Arrays
 from facegear.config.contact import Contact
 from facegear.config.contact_setup import ContactSetup, contact_setup
 from facegear.config.mesh import Mesh
@@ -49,11 +49,13 @@ def root_contents(
 ) -> dict[str, Any]:
     """The parts of the stage, with relative errors of each body by its planes along the face."""
     numbers = loads["flank_variant"]
-    variants = [
+    variants: list[dict[str, RootStress]] = [
         {body: _passing(body, flank, loads, variant, face_errors[body]) for body, flank in flanks.items()}
         for variant in range(int(numbers.max()) + 1)
     ]
-    positions = {body: flank.gauges.position for body, flank in flanks.items() if flank.gauges}
+    positions: dict[str, Array] = {
+        body: flank.gauges.position for body, flank in flanks.items() if flank.gauges
+    }
     return {
         **root_tables(variants[0]),
         "by_flank": root_by_flank(variants, numbers),

@@ -119,7 +119,8 @@ DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 SAFETY_FINITE = tuple(
     name
     for name in SAFETY_COLUMNS
-    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability", "reason", "caveat")
+    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability")
+    and name not in ("reason", "caveat")
 )
 MAY_BE_UNKNOWN = ("largest_error_mpa", "at_30_deg_mpa")
 ROOT_STRESS_BY_FLANK_FINITE = tuple(

@@ -44,7 +44,9 @@ def safety_table(ratings: Sequence[Rated], pressure: ContactPressure) -> pd.Data
                 min(rating.life for rating in ways) / 3600.0,
                 float(np.prod(known)) if known else np.nan,
                 f"{nearest.failure} ({nearest.method})",
-                "; ".join(f"{rating.failure}: {rating.reason}" for rating in worst_ways(ways) if rating.reason),
+                "; ".join(
+                    f"{rating.failure}: {rating.reason}" for rating in _worst_ways(ways) if rating.reason
+                ),
                 "; ".join(dict.fromkeys(caveat for rating in ways for caveat in rating.caveats)),
                 all(bool(_within(rating, pressure).all()) for rating in ways),
             )
@@ -52,7 +54,7 @@ def safety_table(ratings: Sequence[Rated], pressure: ContactPressure) -> pd.Data
     return _stated(pd.DataFrame(rows, columns=list(SAFETY_COLUMNS)), ratings)
 
 
-def worst_ways(ways: Sequence[Rated]) -> list[Rated]:
+def _worst_ways(ways: Sequence[Rated]) -> list[Rated]:
     """Return of each failure the method with the smallest safety."""
     return [
         min((rating for rating in ways if rating.failure == failure), key=lambda rating: rating.safety)

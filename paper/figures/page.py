@@ -1,5 +1,6 @@
 """The page of the paper's figures: each beside its claims and their verdicts."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -7,12 +8,15 @@ from typing import Any
 import pandas as pd
 
 from facegear.io import pages
+from facegear.number_format import count_noun, format_number
 from paper.figures.claims_of import NUMBERS, claims_of
 from paper.reproduction import InputSet
 from paper.scorecard.claims import Claims
-from paper.scorecard.page import DIGITS, counts
+from paper.scorecard.page import DIGITS, ORDER, counts
 
 TEMPLATE = Path(__file__).with_name("page.html.j2")
+MOST_OPEN = 12
+"""Claims of a figure up to which they are shown without a click."""
 TITLES = {
     6: "Vibration modes of the system",
     7: "Time-varying mesh stiffness",
@@ -51,6 +55,7 @@ def render(
             "title": TITLES[number],
             "files": {ending: file_name(number, ending) for ending in ("svg", "png", "csv")},
             "rows": [_cells(rows[claim.id]) for claim in claims_of(number, claims.claims)],
+            "said": _counts_in_words([rows[claim.id] for claim in claims_of(number, claims.claims)]),
         }
         for number in NUMBERS
     ]
@@ -63,7 +68,15 @@ def render(
         left_out=int((~scorecard["counted"]).sum()),
         inputs=inputs,
         figures=figures,
+        most_open=MOST_OPEN,
     )
+
+
+def _counts_in_words(rows: Sequence[Mapping[Any, Any]]) -> str:
+    """Return how many claims a figure has, and how many of each verdict, differences first."""
+    verdicts = Counter(str(row["verdict"]) for row in rows)
+    said = [f"{verdicts[verdict.value]} {verdict.value}" for verdict in ORDER if verdicts[verdict.value]]
+    return f"{count_noun(len(rows), 'claim')}: {', '.join(said)}"
 
 
 def _cells(row: Mapping[Any, Any]) -> dict[str, str]:
@@ -73,7 +86,7 @@ def _cells(row: Mapping[Any, Any]) -> dict[str, str]:
     return {
         "claim": str(row["claim"]),
         "fitted": "fitted" if row["fitted"] else "",
-        "paper": f"{paper:.{DIGITS}g} {row['unit'] if row['unit'] == row['unit'] else ''}".strip()
+        "paper": f"{format_number(paper, DIGITS)} {row['unit'] if row['unit'] == row['unit'] else ''}".strip()
         if known
         else "",
         "ours": str(row["shown"]),

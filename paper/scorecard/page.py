@@ -1,15 +1,19 @@
 """The scorecard as an HTML page."""
 
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from facegear.io import pages
+from facegear.number_format import format_number
 from paper.scorecard.base_rates import Totals
 from paper.scorecard.rows import Verdict
 
 TEMPLATE = Path(__file__).with_name("scorecard.html.j2")
-DIGITS = 5
+DIGITS = 4
+ORDER = (Verdict.DIFFERS, Verdict.UNDECIDED, Verdict.DEPENDS, Verdict.REPRODUCED)
+"""Verdicts in the order of the page: differences first."""
 
 
 def counts(frame: pd.DataFrame) -> dict[str, int]:
@@ -41,13 +45,42 @@ def render(
         left_out=int((~frame["counted"]).sum()),
         chance=None if chance is None else against_chance(frame, chance),
         inputs=inputs,
-        parts=[(where, rows.to_dict("records")) for where, rows in frame.groupby("where", sort=False)],
+        groups=groups(frame),
         starts_header=[str(name).replace("_", " ") for name in starts.columns],
         starts_rows=[[_cell(value) for value in row] for row in starts.itertuples(index=False)],
         sets_header=[str(name).replace("_", " ") for name in sets.columns],
         sets_rows=[[_cell(value) for value in row] for row in sets.itertuples(index=False)],
         cell=_cell,
     )
+
+
+def groups(frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the rows by verdict, differences first; rows that do not count are the last group.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        The scorecard, a row a claim.
+
+    Returns
+    -------
+    list of dict
+        Of each group `name` (for styles), `words`, `title`, the number of `rows`, and its `claims`. Every row
+        is in one group.
+    """
+    counted = frame["counted"].astype(bool)
+    parts = [(str(verdict), frame[counted & (frame["verdict"] == verdict.value)]) for verdict in ORDER]
+    parts.append(("not counted", frame[~counted]))
+    return [
+        {
+            "name": words.split()[0],
+            "words": words,
+            "title": words.capitalize(),
+            "rows": len(part),
+            "claims": part.to_dict("records"),
+        }
+        for words, part in parts
+    ]
 
 
 def against_chance(frame: pd.DataFrame, chance: Totals) -> str:
@@ -70,4 +103,4 @@ def against_chance(frame: pd.DataFrame, chance: Totals) -> str:
 def _cell(value: object) -> str:
     if value is None or value != value:
         return ""
-    return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
+    return format_number(value, DIGITS) if isinstance(value, float) else str(value)

@@ -11,7 +11,7 @@ from paper.scorecard.base_rates import RATE_COLUMNS, Totals
 from paper.scorecard.claims import Claim, read_claims
 from paper.scorecard.criteria import CRITERIA
 from paper.scorecard.outcome import ClaimOutcome
-from paper.scorecard.page import counts, render
+from paper.scorecard.page import counts, groups, render
 from paper.scorecard.rows import OWN, RUN_COLUMNS, Verdict, outcome_table, scorecard
 from paper.scorecard.starts import START_COLUMNS, start_table
 
@@ -157,9 +157,34 @@ def test_page_shows_what_random_inputs_hold_beside_each_verdict_and_against_the_
     frame = scorecard([NUMBER], outcome_table([NUMBER], frequencies(100.5)), runs(), rates)
     for held, message in (([1.0] * 64, "no better than chance; 100 %"), ([0.0] * 64, "than 95 % of random")):
         page = render(frame, "source", [], pd.DataFrame(), NO_STARTS, Totals(1, np.array(held)))
-        assert "<td>62 % (50 … 73)</td>" in page
+        assert ">62 % (50 … 73)</td>" in page
         assert message.split(";")[0] in page
     assert "random plausible" not in render(frame, "source", [], pd.DataFrame(), NO_STARTS)
+
+
+def test_the_page_has_differences_first_and_counts_that_add_up_to_all_rows():
+    again = NUMBER.model_copy(update={"id": "again", "same_as": "period"})
+    other = NUMBER.model_copy(update={"id": "other", "claim": "another number"})
+    claims = [other, NUMBER, again]
+    own = outcome_table(claims, frequencies(103.0))
+    own.loc[own["id"] == "other", ["holds", "difference"]] = [True, 0.0]
+    frame = scorecard(claims, own, runs(), NO_RATES)
+    found = groups(frame)
+    assert [group["words"] for group in found] == [
+        "differs",
+        "undecided",
+        "depends on an undisclosed input",
+        "reproduced",
+        "not counted",
+    ]
+    assert [group["rows"] for group in found] == [1, 0, 0, 1, 1]
+    page = render(frame, "source", [], pd.DataFrame(), NO_STARTS)
+    assert "1 + 0 + 0 + 1 + 1 = 3 rows." in page
+    assert (
+        page.index("<h2>Differs (1)") < page.index("<h2>Reproduced (1)") < page.index("<h2>Not counted (1)")
+    )
+    for group in found:
+        assert f'id="show-{group["name"]}"' in page
 
 
 def test_repeated_numbers_and_remarks_on_other_studies_are_left_out_of_totals():

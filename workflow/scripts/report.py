@@ -23,7 +23,7 @@ with stage(snakemake) as run:
     case = Path(snakemake.output.html).parent
     manifests = [documents.read(path, ["rule"]) for path in sorted(case.glob("*/*.provenance.json"))]
     pair = documents.read(snakemake.input.pair[0], ["radii_mm"]) if snakemake.input.pair else None
-    view = None
+    view, loads = None, None
     if snakemake.input.loads:
         loads = arrays.read(snakemake.input.loads[0], PRESSURE_ARRAYS)
         given = snakemake.input.stress
@@ -39,7 +39,7 @@ with stage(snakemake) as run:
     values = snakemake.params.values
     base = Base(*snakemake.params.base) if snakemake.params.base else None
     said = notes({**values, "reproduction": values["reproduction"] or None})
-    page = case_report(values, frames, pictures, manifests, pair, view, bodies, base, said)
+    page = case_report(values, frames, pictures, manifests, pair, view, bodies, base, said, loads)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(f"{len(pictures)} pictures, {len(frames)} tables, {len(page) / 1e6:.1f} MB")

@@ -22,7 +22,7 @@ UNDAMPED = 1e-6
 closer looks tell no more."""
 CUBIC_ERROR = 1.0 / 384.0
 """Error of a Hermite cubic over a stretch, in the fourth power of the angle that a multiplier turns."""
-FEWEST, MOST = 4, 32
+MIN_LOOKS, MAX_LOOKS = 4, 32
 """Matrices interpolated in a stretch."""
 SHORTEST_LENGTH = 1e-3
 """Shorter stretches, in length scales, are not looked through: ten times the step of the slopes."""
@@ -60,7 +60,7 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
     if turn > _widest_turn(max(distances)):
         return 0.5 * (low + high)
     # A band in which multipliers reach the circle is at least as wide, in their angle, as they were off it.
-    count = int(np.clip(np.ceil(turn / max(max(distances), 1e-3)), FEWEST, MOST))
+    count = int(np.clip(np.ceil(turn / max(max(distances), 1e-3)), MIN_LOOKS, MAX_LOOKS))
     looks = np.arange(1, count + 1) / (count + 1.0)
     matrices = _interpolated([point.linear.matrix for point in ends], [start, end], looks)
     values = without_neutral(np.linalg.eigvals(matrices), neutral)
@@ -112,8 +112,8 @@ def _outside(values: ComplexArray, margin: float) -> Integers:
     """BranchPoint.outside of multipliers (K, m), but beyond 1 + margin, shape (K, 3)."""
     size = np.abs(values)
     beyond, real = size > 1.0 + margin, np.abs(values.imag) <= REAL_PAIR
-    kinds = (real & (values.real > 0.0), real & (values.real < 0.0), ~real & (values.imag > 0.0))
-    return np.stack([(beyond & kind).sum(axis=1) for kind in kinds], axis=1)
+    classes = (real & (values.real > 0.0), real & (values.real < 0.0), ~real & (values.imag > 0.0))
+    return np.stack([(beyond & kind).sum(axis=1) for kind in classes], axis=1)
 
 
 def _returning(surely: Integers, perhaps: Integers) -> int | None:
@@ -122,8 +122,8 @@ def _returning(surely: Integers, perhaps: Integers) -> int | None:
     surely, perhaps: the counts (K + 2, 3) outside by more than, and up to, the error of the matrices.
     """
     for sure, possible in zip(surely.T, perhaps.T, strict=True):
-        least, most = sorted((sure[0], sure[-1]))
-        beyond = np.flatnonzero((sure > most) | (possible < least))
+        lower, upper = sorted((sure[0], sure[-1]))
+        beyond = np.flatnonzero((sure > upper) | (possible < lower))
         if beyond.size:
             return int(beyond[0]) - 1
         inner, possible = sure[1:-1], possible[1:-1]

@@ -25,6 +25,8 @@ REAL_PAIR = 1e-6
 
 STALLED = 300.0
 """Change over the period, in goals, that is accepted where Newton's method gains no more."""
+ON_CIRCLE = 1e-9
+"""Distance from the unit circle up to which a complex pair counts as on it: rounding of a period map."""
 SINGULAR = 1e-7
 """A direction in which the bordered matrix moves things less than this, relatively, is left alone."""
 
@@ -89,11 +91,15 @@ class BranchPoint:
 
     @cached_property
     def outside(self) -> tuple[int, int, int]:
-        """Real multipliers above 1, real ones below -1, complex pairs outside the unit circle."""
+        """Real multipliers above 1, real ones below -1, complex pairs outside the unit circle.
+
+        A pair outside by no more than ON_CIRCLE is on the circle: without damping all pairs are, and rounding
+        alone would move them across it.
+        """
         return (
             int((self.real > 1.0).sum()),
             int((self.real < -1.0).sum()),
-            int((np.abs(self.pairs) > 1.0).sum()),
+            int((np.abs(self.pairs) > 1.0 + ON_CIRCLE).sum()),
         )
 
     @property

@@ -71,7 +71,7 @@ def survey(
     max_branches
         Largest number of branches that are followed, without their images.
     progress
-        Is told of each branch.
+        Called with a line about each branch.
     """
     search = _Search(run, longest_period, max_branches, progress)
     search.follow(*start, "the first motion")

@@ -51,9 +51,6 @@ ROWS = (
             upstream=from_stage("load_sharing_summary", "studies", "summary"),
             needs={
                 "titles": Computed(studies.titles, ("studies",)),
-                "captions": Computed(
-                    studies.captions, ("studies", "tooth_pair", "transmission", "mesh_stiffness")
-                ),
                 "groups": Computed(studies.kinds_of_groups, ("transmission", "tooth_pair")),
             },
         ),

@@ -17,7 +17,7 @@ from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.track import SampledTrack, periodic_track, track
 from facegear.harmonics.series import Harmonics, stacked_values
-from facegear.report.case import case_report
+from facegear.report.case import bearing_reactions, case_report
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role
@@ -213,8 +213,17 @@ def test_the_report_shows_the_forces_on_the_bearings_at_the_nominal_speed():
     model, found = loaded()
     values = facegear.example().values
     page = case_report(values, {"bearings": bearing_table(model, found)}, {}, [])
-    assert "Force of every body on its bearing" in page
-    assert page.count("<td>radial</td>") == 7
+    assert "Reactions of the bearing of every body" in page
+
+
+def test_each_bearing_has_one_row_of_reactions():
+    table = bearing_table(*loaded())
+    rows = bearing_reactions(table)
+    assert list(rows["bearing"]) == list(dict.fromkeys(table["body"])) and len(rows) == 7
+    known = table.set_index(["body", "direction"])
+    for row in rows.itertuples():
+        assert row.static_radial_n == known.loc[(row.bearing, "radial"), "static_n"]
+        assert row.peak_z_n == known.loc[(row.bearing, "z"), "peak_n"]
 
 
 def rates(response):

@@ -36,7 +36,7 @@ def observer():
 
 @pytest.fixture
 def two_threads():
-    """As many threads as a user of two cores has, where the tests have one."""
+    """Give BLAS as many threads as a user of two cores has, where the tests have one."""
     with threadpool_limits(limits=2, user_api="blas"):
         before = blas_threads()
         assert set(before.values()) == {2}

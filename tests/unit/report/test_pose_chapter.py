@@ -39,7 +39,7 @@ def test_the_contact_that_moves_furthest_its_margin_and_what_it_costs_are_said()
     assert "tail/upper moves furthest, from 268.1 mm as assembled to 272.2 mm" in text
     assert "tail/upper comes nearest to an end of the face: 2.6 mm are left to the outer one" in text
     assert "stiffness changes by -18.4 to +1.6 %" in text and "pressure changes by +0.1 to +8.0 %" in text
-    assert "input/lower changes most, from 9800 N to 9600 N" in text
+    assert "input/lower changes most, from 9,800 N to 9,600 N" in text
 
 
 def test_the_load_at_which_a_contact_leaves_the_face_is_said_and_that_none_does_where_none_does():

@@ -14,8 +14,12 @@ from playwright.sync_api import sync_playwright
 
 from facegear.plots.style import save
 from facegear.plots.sweep import mesh_sweeps, translations
-from facegear.report.page import Chapter, Picture, Table, render
+from facegear.report.compact import sweep_picture
+from facegear.report.first_screen import FirstScreen, Key
+from facegear.report.page import Chapter, Picture, render
 from facegear.report.stills import data_uri
+from facegear.report.table import Table
+from facegear.report.verdicts import Verdict
 
 CHROMIUM = shutil.which("chromium")
 pytestmark = [
@@ -26,6 +30,11 @@ A4 = {"width": 710, "height": 1030}
 """Pixels of a page of A4 within its margins."""
 OVER_SPEED = "figure-mesh_sweep"
 DIM = "#440154"
+WIDER = """[...document.querySelectorAll('#first-screen *')]
+  .filter(part => part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).display !== 'inline')
+  .map(part => part.outerHTML.slice(0, 80))"""
+"""Parts of the first screen that hold more than their width."""
+COLOURS = ("green", "red", "grey")
 DOTS = """async sources => {
   const [first, second] = await Promise.all(sources.map(async source => {
     const image = new Image(), canvas = document.createElement("canvas");
@@ -85,16 +94,16 @@ def report(tmp_path_factory):
     pictures = [Picture(folder / f"{name}.svg", f"Sweep, {name}.") for name in drawn]
     modes = pd.DataFrame({"mode": ["7", "8", "9"], "frequency_hz": [597.5591, 1010.1912, 812.3]})
     wide = pd.DataFrame({f"largest_line_load_{n}_n_per_mm": [1234.5678 + n] * 4 for n in range(20)})
-    judged = pd.DataFrame({"verdict": ["green", "amber", "red"], "what was found": ["safety 1.0 " * 8] * 3})
-    warned = pd.DataFrame(
-        {"about": ["transmission.mesh_kinematics"], "what to keep in mind": ["words " * 30]}
-    )
+    judged = [Verdict("Pitting", colour, "safety 1.0 " * 8, ("edge contact",)) for colour in COLOURS]
+    keys = [Key(f"Number {n}", "2,086 → 2,074 kW", "beside it", "Its definition.", n == 3) for n in range(8)]
+    drawn_small = [sweep_picture(sweep, jumps, 7500.0)] * 3
+    warned = [("Machine", ["transmission.mesh_kinematics: " + "words " * 30])]
+    first = FirstScreen("red", "Not as required:", "words " * 25, keys, drawn_small, judged, warned)
     chapters = [
-        Chapter("At a glance", "", tables=[Table("Verdicts", judged), Table("Warnings", warned)]),
         Chapter("Modes", "Text.", tables=[Table("Natural frequencies", modes), Table("Wide", wide)]),
         Chapter("Sweeps", "", pictures),
     ]
-    (folder / "report.html").write_text(render("A machine", "Lead.", chapters), encoding="utf-8")
+    (folder / "report.html").write_text(render("A machine", "Lead.", chapters, first), encoding="utf-8")
     return folder / "report.html"
 
 
@@ -176,7 +185,7 @@ def test_a_drag_zooms_every_figure_over_speed_and_a_legend_switches_a_curve_ever
 def test_a_table_is_sorted_by_its_head_and_kept_as_csv_with_all_its_digits(opened):
     page = opened()
     head = page.locator("#modes th button", has_text="frequency (Hz)")
-    for order in (["597.56", "812.3", "1010.2"], ["1010.2", "812.3", "597.56"]):
+    for order in (["597.6", "812.3", "1,010"], ["1,010", "812.3", "597.6"]):
         head.click()
         assert page.locator("#modes table").first.locator("td:nth-child(2)").all_inner_texts() == order
     with page.expect_download() as download:
@@ -186,20 +195,37 @@ def test_a_table_is_sorted_by_its_head_and_kept_as_csv_with_all_its_digits(opene
     assert kept["frequency_hz"].tolist() == [597.5591, 1010.1912, 812.3]
 
 
-@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (500, "dark")])
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (390, "dark")])
 def test_the_page_has_no_serious_fault_of_accessibility_and_fits_the_window(opened, width, scheme):
     page = opened(width, color_scheme=scheme)
     drawn(page, OVER_SPEED)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
-    glance = (
-        "[...document.querySelectorAll('#at-a-glance .scroll')].map(box => box.scrollWidth - box.clientWidth)"
-    )
-    assert page.evaluate(glance) == [0, 0], "the first screen is read without scrolling sideways"
+    assert page.evaluate(WIDER) == [], "the first screen is read without scrolling sideways"
     paper = page.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (sum(map(int, re.findall(r"\d+", paper)[:3])) < 200) == (scheme == "dark")
     faults = Axe().run(page).response["violations"]
     serious = [fault for fault in faults if fault["impact"] in ("serious", "critical")]
     assert not [(fault["id"], fault["nodes"][0]["html"][:120]) for fault in serious]
+
+
+def test_the_first_screen_leads_from_the_sentence_to_the_verdicts_at_1280_by_800(opened):
+    page = opened()
+    page.set_viewport_size({"width": 1280, "height": 800})
+    tops = page.evaluate(
+        "['.status', '.keys', '.pictures', '.verdicts tbody'].map(e => "
+        "document.querySelector(e).getBoundingClientRect().top)"
+    )
+    assert tops == sorted(tops) and tops[-1] < 760
+    figures = "[...document.querySelectorAll('.pictures figure')].map(e => e.getBoundingClientRect().y)"
+    assert len(set(page.evaluate(figures))) == 1, "three pictures beside each other"
+
+
+def test_columns_beyond_the_eighth_are_shown_by_a_click(opened):
+    page = opened()
+    wide = page.locator("#modes table").nth(1)
+    assert wide.locator("th:visible").count() == 8
+    page.get_by_label("all 20 columns").check()
+    assert wide.locator("th:visible").count() == 20
 
 
 def test_in_the_dark_a_dim_line_is_light_and_an_area_keeps_the_colour_of_its_scale(opened):
@@ -222,7 +248,7 @@ def test_print_fits_a4_with_every_column_and_the_stills(opened):
     page.emulate_media(media="print")
     page.set_viewport_size(A4)
     widths = page.evaluate("[...document.querySelectorAll('main table')].map(table => table.scrollWidth)")
-    assert len(widths) == 4 and max(widths) <= A4["width"]
+    assert len(widths) == 3 and max(widths) <= A4["width"]
     assert page.locator(f"#{OVER_SPEED} img").is_visible()
     assert not page.locator(f"#{OVER_SPEED} .live").is_visible()
     printed = page.pdf(prefer_css_page_size=True)
@@ -233,7 +259,7 @@ def test_print_fits_a4_with_every_column_and_the_stills(opened):
 def test_without_scripts_the_stills_and_tables_are_there(opened):
     page = opened(script=False)
     assert page.locator(f"#{OVER_SPEED} img").is_visible() and page.locator("#modes table").first.is_visible()
-    assert page.locator("nav a").count() == 3
+    assert page.locator("nav a").count() == 2
 
 
 def test_a_still_on_the_page_shows_the_stored_drawing_dot_for_dot(browser, report):
@@ -247,3 +273,16 @@ def test_a_still_on_the_page_shows_the_stored_drawing_dot_for_dot(browser, repor
     page.close()
     assert dark > 0.01, "the drawing is not empty"
     assert other < 1e-3 and larger == 0
+
+
+def test_the_toolbar_of_a_figure_never_covers_its_legend(opened):
+    page = opened()
+    drawn(page, OVER_SPEED).hover()
+    for part in (".legend", ".annotation", ".main-svg .gtitle"):
+        for box in page.locator(f"#{OVER_SPEED} {part}").all():
+            text, bar = (
+                box.bounding_box(),
+                page.locator(f"#{OVER_SPEED} .modebar-container .modebar").bounding_box(),
+            )
+            apart = text["y"] >= bar["y"] + bar["height"] or text["x"] + text["width"] <= bar["x"]
+            assert apart, (part, text, bar)

@@ -6,7 +6,8 @@ import re
 import pandas as pd
 
 from facegear.report.case import mode_rows
-from facegear.report.page import Chapter, Picture, Table, render
+from facegear.report.page import Chapter, Picture, render
+from facegear.report.table import Table
 
 
 def page(tmp_path):
@@ -26,7 +27,7 @@ def test_page_needs_no_other_file(tmp_path):
 def test_text_is_escaped_and_missing_numbers_are_blank(tmp_path):
     text = page(tmp_path)
     assert "pinion &lt;b&gt;" in text
-    assert '<td class="number">756.71</td>' in text
+    assert '<td class="number">756.7</td>' in text
     assert "nan" not in text
     assert text.count("<p>") == 3
 
@@ -60,10 +61,41 @@ def test_equal_modes_are_one_row_that_says_how_many():
 
 
 def test_stiffnesses_are_written_in_one_format():
-    frame = pd.DataFrame({"mean_n_per_m": [4.1e8, 52.0, 9.99e5], "torque_n_m": [600.0, 5.0, 1e5]})
-    assert [row[0] for row in Table("T", frame, 4).rows()] == ["4.100e8", "5.200e1", "9.990e5"]
+    frame = pd.DataFrame({"mean_n_per_m": [4.1e8, 5.2e7, 9.99e5], "torque_n_m": [600.0, 5.0, 1e5]})
+    table = Table("T", frame)
+    assert table.header() == ["mean (N/µm)", "torque (N m)"]
+    assert [row[0] for row in table.rows()] == ["410", "52", "0.999"]
     none = pd.DataFrame({"sin_n_per_m": [0.0, 2.9e7]})
-    assert Table("T", none, 4).rows() == [["0"], ["2.900e7"]]
+    assert Table("T", none).rows() == [["0"], ["29"]]
+
+
+def test_large_forces_are_in_kilonewtons_and_small_ones_are_not():
+    frame = pd.DataFrame({"mean_n": [24319.1, 812.0], "peak_n": [26000.0, float("nan")]})
+    table = Table("T", frame)
+    assert table.header() == ["mean (kN)", "peak (kN)"]
+    assert table.rows() == [["24.32", "26"], ["0.812", ""]]
+    small = Table("T", 1e-3 * frame)
+    assert small.header() == ["mean (N)", "peak (N)"] and small.rows()[0] == ["24.32", "26"]
+
+
+def test_a_cell_is_never_none_nor_minus_zero():
+    frame = pd.DataFrame({"x_um": [-0.0, 1.0], "what": [None, "a"], "count": [1234, 5]})
+    assert Table("T", frame).rows() == [["0", "", "1,234"], ["1", "a", "5"]]
+
+
+def test_a_wide_table_shows_eight_columns_and_the_others_on_demand(tmp_path):
+    wide = pd.DataFrame({f"part_{n}": ["x"] for n in range(11)})
+    table = Table("Wide", wide, main=("part_9", "part_3"))
+    assert table.header()[:3] == ["part 9", "part 3", "part 0"]
+    assert table.on_demand() == [False] * 2 + [True] * 9 and sum(Table("Wide", wide).on_demand()) == 3
+    text = render("Case", "Lead", [Chapter("C", "", (), (table,))])
+    assert "all 11 columns" in text and text.count('class="more"') == 18
+    assert (
+        "columns"
+        not in render("Case", "Lead", [Chapter("C", "", (), (Table("T", wide.iloc[:, :8]),))])
+        .split("<main>")[1]
+        .split("</main>")[0]
+    )
 
 
 def test_letters_of_a_printed_table_shrink_with_the_words_of_its_row_and_not_with_its_length():
@@ -84,18 +116,18 @@ def test_text_of_pictures_keeps_its_size_on_a_telephone(tmp_path):
 
 
 def test_rounding_is_written_as_zero_and_small_numbers_of_their_own_unit_are_kept():
-    frame = pd.DataFrame({"mean_n": [3.3e-12, 2.1e4], "rms_n": [10.2, 0.5], "energy_fraction": [1e-12, 0.1]})
-    assert Table("T", frame).rows() == [["0", "10.2", "1e-12"], ["21000", "0.5", "0.1"]]
+    frame = pd.DataFrame({"mean_n": [3.3e-12, 210.0], "rms_n": [10.2, 0.5], "energy_fraction": [1e-12, 0.1]})
+    assert Table("T", frame).rows() == [["0", "10.2", "1e-12"], ["210", "0.5", "0.1"]]
 
 
 def test_every_number_is_written_alike_and_the_csv_keeps_all_its_digits():
     """Numbers were 1.234e+04 in one column and 4.1e8 in the next."""
     values = [12345.678, 1234567.0, 2.0e-2, -0.0123456, float("inf"), 10.0, 999999.9]
-    frame = pd.DataFrame({"force_n": values, "running": [True, False] * 3 + [True]})
-    table = Table("Forces, of every mesh", frame, 4)
-    shown = ["12346", "1.235e6", "0.02", "-0.01235", "inf", "10", "1000000"]
+    frame = pd.DataFrame({"speed_rpm": values, "running": [True, False] * 3 + [True]})
+    table = Table("Speeds, of every mesh", frame)
+    shown = ["12,346", "1.235e6", "0.02", "-0.01235", "inf", "10", "1,000,000"]
     assert [row[0] for row in table.rows()] == shown
     assert table.numeric() == [True, False] and table.rows()[0][1] == "yes"
     kept = base64.b64decode(table.csv_uri().partition(",")[2]).decode()
     assert kept == frame.to_csv(index=False) and "12345.678" in kept
-    assert table.csv_name("modes") == "modes-forces-of-every-mesh.csv"
+    assert table.csv_name("modes") == "modes-speeds-of-every-mesh.csv"

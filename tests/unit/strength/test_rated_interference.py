@@ -3,7 +3,7 @@
 import pytest
 
 import facegear
-from facegear.report.glance import findings
+from facegear.report.verdicts import verdicts
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -29,5 +29,5 @@ def test_teeth_that_interfere_bear_a_caveat_and_the_report_says_it():
     message = f"fillets carry up to {100 * share:.2g} % of the torque, kept out of pressure and root stress"
     assert share > 0.1
     assert found["safety"]["caveat"].str.contains(message).all()
-    shown = [row for row in findings({"rating": found["rating"]}, None) if "bending" in row.about]
-    assert shown and all(row.light == "amber" and message in row.finding for row in shown)
+    shown = {one.subject: one for one in verdicts(gearbox.values, {"rating": found["rating"]}, None)}
+    assert shown["Bending"].colour == "green" and "fillet contact" in shown["Bending"].caveats

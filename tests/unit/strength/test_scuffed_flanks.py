@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.report.glance import findings
 from facegear.strength.scuffed_flanks import with_scuffing
 
 SPECTRUM = pd.DataFrame(
@@ -62,18 +61,6 @@ def test_a_contact_too_hot_for_the_oil_is_never_green_and_says_why():
     ]
     thin = with_scuffing(SAFETY, SPECTRUM, losses(micropitting_safety=0.5))
     assert thin["verdict"].tolist() == ["red", "red", "red"]
-
-
-def test_the_first_screen_names_the_mesh_nearest_to_scuffing():
-    known = {row.about: row.finding for row in findings({"mesh_losses": losses()}, None)}
-    assert known["scuffing"].startswith(
-        "safety 0.20, -90 K to the limit (engine/upper, drive flank, at the nominal"
-    )
-    assert "outside the torques" in known["scuffing"] and "micropitting" not in known
-    assert "0.01 times" in known["smallest film"]
-    of_duty = losses()[lambda table: table["bin"] > 0]
-    scuffing = [row.finding for row in findings({"mesh_losses": of_duty}, None) if row.about == "scuffing"]
-    assert "bin 1 of the duty cycle" in scuffing[0]
 
 
 def test_only_meshes_of_the_flank_count():

@@ -18,11 +18,14 @@ def test_the_shipped_config_finds_the_folds_at_which_its_sweeps_jump_and_those_o
     gearbox = facegear.load(CONFIG, results=None)
     jumps = gearbox.sweep().jumps().set_index("direction")
     found = gearbox.branches()
-    special = found.special_points()
+    special, images = found.special_points(), found.images()
+    special = special[~special["branch"].isin(images["branch"])]
     folds = np.sort(special.loc[special["kind"] == "fold", "speed_rpm"])
     ends = jumps.loc[["down", "up"], ["speed_before_rpm", "speed_after_rpm"]].mean(axis=1)
     assert len(folds) == 6
     assert (abs(folds[[0, -1]] - ends) < 1.5).all()
     assert abs(folds[1:-1] - [5973.671, 5979.157, 6090.257, 6518.335]).max() < 0.001
     assert ends["down"] < gearbox.values["dynamics"]["speed_rpm"] < ends["up"]
-    assert found.table()["branch"].nunique() == found.content["coexistence"]["branch"].nunique() == 3
+    assert found.content["coexistence"]["branch"].nunique() == 3
+    assert images.to_dict("list") == {"branch": [2], "image_of": [1]}
+    assert found.ranges()["branches"].tolist()[1] == "0 0 1 2 3"

@@ -149,6 +149,7 @@ def test_multipliers_of_an_undamped_oscillator_multiply_to_one():
     period_map = period_map_of(lambda speed: backlash_oscillator(speed, 0.0))
     branch = branch_at(period_map, np.array([1.0, 0.0]), 2.35, run)
     assert branch.points[-1].value == pytest.approx(2.4)
+    assert not branch.of(Kind.TORUS)
     for point in branch.points:
         assert np.prod(point.multipliers).real == pytest.approx(1.0, abs=1e-9)
 
@@ -158,6 +159,7 @@ def test_without_any_damping_a_branch_ends_for_a_named_reason_at_orbits_that_are
     period_map = period_map_of(lambda speed: backlash_oscillator(speed, 0.0))
     branch = branch_at(period_map, np.array([1.1, 0.0]), 0.4, run)
     assert set(branch.ends) <= {BranchEnd.LIMIT, BranchEnd.POLE, BranchEnd.POINTS}
+    assert not branch.of(Kind.TORUS), "the pair of a map that keeps areas cannot leave the circle"
     for point in branch.points:
         assert np.abs(period_map.gap(point.z, point.u)).max() < 1e-8
 

@@ -35,13 +35,13 @@ def piecewise_multipliers(speeds, damping):
     return np.linalg.eigvals(matrices)
 
 
-def edges_of_bands(lowest, highest, damping):
+def edges_of_bands(begin_speed, end_speed, damping):
     """Speeds at which the largest multiplier passes the unit circle."""
 
     def outside(speed):
         return float(np.abs(piecewise_multipliers([speed], damping)).max() - 1.0)
 
-    speeds = np.geomspace(lowest, highest, 10_001)
+    speeds = np.geomspace(begin_speed, end_speed, 10_001)
     largest = np.abs(piecewise_multipliers(speeds, damping)).max(axis=1)
     return [
         brentq(outside, speeds[i], speeds[i + 1], xtol=1e-13)
@@ -49,9 +49,9 @@ def edges_of_bands(lowest, highest, damping):
     ]
 
 
-def branch_of(system, lowest, highest, begin, **steps):
+def branch_of(system, begin_speed, end_speed, begin, **steps):
     period_map = PeriodMap(Family("W", lambda speed: (system, speed)), 1, 1e-12)
-    return branch_at(period_map, np.zeros(4), begin, ContinuationSettings(lowest, highest, **steps))
+    return branch_at(period_map, np.zeros(4), begin, ContinuationSettings(begin_speed, end_speed, **steps))
 
 
 def changes_of_stability(branch):

@@ -1,0 +1,36 @@
+"""Numbers of the machine at rest that several parts of a report read."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+BALANCED = 1e-9
+"""Relative difference of power in and out that is rounding."""
+
+
+def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
+    """Numbers of the ratings by quantity, and the torques of what takes most power; empty without a machine.
+
+    That is a gear, or pinions: then neither the number of teeth nor the gear's speed is that of the output.
+    """
+    if "ratings" not in tables:
+        return {}
+    numbers = dict(tables["ratings"].itertuples(index=False))
+    driven = tables["bodies"][tables["bodies"]["power_kw"] < 0.0]
+    gears = driven["role"] == "face gear"
+    if len(driven) and driven.loc[~gears, "power_kw"].sum() < driven.loc[gears, "power_kw"].sum():
+        torques = dict.fromkeys(sorted(driven.loc[~gears, "torque_n_m"].abs()))
+        return {
+            **{name: value for name, value in numbers.items() if name != "gear_ratio"},
+            "speed_ratio": 1.0,
+            "output_pinions_n_m": tuple(torques),
+        }
+    torques = tables["bodies"].loc[tables["bodies"]["role"] == "face gear", "torque_n_m"]
+    return numbers | {"output_torque_n_m": float(torques.abs().max())}
+
+
+def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """The summary of load sharing of the machine itself; empty where there is none."""
+    summary = tables.get("summary")
+    return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]

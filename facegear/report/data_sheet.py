@@ -1,0 +1,124 @@
+"""Data of both gears as on a drawing, from the record of the tooth geometry."""
+
+from collections.abc import Mapping
+from math import cos, degrees, hypot, pi, sin, tan
+from typing import Any
+
+import pandas as pd
+
+DATA_SHEET = "Gear data, as on a drawing"
+DECIMALS = 3
+"""Decimals of lengths in mm: micrometres, as drawings give them."""
+
+
+def data_sheet_table(pair: Mapping[str, Any]) -> pd.DataFrame:
+    """List the data of pinion and face gear that a drawing states.
+
+    Parameters
+    ----------
+    pair : mapping
+        Record of the tooth geometry (`geometry/pair.json`): lengths in m below `design_si`, in mm below
+        `radii_mm`.
+
+    Returns
+    -------
+    DataFrame
+        Columns quantity, pinion, face gear, unit, all text; blank where a gear has no such quantity.
+    """
+    design, radii = pair["design_si"], pair["radii_mm"]
+    pinion, gear, shaper = design["pinion"], design["face_gear"], design["shaper"]
+    module = 1e3 * design["module"]
+    shift = 1e3 * pinion["profile_shift"]
+    axis = radii["pinion_pitch"] + shift
+    span_teeth, span = pinion_span(pair)
+    middle = _mm(0.5 * (radii["gear_inner"] + radii["gear_outer"]))
+    backlash = f"{pair['backlash_um']['smallest']:.1f}"
+    path = radii["gear_contact_path_nominal"]
+    rows = [
+        ("Teeth", f"{pinion['teeth']}", f"{gear['teeth']}", ""),
+        ("Module", _mm(module), _mm(module), "mm"),
+        ("Pressure angle", *2 * (f"{degrees(design['pressure_angle']):.4g}",), "deg"),
+        ("Profile shift coefficient", f"{shift / module + 0.0:.4f}", "", ""),
+        ("Pitch diameter", _mm(2 * radii["pinion_pitch"]), _mm(2 * path), "mm"),
+        ("Base diameter", _mm(2 * radii["pinion_base"]), _mm(2 * radii["gear_base"]), "mm"),
+        ("Tip diameter", _mm(2 * radii["pinion_tip"]), "", "mm"),
+        ("Root diameter", _mm(2 * radii["pinion_root"]), "", "mm"),
+        ("Fillet begins at diameter", _mm(2 * radii["pinion_fillet_start"]), "", "mm"),
+        (
+            "Tooth thickness at the pitch diameter",
+            _mm(pinion_tooth_thickness(pair)),
+            _mm(pi * module / 2.0),
+            "mm",
+        ),
+        (f"Span over {span_teeth} teeth", _mm(span), "", "mm"),
+        ("Face width", _mm(1e3 * pinion["width"]), _mm(radii["gear_outer"] - radii["gear_inner"]), "mm"),
+        ("Inner diameter of the face", "", _mm(2 * radii["gear_inner"]), "mm"),
+        ("Outer diameter of the face", "", _mm(2 * radii["gear_outer"]), "mm"),
+        ("Middle of the face from the gear's axis", middle, middle, "mm"),
+        ("Pinion axis to pitch plane", "", _mm(axis), "mm"),
+        ("Pinion axis to tip plane", "", _mm(axis - 1e3 * gear["addendum"]), "mm"),
+        ("Pinion axis to root plane", "", _mm(axis + 1e3 * shaper["addendum"]), "mm"),
+        ("Rim below the root", "", _mm(1e3 * gear["rim_thickness"]), "mm"),
+        ("Teeth of the shaper", "", f"{shaper['teeth']}", ""),
+        ("Tip rounding of the shaper", "", _mm(1e3 * shaper["tip_rounding"]), "mm"),
+        ("Tip chamfer", _mm(1e3 * pinion["tip_chamfer"]), "", "mm"),
+        ("Bore diameter", _mm(2e3 * pinion["bore_radius"]), "", "mm"),
+        ("Backlash along the line of action, as assembled", backlash, backlash, "µm"),
+    ]
+    return pd.DataFrame(rows, columns=["quantity", "pinion", "face gear", "unit"])
+
+
+def pinion_tooth_thickness(pair: Mapping[str, Any]) -> float:
+    """Compute the tooth thickness of the pinion on its pitch circle.
+
+    Parameters
+    ----------
+    pair : mapping
+        Record of the tooth geometry.
+
+    Returns
+    -------
+    float
+        Length of the arc, mm: m (pi / 2 + 2 x tan alpha) less the thinning, which is given along the normal.
+    """
+    design, pinion = pair["design_si"], pair["design_si"]["pinion"]
+    angle = design["pressure_angle"]
+    nominal = pi * design["module"] / 2.0 + 2.0 * pinion["profile_shift"] * tan(angle)
+    return 1e3 * (nominal - pinion["thinning"] / cos(angle))
+
+
+def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
+    """Compute the span over the teeth at which its anvils touch nearest to the pitch circle.
+
+    Parameters
+    ----------
+    pair : mapping
+        Record of the tooth geometry.
+
+    Returns
+    -------
+    tuple of (int, float)
+        Number of teeth and span, mm.
+
+    References
+    ----------
+    ISO 21771: W_k = m cos(alpha) ((k - 1/2) pi + z inv(alpha)) + 2 x m sin(alpha), less the normal thinning.
+    """
+    design, pinion = pair["design_si"], pair["design_si"]["pinion"]
+    angle, teeth = design["pressure_angle"], pinion["teeth"]
+    base = pair["radii_mm"]["pinion_base"]
+    target = pair["radii_mm"]["pinion_pitch"] + 1e3 * pinion["profile_shift"]
+
+    def span(count: int) -> float:
+        involute = tan(angle) - angle
+        nominal = design["module"] * cos(angle) * ((count - 0.5) * pi + teeth * involute)
+        shifted = nominal + 2.0 * pinion["profile_shift"] * sin(angle)
+        return 1e3 * (shifted - pinion["thinning"])
+
+    counts = range(2, max(teeth // 2, 2) + 1)
+    best = min(counts, key=lambda count: abs(hypot(base, span(count) / 2.0) - target))
+    return best, span(best)
+
+
+def _mm(length: float) -> str:
+    return f"{length:.{DECIMALS}f}"

@@ -1,0 +1,170 @@
+"""A table of a report: which columns are shown, in what units, and how its cells are written."""
+
+import base64
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+
+import numpy as np
+import pandas as pd
+
+from facegear.number_format import format_number
+from facegear.report.units import ENGINEERING, UNITS, ending_of
+
+NAMED = 5
+"""Words of a caption that name its file."""
+PAPER_PT, COLUMN_GAP_PT, LETTER_WIDTH = 532.0, 8.0, 0.64
+"""On A4: width of a table, room beside a column (pt), and the mean width of a letter in its height."""
+PRINTED = (4.0, 8.0)
+"""Smallest and largest size of letters in a printed table, in pt."""
+LONG, LONG_COLUMN = 60, 22
+"""Letters of a cell from which on a printed table may break it anywhere, and of a line of it then."""
+ROUNDING = 1e-9
+"""A number below this part of the largest one with its unit is zero but for rounding, and is written as 0."""
+SHOWN_COLUMNS = 8
+"""Columns of a table that are shown at once: as many as are read on 1280 px without scrolling sideways."""
+EXACT = 12
+"""Significant digits of the config's numbers."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under a caption.
+
+    Attributes
+    ----------
+    caption : str
+        What the rows are.
+    frame : DataFrame
+        The rows; a unit ends a column's name.
+    digits : int
+        Significant digits of numbers, dimensionless.
+    folded : bool
+        Whether a click opens the table.
+    main : sequence of str
+        Columns shown at once, in this order; the first SHOWN_COLUMNS if empty. A click shows the others.
+    exact : bool
+        Whether numbers stand as in a config: with all digits, ungrouped.
+    """
+
+    caption: str
+    frame: pd.DataFrame
+    digits: int = 4
+    folded: bool = False
+    main: Sequence[str] = ()
+    exact: bool = False
+
+    @cached_property
+    def page_frame(self) -> pd.DataFrame:
+        """Columns in the order of the page: main ones first; forces in kN and stiffnesses in N/µm."""
+        known = [name for name in self.main if name in self.frame]
+        others = [name for name in self.frame.columns if name not in known]
+        table = self.frame[[*known, *others]] if known else self.frame
+        return table if self.exact else _engineering(table)
+
+    def on_demand(self) -> list[bool]:
+        """Return for each column whether it is shown on demand only."""
+        main = sum(name in self.frame for name in self.main) or SHOWN_COLUMNS
+        columns = len(self.frame.columns)
+        return [columns > SHOWN_COLUMNS and at >= min(main, SHOWN_COLUMNS) for at in range(columns)]
+
+    def header(self) -> list[str]:
+        """Column names as words, with their units as they are written."""
+        return [words(str(name)) for name in self.page_frame.columns]
+
+    def numeric(self) -> list[bool]:
+        """Of each column whether it holds numbers."""
+        return [
+            pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind)
+            for kind in self.page_frame.dtypes
+        ]
+
+    def rows(self) -> list[list[str]]:
+        """Cells as text."""
+        units = [ending_of(str(name)) for name in self.page_frame.columns]
+        largest = {unit: self._largest(unit, units) for unit in set(units)}
+        zero = [ROUNDING * largest[unit] for unit in units]
+        return [
+            [self._cell(*cell) for cell in zip(row, zero, strict=True)]
+            for row in self.page_frame.itertuples(index=False)
+        ]
+
+    def print_pt(self) -> float:
+        """Size of the letters (pt) at which no word or number is broken on A4, within PRINTED."""
+        cells = [self.header(), *self.rows()]
+        longest = [
+            max((_longest_word(text) for text in column), default=1) for column in zip(*cells, strict=True)
+        ]
+        room = PAPER_PT - COLUMN_GAP_PT * len(longest)
+        return round(float(np.clip(room / (LETTER_WIDTH * sum(longest)), *PRINTED)), 2)
+
+    def csv_name(self, chapter: str) -> str:
+        """Name of the file in which a reader keeps the table."""
+        said = re.findall(r"[a-z0-9]+", self.caption.lower())[:NAMED]
+        return f"{chapter}-{'-'.join(said)}.csv"
+
+    def csv_uri(self) -> str:
+        """The table as csv with all its digits, as a data URI."""
+        text = self.frame.to_csv(index=False)
+        return f"data:text/csv;base64,{base64.b64encode(text.encode()).decode()}"
+
+    def _largest(self, unit: str, units: Sequence[str]) -> float:
+        """The largest number of all columns with a unit; nothing for numbers without one."""
+        columns = [self.page_frame.iloc[:, i] for i, other in enumerate(units) if unit and other == unit]
+        floats = [column for column in columns if pd.api.types.is_float_dtype(column)]
+        sizes = [column[np.isfinite(column)].abs().max() for column in floats]
+        return max((float(size) for size in sizes if isfinite(size)), default=0.0)
+
+    def _cell(self, value: object, zero: float) -> str:
+        """Return a cell; what is missing is blank."""
+        if isinstance(value, bool | np.bool_):
+            return "yes" if value else "no"
+        if value is None or value != value:
+            return ""
+        if isinstance(value, int | np.integer):
+            return str(value) if self.exact else f"{value:,}"
+        if not isinstance(value, float):
+            return "face gear" if value == "face_gear" else str(value)
+        shown = 0.0 if abs(value) < zero else value
+        return format_number(shown, EXACT if self.exact else self.digits, group_digits=not self.exact)
+
+
+def _engineering(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table with the units of ENGINEERING where its largest number is large enough for them."""
+    scaled, names = {}, {}
+    for name in table.columns:
+        ending = ending_of(str(name))
+        if ending not in ENGINEERING or not pd.api.types.is_float_dtype(table[name]):
+            continue
+        other, factor, least = ENGINEERING[ending]
+        alike = [one for one in table.columns if ending_of(str(one)) == ending]
+        numbers = table[alike].select_dtypes("number").to_numpy(float)
+        largest = np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)
+        if largest >= least:
+            scaled[name] = factor * table[name]
+            names[name] = f"{name} ".replace(f"_{ending} ", f"_{other} ").rstrip()
+    return table.assign(**{str(name): column for name, column in scaled.items()}).rename(columns=names)
+
+
+def words(name: str) -> str:
+    """A column's name as words, with its unit as it is written."""
+    ending = ending_of(name)
+    return (
+        (f"{name} ".replace(f"_{ending} ", f" ({UNITS[ending]}) ") if ending else name)
+        .replace("_", " ")
+        .strip()
+    )
+
+
+def _longest_word(text: str) -> int:
+    """Letters of the longest part of a cell that is not broken; a unit stays with its brackets."""
+    return (
+        LONG_COLUMN if len(text) > LONG else max((len(word) for word in unbroken(text).split(" ")), default=0)
+    )
+
+
+def unbroken(text: str) -> str:
+    """Text whose units in brackets are not broken."""
+    return re.sub(r"\(N m\)", "(N\u00a0m)", text)

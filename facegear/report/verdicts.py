@@ -1,0 +1,302 @@
+"""Verdicts of a report: what was asked of the machine, whether it holds, why, and caveats of the method."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from facegear.number_format import count_noun, format_number
+from facegear.report.balance import BALANCED
+from facegear.ties import first_largest_row
+
+GREEN, RED, GREY = "green", "red", "grey"
+NOT_COMPUTED = "Not computed."
+BEYOND = "beyond torques solved"
+MARKS = {"tip edges": "edge contact", "fillets": "fillet contact"}
+"""First words of a rating's caveat, and the mark that stands for it."""
+RATED = {"bending": "Bending", "pitting": "Pitting"}
+OIL = {"scuffing": "Scuffing", "micropitting": "Micropitting"}
+SAFE = 1.0
+"""Smallest safety against scuffing and micropitting that is green: the limits hold a test's own margin."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Judgement of one subject.
+
+    Attributes
+    ----------
+    subject : str
+        What is judged.
+    colour : str
+        `green`, `red` (below what is required) or `grey` (not asked for).
+    reason : str
+        The numbers that decide.
+    caveats : tuple of str
+        Short marks of what the method leaves out; they never change the colour.
+    failure : str
+        Of a red verdict, what fails as the end of a sentence; empty otherwise.
+    """
+
+    subject: str
+    colour: str
+    reason: str
+    caveats: tuple[str, ...] = ()
+    failure: str = ""
+
+
+def verdicts(
+    values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None
+) -> list[Verdict]:
+    """Judge a case by its config and its results.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of the config.
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+    pair : mapping or None
+        Record of the tooth geometry, where it was computed.
+
+    Returns
+    -------
+    list of Verdict
+        Red ones first, grey ones last, each colour in the order of computation.
+    """
+    judged = [
+        *_teeth(pair),
+        *(_rated(values, tables, failure) for failure in RATED),
+        *(_lubricated(values, tables, failure) for failure in OIL),
+    ]
+    if values["transmission"] is not None:
+        judged += [_load_sharing(values, tables), *_power(tables), *_at_rest(tables)]
+    judged += _range_solved(tables)
+    return sorted(judged, key=lambda verdict: (RED, GREEN, GREY).index(verdict.colour))
+
+
+def _teeth(pair: Mapping[str, Any] | None) -> Iterator[Verdict]:
+    """Judge whether the bodies of the teeth keep clear of each other."""
+    if pair is None:
+        return
+    gap = pair["interference"] or pair["smallest_gap"]
+    where = (
+        f"gear's {gap['gear_part']} to pinion's {gap['pinion_part']}, radius {gap['gear_radius_mm']:.1f} mm"
+    )
+    if pair["interference"]:
+        depth = f"{format_number(abs(gap['gap_um']))} µm"
+        reason = f"The bodies interfere by {depth} ({where})."
+        yield Verdict("Teeth", RED, reason, failure=f"the teeth interfere by {depth}")
+    else:
+        gap_um = format_number(gap["gap_um"])
+        yield Verdict("Teeth", GREEN, f"No interference; smallest gap {gap_um} µm ({where}).")
+
+
+def flank_of(row: Any) -> str:
+    """Return body and flank of a row of a rating in words."""
+    return f"{str(row.body).replace('_', ' ')}, {row.flank} flank"
+
+
+def nearest_rating(rating: pd.DataFrame) -> Any:
+    """Return the row of table `rating` whose safety is the smallest part of what is required."""
+    spare = -rating["safety"] / rating["required"]
+    return first_largest_row(rating.assign(spare=spare), "spare")
+
+
+def _rated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
+    """Judge bending or pitting by the flank nearest to its limit."""
+    rating = tables.get("rating", pd.DataFrame(columns=["failure"]))
+    rows = rating[rating["failure"] == failure]
+    if rows.empty:
+        return _without_result(values, "strength", RATED[failure])
+    row = nearest_rating(rows)
+    colour = RED if (rows["safety"] < rows["required"]).any() else GREEN
+    same = rows[(rows["body"] == row.body) & (rows["flank"] == row.flank) & (rows["method"] != row.method)]
+    other = "".join(f"; {one.safety:.2f} by {one.method}" for one in same.itertuples())
+    said = f"{flank_of(row)}: "
+    if colour == RED and row.reason.startswith("damage"):
+        said += f"{row.reason}; "
+    said += f"safety {row.safety:.2f} of {row.required:g} by {row.method}{other}."
+    flanks = rows[["body", "flank"]].drop_duplicates()
+    failing = rows.loc[rows["safety"] < rows["required"], ["body", "flank"]].drop_duplicates()
+    if len(failing) > 1:
+        said += f" {len(failing)} of {count_noun(len(flanks), 'flank')} are below what is required."
+    marks = [mark for words, mark in MARKS.items() if rows["caveat"].str.contains(words).any()]
+    if not rows["within_torques_solved"].all():
+        marks.append(BEYOND)
+    return Verdict(RATED[failure], colour, _sentence(said), tuple(marks), _failure(row, colour))
+
+
+def _without_result(values: Mapping[str, Any], section: str, subject: str) -> Verdict:
+    """Return the grey verdict of a subject whose section is not given, or whose results are not there."""
+    reason = f"Not asked for (section {section})." if values[section] is None else NOT_COMPUTED
+    return Verdict(subject, GREY, reason)
+
+
+def _failure(row: Any, colour: str) -> str:
+    """Return what a rating that fails says in the status line."""
+    if colour != RED:
+        return ""
+    body = str(row.body).replace("_", " ")
+    if row.damage > 1.0 and row.life_hours > 0.0:
+        hours = row.damage * row.life_hours
+        lasts = f"{format_number(row.life_hours)} h of the required {format_number(hours)} h"
+        return f"the {body} fails by {row.failure} after {lasts}"
+    return f"safety of the {body} against {row.failure} is {row.safety:.2f} of {row.required:g}"
+
+
+def _lubricated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
+    """Judge scuffing or micropitting by the loaded flank nearest to its limit, in any bin."""
+    if "mesh_losses" not in tables:
+        return _without_result(values, "lubrication", OIL[failure])
+    losses, column = tables["mesh_losses"], f"{failure}_safety"
+    if not losses[column].notna().any():
+        needed = "an FZG stage or a scuffing temperature" if failure == "scuffing" else "allowed_film_ratio"
+        return Verdict(OIL[failure], GREY, f"Not judged: the oil's card does not give {needed}.")
+    row = first_largest_row(losses.assign(spare=-losses[column]), "spare")
+    at = f"in bin {row['bin']} of the duty cycle" if row["bin"] > 0 else "at the nominal load"
+    margin = f", {format_number(row['scuffing_margin_k'])} K to the limit" if failure == "scuffing" else ""
+    safety = f"{row[column]:.2f}"
+    reason = f"{row['mesh']}, {row['flank']} flank, {at}: safety {safety} of {SAFE:g}{margin}."
+    red = row[column] < SAFE
+    marks = () if row["within_torques_solved"] else (BEYOND,)
+    failed = f"safety of {row['mesh']} against {failure} is {safety} of {SAFE:g}" if red else ""
+    return Verdict(OIL[failure], RED if red else GREEN, _sentence(reason), marks, failed)
+
+
+def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Verdict:
+    """Judge the largest K_gamma by `load_sharing.required_k_gamma`."""
+    subject, required = "Load sharing", values["load_sharing"]["required_k_gamma"]
+    groups = known_k_gamma(tables)
+    if groups.empty:
+        return Verdict(subject, GREY, NOT_COMPUTED if required else "No K_gamma is known of this machine.")
+    worst = first_largest_row(groups, "k_gamma")
+    cycles = f" over {count_noun(int(worst['mesh_cycles']), 'mesh cycle')}" if "mesh_cycles" in worst else ""
+    state = "running" if "k_v" in worst else "at rest"
+    found = f"K_gamma {worst['k_gamma']:.2f} ({worst['group']}, {state}{cycles})"
+    if required is None:
+        return Verdict(subject, GREY, f"{found}; no limit was given (load_sharing.required_k_gamma).")
+    if worst["k_gamma"] <= required:
+        return Verdict(subject, GREEN, f"{found}, {required:g} allowed.")
+    failed = f"K_gamma is {worst['k_gamma']:.2f} of {required:g} allowed"
+    return Verdict(subject, RED, f"{found}, {required:g} allowed.", failure=failed)
+
+
+def known_k_gamma(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Return the groups with their K_gamma of the running machine, else at rest; empty if not known."""
+    for name in ("following_groups", "hunting_groups"):
+        groups = tables.get(name, pd.DataFrame())
+        if len(groups) and groups["k_gamma"].notna().any():
+            if name == "following_groups":
+                return groups
+            return groups[groups["torque_n_m"] == groups["torque_n_m"].max()].dropna(subset="k_gamma")
+    return pd.DataFrame()
+
+
+def _power(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
+    """Judge whether the power brought in is taken out."""
+    if "ratings" not in tables:
+        return
+    numbers = dict(tables["ratings"].itertuples(index=False))
+    missing, power = numbers["power_imbalance"], numbers["power_in_kw"]
+    if abs(missing) > BALANCED:
+        share = f"{format_number(100 * missing)} % of the larger"
+        reason = f"In less out is {share}: lever arms as printed are not those of the teeth."
+        yield Verdict("Power balance", RED, reason, failure=f"power in less power out is {share}")
+        return
+    text = f"{format_number(power, 4)} kW in equals out"
+    if "machine_loss" in tables:
+        nominal = tables["machine_loss"].loc[lambda table: table["bin"] == 0, "loss_percent"]
+        text += f" plus {format_number(power * float(nominal.iloc[0]) / 100.0)} kW of friction"
+    yield Verdict("Power balance", GREEN, f"{text}.")
+
+
+def _at_rest(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
+    """Judge whether every mesh carries load at rest."""
+    if "meshes" not in tables:
+        return
+    meshes = tables["meshes"]
+    idle = meshes.loc[meshes["flank"] == "open", "mesh"].to_list()
+    contacts = tables.get("contacts", pd.DataFrame(columns=["contact", "state"]))
+    undecided = contacts.loc[contacts["state"] == "undecided", "contact"].to_list()
+    if idle:
+        failed = f"{count_noun(len(idle), 'mesh carries', 'meshes carry')} no load at rest"
+        yield Verdict("Contact at rest", RED, f"No load at {', '.join(idle)}.", failure=failed)
+    else:
+        marks = (f"{count_noun(len(undecided), 'contact')} undecided",) if undecided else ()
+        carried = meshes["force_n"].abs()
+        smallest = f"{format_number(1e-3 * carried.min())} kN ({meshes['mesh'][carried.idxmin()]})"
+        yield Verdict("Contact at rest", GREEN, f"Every mesh carries load; the smallest {smallest}.", marks)
+
+
+def _range_solved(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
+    """Judge whether the loads lie within the torques for which contact was solved."""
+    if "by_torque" not in tables:
+        return
+    solved = tables["by_torque"]["torque_n_m"].max()
+    beyond = list(loads_beyond(tables))
+    if "meshes" in tables:
+        largest = tables["meshes"]["pinion_torque_n_m"].abs().max()
+        if largest > solved * (1.0 + BALANCED):
+            beyond.insert(0, f"a mesh at rest carries {format_number(largest, 4)} N m")
+    if beyond:
+        reason = (
+            f"Contact was solved up to {format_number(solved, 4)} N m; {'; '.join(beyond)}. Add torques to "
+            "contact.torques_n_m."
+        )
+        failed = f"loads exceed the {format_number(solved, 4)} N m for which contact was solved"
+        yield Verdict("Range solved", RED, reason, failure=failed)
+    else:
+        yield Verdict(
+            "Range solved", GREEN, f"All loads lie within the {format_number(solved, 4)} N m solved."
+        )
+
+
+def loads_beyond(tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
+    """Yield for each table with loads beyond the torques of the contact analysis how many there are."""
+    for name, singular, plural in (
+        ("rating", "rating", "ratings"),
+        ("mesh_losses", "loss of a flank", "losses of flanks"),
+        ("stress_over_speed", "motion over speed", "motions over speed"),
+    ):
+        table = tables.get(name, pd.DataFrame())
+        if len(table) and not table["within_torques_solved"].all():
+            outside = int((~table["within_torques_solved"].astype(bool)).sum())
+            exceed = "exceeds" if outside == 1 else "exceed"
+            yield f"{outside:,} of {count_noun(len(table), singular, plural)} {exceed} it"
+
+
+def status_line(judged: Sequence[Verdict], found: str) -> tuple[str, str, str]:
+    """Return colour, first words and the rest of the sentence that a page begins with.
+
+    Parameters
+    ----------
+    judged : sequence of Verdict
+        The verdicts.
+    found : str
+        A sentence on what else was found, empty for none.
+
+    Returns
+    -------
+    tuple of str
+        Colour of the worst verdict, a few words, and the sentences that follow them.
+    """
+    red = [verdict for verdict in judged if verdict.colour == RED]
+    green = sum(verdict.colour == GREEN for verdict in judged)
+    tail = f" {found}" if found else ""
+    if red:
+        others = len(red) - 1
+        more = f", and {count_noun(others, 'other verdict is', 'other verdicts are')} red" if others else ""
+        return RED, "Not as required:", f"{red[0].failure}{more}.{tail}"
+    absent = sum(verdict.reason == NOT_COMPUTED for verdict in judged)
+    if green:
+        said = f"{count_noun(green, 'verdict is', 'verdicts are')} green"
+        if absent:
+            return GREY, "As required so far:", f"{said}, {absent} not computed.{tail}"
+        return GREEN, "As required:", f"{said}.{tail}"
+    return GREY, "Not judged:", f"no limit was given.{tail}"
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,69 @@
+"""The gear data sheet states what a drawing states, and the summary for the terminal holds it."""
+
+from dataclasses import replace
+from math import hypot, pi, tan
+
+import pytest
+from contact_bodies import pair_design
+
+import facegear
+from facegear.geometry.analysis import analyse
+from facegear.geometry.document import pair_record
+from facegear.report.data_sheet import data_sheet_table, pinion_span, pinion_tooth_thickness
+
+
+@pytest.fixture(scope="module", params=[0.0, 0.4e-3])
+def designed(request):
+    design = pair_design()
+    design = replace(design, pinion=replace(design.pinion, profile_shift=request.param, thinning=0.12e-3))
+    return design, pair_record(design, analyse(design))
+
+
+def test_thickness_and_span_are_those_of_the_base_circle(designed):
+    """The half tooth angle on the base circle, which the teeth are generated from, gives both another way."""
+    design, record = designed
+    half, base = design.pinion_half_base_angle, 1e3 * design.pinion_base_radius
+    angle = design.pressure_angle
+    thickness = 2e3 * design.pinion_pitch_radius * (half - (tan(angle) - angle))
+    assert pinion_tooth_thickness(record) == pytest.approx(thickness, rel=1e-12)
+    count, span = pinion_span(record)
+    pitch = 2.0 * pi * base / design.pinion.teeth
+    assert span == pytest.approx((count - 1) * pitch + 2.0 * base * half, rel=1e-12)
+    touched = hypot(base, span / 2.0)
+    assert 1e3 * design.pinion_root_radius < touched < 1e3 * design.pinion_tip_radius
+
+
+def test_the_sheet_holds_diameters_face_position_and_backlash(designed):
+    design, record = designed
+    sheet = data_sheet_table(record).set_index("quantity")
+    assert float(sheet.loc["Tip diameter", "pinion"]) == pytest.approx(
+        2e3 * design.pinion_tip_radius, abs=6e-4
+    )
+    assert float(sheet.loc["Base diameter", "face gear"]) == pytest.approx(
+        2e3 * design.gear_base_radius, abs=6e-4
+    )
+    plane = {
+        name: float(sheet.loc[f"Pinion axis to {name} plane", "face gear"])
+        for name in ("pitch", "tip", "root")
+    }
+    assert plane["pitch"] == pytest.approx(-1e3 * design.pitch_plane, abs=6e-4)
+    assert plane["tip"] == pytest.approx(-1e3 * design.gear_tip_plane, abs=6e-4)
+    assert plane["root"] == pytest.approx(-1e3 * design.gear_root_plane, abs=6e-4)
+    assert sheet.loc["Backlash along the line of action, as assembled", "unit"] == "µm"
+    assert not sheet.isin(["None", "nan", "-0.000"]).any().any()
+
+
+def test_the_summary_holds_key_numbers_verdicts_and_the_data_sheet_and_computes_no_dynamics():
+    gearbox = facegear.example().with_values({"transmission.backlash_um": 101})
+    text = gearbox.summary()
+    for words in (
+        "example. As required so far:",
+        "23 / 143",
+        "No interference",
+        "Pitch diameter",
+        "Span over",
+    ):
+        assert words in text, words
+    assert "Power in" not in text, "statics were not computed"
+    gearbox.statics()
+    assert "Power in → out" in gearbox.summary()
