@@ -228,8 +228,8 @@ def _figures(given: argparse.Namespace) -> int:
         folder = (gearbox.store.folder or Path(given.results) / gearbox.config.case) / "figures"
         if not given.png:
             raise FacegearError(f"figures: the svg in {folder} are those of the run: add --png or --output")
-    for path in gearbox.figures(folder, given.names, suffix, _printed):
-        print(path)
+    paths = gearbox.figures(folder, given.names, suffix, _printed)
+    print(paths[0] if len(paths) == 1 else f"{len(paths)} figures in {folder}")
     return 0
 
 

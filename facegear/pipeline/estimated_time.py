@@ -51,8 +51,8 @@ def outlook_in_words(case: Case, stages: Sequence[Stage]) -> str:
     seconds = estimated_seconds(case, stages)
     about = f"{ceil(seconds / 10.0) * 10:d} s" if seconds < 90.0 else f"{ceil(seconds / 60.0):d} min"
     return (
-        f"{len(stages)} stages, about {about} of processor time; a minute more where machine code is "
-        "compiled first, less where results are stored"
+        f"{len(stages)} stages, about {about} of processor time; a minute more the first time, "
+        "less where results are stored"
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from facegear.config.arguments import typed_arguments
 from facegear.config.notes import notes
-from facegear.errors import FacegearError, MissingExtra, extras_named
+from facegear.errors import FacegearError, MissingExtra, chosen, extras_named, file_path
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.pipeline.asked import machine_loads
 from facegear.pipeline.estimated_time import outlook_in_words
@@ -27,6 +27,8 @@ from facegear.results.partial import PartialResults
 
 OnStage = Callable[[str, str], None]
 """Is called with the name of each stage and its summary as soon as it is known."""
+PICTURE_ENDINGS = (".eps", ".jpg", ".pdf", ".png", ".svg", ".tif", ".webp")
+"""Endings of the formats in which figures are written."""
 NOT_REPORTED = ("mesh", "mesh_law", "machine_code")
 """Stages whose files only other programs and stages read."""
 
@@ -49,7 +51,7 @@ class WholeCase:
         A stage that fails is named at the head of the page, with the reason. What is computed is kept beside
         the page until it is complete, so that a report that was stopped goes on from there.
         """
-        path = Path(path)
+        path = file_path(path)
         if path.suffix != ".html":
             raise FacegearError(f"{path}: must end in .html")
         require_writable_file(path)
@@ -84,7 +86,7 @@ class WholeCase:
         They have the names and contents that the workflow gives them, without records of what made them.
         Returns the path of the report.
         """
-        folder = Path(folder)
+        folder = file_path(folder, "folder")
         require_writable(folder)
         for stage in self._asked():
             content = self._output(stage).content
@@ -125,6 +127,10 @@ class WholeCase:
         FacegearError
             If the case has no figure of such a name.
         """
+        folder, names = file_path(folder, "folder"), [names] if isinstance(names, str) else names
+        chosen(suffix, PICTURE_ENDINGS, "suffix")
+        if not isinstance(names, Sequence):
+            raise FacegearError(f"names = {names!r}: must be a list of names of figures")
         known = {name: stage for stage in self._asked() for name in self._figure_names(stage)}
         for name in names:
             if name not in known:
@@ -136,7 +142,7 @@ class WholeCase:
                 self._output(stage)
                 for name, figure in self._figures(stage):
                     if name in wanted:
-                        path = Path(folder) / f"{name}{suffix}"
+                        path = folder / f"{name}{suffix}"
                         save(figure, path)
                         paths.append(path)
         return paths

@@ -25,5 +25,6 @@ def load_sharing_summary(
         for name in dict.fromkeys(study for study, _ in keys)
     ]
     irregular = summary.loc[~summary["periodic"].astype(bool), ["study", "point"]].drop_duplicates()
-    text = f"{len(frames)} cases, {len(irregular)} of them not periodic"
+    text = f"{len(frames)} case{'s' * (len(frames) > 1)}, "
+    text += f"{len(irregular)} of them not periodic" if len(irregular) else "all periodic"
     return Outcome({"summary": summary, "studies": studies}, text)
