@@ -167,6 +167,7 @@ def case_report(
     config when it starts; pressure: arrays of the contact analysis.
     Chapters without a picture or table are left out.
     """
+    tables = {name: table.reset_index(drop=True) for name, table in tables.items()}  # parts keep their rows
     known = {name for _, _, names in CHAPTERS for name in names}
     others = [name for name in pictures if name not in known and name not in DRAWINGS]
     studied = [name for name in others if name.startswith("contact_")]

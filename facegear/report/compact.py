@@ -207,7 +207,7 @@ def sweep_picture(sweep: pd.DataFrame | None, jumps: pd.DataFrame | None, speed_
     rows = sweep[(sweep["quantity"] == "deflection_ac_rms_um") & sweep["value"].notna()]
     if rows.empty:
         return None
-    mesh = rows["body_or_mesh"].iloc[int(rows["value"].to_numpy().argmax())]
+    mesh = rows["body_or_mesh"].iloc[rows["value"].argmax()]
     rows = rows[rows["body_or_mesh"] == mesh].sort_values("speed_rpm")
     curves = {
         str(direction): curve[["speed_rpm", "value"]].to_numpy(float)

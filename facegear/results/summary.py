@@ -66,7 +66,7 @@ def _known_tables(chain: Chain) -> "Iterator[tuple[str, pd.DataFrame]]":
         except _NotKnownError:
             continue
         for file in files:
-            yield table_name(STAGES[name].files[file].path), content[file]
+            yield table_name(STAGES[name].files[file].path), content[file].reset_index(drop=True)
 
 
 class _NotKnownError(Exception):

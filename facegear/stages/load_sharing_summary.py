@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 
 
@@ -25,6 +26,6 @@ def load_sharing_summary(
         for name in dict.fromkeys(study for study, _ in keys)
     ]
     irregular = summary.loc[~summary["periodic"].astype(bool), ["study", "point"]].drop_duplicates()
-    text = f"{len(frames)} case{'s' * (len(frames) > 1)}, "
+    text = f"{count_noun(len(frames), 'case')}, "
     text += f"{len(irregular)} of them not periodic" if len(irregular) else "all periodic"
     return Outcome({"summary": summary, "studies": studies}, text)

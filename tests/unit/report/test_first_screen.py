@@ -276,6 +276,8 @@ def test_the_sweep_picture_shows_the_mesh_that_vibrates_most_and_ignores_gaps():
         for speed in np.linspace(1000.0, 9000.0, 2001)
     ]
     sweep = pd.DataFrame(rows, columns=["direction", "speed_rpm", "quantity", "body_or_mesh", "value"])
+    sweep = pd.concat([sweep[sweep["direction"] == one].reset_index(drop=True) for one in ("up", "down")])
+    assert sweep.index.has_duplicates, "as parts of a sweep that were computed in this session"
     jumps = pd.DataFrame({"direction": ["up"], "speed_after_rpm": [4000.0]})
     picture = sweep_picture(sweep, jumps, 7500.0)
     assert picture.title == "Vibration of b/upper" and "nan" not in picture.svg
