@@ -155,7 +155,10 @@ def test_exact_teeth_are_exported_in_the_format_that_the_ending_names(gearbox, n
 @pytest.mark.parametrize(
     ("asked", "line"),
     [
-        ({"path": "teeth.iges"}, "ending of the path = '.iges': must be one of .step, .stp, .stl, .glb, .fmu, .rexs, .csv"),
+        (
+            {"path": "teeth.iges"},
+            "ending of the path = '.iges': must be one of .step, .stp, .stl, .glb, .fmu, .rexs, .csv",
+        ),
         ({"path": "teeth.stl", "body": "gear"}, "body = 'gear': must be one of pinion, face_gear"),
         ({"path": "teeth.stl", "teeth": 24}, "teeth = 24: must be from 1 to 23"),
     ],
