@@ -20,7 +20,7 @@ from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
 from facegear.plots.style import save
 from facegear.provenance.manifest import versions
-from facegear.report.missing import with_missing
+from facegear.report.omissions import with_omissions
 from facegear.results.base import StageOutput
 from facegear.results.chain import Chain
 from facegear.results.partial import PartialResults
@@ -62,7 +62,7 @@ class WholeCase:
         with extras_named(), TemporaryDirectory() as folder:
             stages = [stage for stage in self._asked() if _is_reported(stage)]
             text = resumed._page(Path(folder), resumed._computable(stages))
-        text = with_missing(text, [f"{titles}: {reason}" for titles, reason in self.missing()])
+        text = with_omissions(text, [f"{titles}: {reason}" for titles, reason in self.missing()])
         with atomic_path(path) as temporary:
             temporary.write_text(text, encoding="utf-8")
         if not self.failures:
