@@ -27,6 +27,8 @@ from facegear.results.partial import PartialResults
 
 OnStage = Callable[[str, str], None]
 """Is called with the name of each stage and its summary as soon as it is known."""
+NOT_COMPUTED = "not computed"
+"""Beginning of the summary of a stage that failed."""
 PICTURE_ENDINGS = (".eps", ".jpg", ".pdf", ".png", ".svg", ".tif", ".webp")
 """Endings of the formats in which figures are written."""
 NOT_REPORTED = ("mesh", "mesh_law", "machine_code")
@@ -164,8 +166,9 @@ class WholeCase:
         return [stage for stage in stages if stage.name not in self.failures]
 
     def _note_failure(self, name: str, reason: str) -> None:
+        is_known = reason in self.failures.values()
         self.failures[name] = reason
-        self.on_stage(name, f"not computed: {reason}")
+        self.on_stage(name, f"{NOT_COMPUTED}: {'for the same reason' if is_known else reason}")
 
     def _output(self, stage: Stage) -> StageOutput:
         """What a stage gives; recorded the first time."""
