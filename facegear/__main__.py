@@ -168,7 +168,7 @@ def _with_snakemake(given: argparse.Namespace) -> NoReturn:
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
     folder = Path(given.directory)
-    for inside in ("", ".snakemake", "results"):
+    for inside in () if given.dry_run else ("", ".snakemake", "results"):
         require_writable(folder / inside)
     os.execve(sys.executable, [*command, "--", *given.targets], _with_cache(folder.resolve()))
 

@@ -623,8 +623,8 @@ class Gearbox:
         Examples
         --------
         >>> import facegear
-        >>> print(*facegear.example().summary().splitlines()[2].split())
-        Teeth, module 23 / 143 (3.75 mm, ratio 6.217)
+        >>> " ".join(facegear.example().summary().splitlines()[2].split())
+        'Teeth, module 23 / 143 (3.75 mm, ratio 6.217)'
         """
         from facegear.results.summary import summary_text
 

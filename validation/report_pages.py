@@ -108,8 +108,8 @@ def stored_tables(folder: Path) -> dict[str, pd.DataFrame]:
         sweep = read["sweep"]
         vibration = sweep[sweep["quantity"] == VIBRATION]
         loudest = vibration.loc[vibration["value"].idxmax(), "body_or_mesh"]
-        shown = (sweep["quantity"] == VIBRATION) & (sweep["body_or_mesh"] == loudest)
-        read["sweep"] = sweep[(sweep["quantity"] == SWEPT) | shown]
+        is_loudest = (sweep["quantity"] == VIBRATION) & (sweep["body_or_mesh"] == loudest)
+        read["sweep"] = sweep[(sweep["quantity"] == SWEPT) | is_loudest]
     return read
 
 

@@ -91,7 +91,13 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]]) -> Figure:
             axis.set_ylabel("Pinion\nradius (mm)")
         axes[-1, 0].set_xlabel("Along the pinion's axis, from the gear's (mm)")
         figure.colorbar(drawn, ax=axes, location="top", aspect=40, label="Pressure (MPa)")
-        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+        marks = {
+            label: handle
+            for axis in axes.flat
+            for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)
+        }
+        if marks:
+            figure.legend(marks.values(), marks.keys(), loc="outside lower center", ncols=2)
     return figure
 
 
@@ -105,7 +111,8 @@ def _panel(axis: Axes, seen: Pattern, torque: float, top: float) -> QuadMesh:
     axis.grid(visible=False)
     for edges, marker, colour, name in MARKS:
         on = np.isin(where, [EDGES.index(kind) for kind in edges])
-        axis.plot(width[on], radius[on], marker, color=colour, ms=2.5, label=name, rasterized=True)
+        if on.any():
+            axis.plot(width[on], radius[on], marker, color=colour, ms=2.5, label=name, rasterized=True)
     look = {"cmap": "inferno", "shading": "gouraud", "rasterized": True}
     return axis.pcolormesh(width, radius, field, vmin=0, vmax=top, **look)
 

@@ -59,12 +59,17 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
         figure, axes = plt.subplots(len(order), 1, figsize=(NARROW, 4.7 * len(order) + 1.0), squeeze=False)
         for axis, g in zip(axes[:, 0], order, strict=True):
             _panel(axis, layout, g, loads, forces, layout.mesh_radius * LONGEST / max(largest, 1e-300))
+        roles = {pinion.role for pinion in layout.pinions}
         handles = [
             plt.Line2D(
                 [], [], color=MESH, lw=2, label=f"tangential force on the gear, largest {_kilo(pushed)} kN"
             ),
             *([] if forces is None else [plt.Line2D([], [], color=BEARING, lw=2, label=ON_BEARINGS)]),
-            *(plt.Line2D([], [], color=c, lw=6, label=f"{r.value} pinion") for r, c in ROLE_COLOUR.items()),
+            *(
+                plt.Line2D([], [], color=colour, lw=6, label=f"{role.value} pinion")
+                for role, colour in ROLE_COLOUR.items()
+                if role in roles
+            ),
         ]
         figure.legend(handles=handles, loc="outside lower center", ncols=1)
     return figure

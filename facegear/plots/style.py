@@ -88,8 +88,8 @@ def rename_texts(figure: Figure, labels: Mapping[str, str]) -> None:
     words = {text.get_text() for text in texts}
     for before in labels:
         if before not in words:
-            listed = ", ".join(repr(text) for text in sorted(words))
-            raise FacegearError(f"labels: {before!r} is no text of this figure, which has {listed}")
+            text_list = ", ".join(repr(text) for text in sorted(words))
+            raise FacegearError(f"labels: {before!r} is no text of this figure, which has {text_list}")
     for text in texts:
         if text.get_text() in labels:
             text.set_text(labels[text.get_text()])

@@ -5,22 +5,35 @@ from typing import Any
 
 import pandas as pd
 
-BALANCED = 1e-9
+ROUNDING_OF_POWER = 1e-9
 """Relative difference of power in and out that is rounding."""
 
 
-def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
-    """Numbers of the ratings by quantity, and the torques of what takes most power; empty without a machine.
+def machine_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
+    """Return numbers of the machine at rest, with the torques of what takes most power.
 
     That is a gear, or pinions: then neither the number of teeth nor the gear's speed is that of the output.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+
+    Returns
+    -------
+    dict
+        Numbers by quantity, whose names end in their units; empty without a machine.
     """
     if "ratings" not in tables:
         return {}
     numbers = dict(tables["ratings"].itertuples(index=False))
-    driven = tables["bodies"][tables["bodies"]["power_kw"] < 0.0]
-    gears = driven["role"] == "face gear"
-    if len(driven) and driven.loc[~gears, "power_kw"].sum() < driven.loc[gears, "power_kw"].sum():
-        torques = dict.fromkeys(sorted(driven.loc[~gears, "torque_n_m"].abs()))
+    driven_bodies = tables["bodies"][tables["bodies"]["power_kw"] < 0.0]
+    gears = driven_bodies["role"] == "face gear"
+    if (
+        len(driven_bodies)
+        and driven_bodies.loc[~gears, "power_kw"].sum() < driven_bodies.loc[gears, "power_kw"].sum()
+    ):
+        torques = dict.fromkeys(sorted(driven_bodies.loc[~gears, "torque_n_m"].abs()))
         return {
             **{name: value for name, value in numbers.items() if name != "gear_ratio"},
             "speed_ratio": 1.0,
@@ -31,6 +44,17 @@ def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
 
 
 def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """The summary of load sharing of the machine itself; empty where there is none."""
+    """Return the summary of load sharing of the machine itself.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+
+    Returns
+    -------
+    DataFrame
+        Rows of table `summary`; empty where there is none.
+    """
     summary = tables.get("summary")
     return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]

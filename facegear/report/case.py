@@ -219,8 +219,8 @@ def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> s
         counts = [count_noun(count, f"{role} pinion") for role, count in roles.items()]
         parts = [*counts, count_noun(len(transmission["face_gears"]), "face gear")]
     versions = {item for manifest in manifests for item in manifest["versions"].items()}
-    made = sorted(f"{name} {version}" for name, version in versions if name == "facegear")
-    return " · ".join([", ".join(parts), *made])
+    program = sorted(f"{name} {version}" for name, version in versions if name == "facegear")
+    return " · ".join([", ".join(parts), *program])
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
@@ -260,7 +260,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         held = [Table(MODE_CONTACTS, tables["contacts"])] if "contacts" in tables else []
         rows = mode_rows(tables["frequencies"])
         words = "Natural frequencies; equal ones share a row"
-        return [*held, Table(words, rows, folded=len(rows) > LONG_TABLE)]
+        return [*held, Table(words, rows, is_folded=len(rows) > LONG_TABLE)]
     if title == POSES:
         return pose_tables(tables)
     if title == SHAFTS:
@@ -299,11 +299,11 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
 
 def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     shown = tables["safety"].dropna(axis="columns", how="all")
-    listed = [Table(SAFETY, shown, main=SAFETY_SHOWN), Table(RATING, tables["rating"], folded=True)]
+    listed = [Table(SAFETY, shown, main=SAFETY_SHOWN), Table(RATING, tables["rating"], is_folded=True)]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
         hardest = first_largest_rows(loads, "largest_force_n", ["bin"], sort=True)
-        listed += [Table(DUTY_LOADS, hardest), Table(EVERY_LOAD, loads, folded=True)]
+        listed += [Table(DUTY_LOADS, hardest), Table(EVERY_LOAD, loads, is_folded=True)]
     return listed
 
 
@@ -316,8 +316,8 @@ def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         listed = [
             Table("The machine; bin 0 is the nominal load, bin -1 the whole duty cycle", whole),
             *listed,
-            Table("Every loaded flank", meshes, folded=True),
-            Table("Heat of every body", tables["body_heat"], folded=True),
+            Table("Every loaded flank", meshes, is_folded=True),
+            Table("Heat of every body", tables["body_heat"], is_folded=True),
         ]
     if "friction_studies" in tables:
         listed.append(Table("The studies' cases side by side", tables["friction_studies"]))
@@ -325,7 +325,10 @@ def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     return [
         *listed,
         Table(
-            "Fraction of the loss that lies outside the limits of the friction model", limits, 3, folded=True
+            "Fraction of the loss that lies outside the limits of the friction model",
+            limits,
+            3,
+            is_folded=True,
         ),
     ]
 

@@ -81,8 +81,8 @@ def machine_picture(values: Mapping[str, Any], meshes: pd.DataFrame | None) -> C
         parts.append(_label(centre + (radius + 16) * outwards, outwards, [pinion["name"], f"{kilo} kN"]))
     parts.append(_text(centre, f"⌀ {2.0 * _mesh_radius(values):.0f} mm", "middle"))
     title = "Machine and mean forces"
-    both = "; kN on the upper | lower gear" if len(sides) > 1 else ""
-    words = f"Seen from above; arrows: mean tangential force on the {sides[0]} face gear{both}."
+    units = "; kN on the upper | lower gear" if len(sides) > 1 else ""
+    words = f"Seen from above; arrows: mean tangential force on the {sides[0]} face gear{units}."
     return Compact(title, _svg(parts, title), words)
 
 
@@ -109,12 +109,15 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
     """
     if arrays is None:
         return None
-    seen = pattern(arrays)
-    solved = np.array(sorted(seen.pressure))
-    enough = solved[solved >= (solved[-1] if torque is None else 0.999 * torque)]
-    shown = float(enough[0] if enough.size else solved[-1])
-    pressure, where = seen.pressure[shown], seen.where[shown]
-    width, height = 1e3 * seen.points[..., 1], 1e3 * np.hypot(seen.points[..., 0], seen.points[..., 2])
+    passage_map = pattern(arrays)
+    torques = np.array(sorted(passage_map.pressure))
+    enough = torques[torques >= (torques[-1] if torque is None else 0.999 * torque)]
+    torque_shown = float(enough[0] if enough.size else torques[-1])
+    pressure, edge_kind = passage_map.pressure[torque_shown], passage_map.where[torque_shown]
+    width, height = (
+        1e3 * passage_map.points[..., 1],
+        1e3 * np.hypot(passage_map.points[..., 0], passage_map.points[..., 2]),
+    )
     left, top, right, bottom = 34.0, 12.0, WIDTH - 8.0, HEIGHT - 40.0
     x = left + (width - width.min()) / max(np.ptp(width), 1e-9) * (right - left)
     y = bottom - (height - height.min()) / max(np.ptp(height), 1e-9) * (bottom - top)
@@ -122,7 +125,7 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
     parts = [f'<rect class="flank" x="{left}" y="{top}" width="{right - left}" height="{bottom - top}"/>']
     if largest > 0.0:
         parts += _cells(x, y, pressure / largest)
-    edges = np.isin(where, [k for k, kind in enumerate(EDGES) if kind != "inside"])
+    edges = np.isin(edge_kind, [k for k, kind in enumerate(EDGES) if kind != "inside"])
     dots = "".join(f"M{a:.1f} {b:.1f}h.01" for a, b in zip(x[edges], y[edges], strict=True))
     if dots:
         parts.append(f'<path class="edges" d="{dots}"/>')
@@ -134,7 +137,7 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
         _text((left - 4, bottom), "root", "end"),
         *_scale(left, bottom + 22, right - left, 1e-6 * largest, bool(dots)),
     ]
-    title = f"Contact pattern at {format_number(shown, 4)} N m"
+    title = f"Contact pattern at {format_number(torque_shown, 4)} N m"
     words = (
         "Largest pressure on the pinion's flank over a passage; dots: edges, where only a line load is known."
     )
@@ -144,21 +147,23 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
 def _cells(x: Array, y: Array, share: Array) -> list[str]:
     """Return a path for each level of `share` (steps, planes), 0 to 1, between corners at x and y (px)."""
     corners = np.stack([share[:-1, :-1], share[1:, :-1], share[1:, 1:], share[:-1, 1:]])
-    known = np.isfinite(corners)
-    mean = np.where(known, corners, 0.0).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-    level = np.where(known.sum(axis=0) >= 2, np.minimum(len(LEVELS) * mean, len(LEVELS) - 1e-9), -1.0)
-    drawn: dict[int, list[str]] = {}
+    is_known = np.isfinite(corners)
+    mean = np.where(is_known, corners, 0.0).sum(axis=0) / np.maximum(is_known.sum(axis=0), 1)
+    level = np.where(is_known.sum(axis=0) >= 2, np.minimum(len(LEVELS) * mean, len(LEVELS) - 1e-9), -1.0)
+    paths_by_level: dict[int, list[str]] = {}
     for step in range(level.shape[0]):
         row = np.floor(level[step]).astype(int)
         ends = np.flatnonzero(np.diff(row)) + 1
         for first, last in zip([0, *ends], [*ends, row.size], strict=True):
             if row[first] >= 0:
-                there = [(x[step, k], y[step, k]) for k in range(first, last + 1)]
+                forth = [(x[step, k], y[step, k]) for k in range(first, last + 1)]
                 back = [(x[step + 1, k], y[step + 1, k]) for k in range(last, first - 1, -1)]
-                drawn.setdefault(int(row[first]), []).append(f"M{_points([*_ends(there), *_ends(back)])}Z")
+                paths_by_level.setdefault(int(row[first]), []).append(
+                    f"M{_points([*_ends(forth), *_ends(back)])}Z"
+                )
     return [
         f'<path fill="{LEVELS[k]}" stroke="{LEVELS[k]}" stroke-width=".4" d="{"".join(paths)}"/>'
-        for k, paths in sorted(drawn.items())
+        for k, paths in sorted(paths_by_level.items())
     ]
 
 
@@ -325,11 +330,11 @@ class _Axes(NamedTuple):
 
 def _thinned(curve: Array) -> Array:
     """Return of each part of a curve (n, 2) the smallest and largest point, in order."""
-    kept: list[int] = []
+    indices: list[int] = []
     for part in np.array_split(np.arange(len(curve)), POINTS // 2):
         values = curve[part, 1]
-        kept += sorted({int(part[values.argmin()]), int(part[values.argmax()])})
-    return np.asarray(curve[kept])
+        indices += sorted({int(part[values.argmin()]), int(part[values.argmax()])})
+    return np.asarray(curve[indices])
 
 
 def _step(span: float) -> float:

@@ -112,8 +112,8 @@ def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
     def span(count: int) -> float:
         involute = tan(angle) - angle
         nominal = design["module"] * cos(angle) * ((count - 0.5) * pi + teeth * involute)
-        shifted = nominal + 2.0 * pinion["profile_shift"] * sin(angle)
-        return 1e3 * (shifted - pinion["thinning"])
+        with_shift = nominal + 2.0 * pinion["profile_shift"] * sin(angle)
+        return 1e3 * (with_shift - pinion["thinning"])
 
     counts = range(2, max(teeth // 2, 2) + 1)
     best = min(counts, key=lambda count: abs(hypot(base, span(count) / 2.0) - target))

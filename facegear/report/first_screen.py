@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.number_format import count_noun, format_number
-from facegear.report.balance import rated
+from facegear.report.balance import machine_numbers
 from facegear.report.compact import (
     Compact,
     error_picture,
@@ -44,7 +44,7 @@ class Key(NamedTuple):
 
 @dataclass(frozen=True)
 class FirstScreen:
-    """What a reader sees before anything else.
+    """Content of the first screen: all that a reader sees before the first chapter.
 
     Attributes
     ----------
@@ -96,23 +96,23 @@ def first_screen(
     FirstScreen
         Only what is known.
     """
-    judged = verdicts(values, tables, pair)
-    colour, status, sentence = status_line(judged, found_in_words(tables))
+    judgements = verdicts(values, tables, pair)
+    colour, status, sentence = status_line(judgements, found_in_words(tables))
     meshes = tables.get("meshes")
     torque = None if meshes is None else float(meshes["pinion_torque_n_m"].abs().max())
-    swept = sweep_picture(tables.get("sweep"), tables.get("jumps"), values["dynamics"]["speed_rpm"])
-    drawn = [
+    sweep_drawing = sweep_picture(tables.get("sweep"), tables.get("jumps"), values["dynamics"]["speed_rpm"])
+    pictures = [
         machine_picture(values, meshes),
         pattern_picture(pressure, torque),
-        swept or error_picture(tables.get("ltca")),
+        sweep_drawing or error_picture(tables.get("ltca")),
     ]
     return FirstScreen(
         colour,
         status,
         sentence,
         [*key_cards(values, tables, pair)][:MOST_KEYS],
-        [picture for picture in drawn if picture is not None],
-        judged,
+        [picture for picture in pictures if picture is not None],
+        judgements,
         grouped_warnings(values, tables, pair, notes),
     )
 
@@ -130,20 +130,21 @@ def found_in_words(tables: Mapping[str, pd.DataFrame]) -> str:
     str
         The sentence; empty where neither is known.
     """
-    said = []
+    clauses = []
     groups = known_k_gamma(tables)
     inputs = groups[groups["kind"] == "inputs"] if len(groups) else groups
     if len(inputs):
-        said.append(f"the inputs share their torque with K_gamma {inputs['k_gamma'].max():.2f}")
+        clauses.append(f"the inputs share their torque with K_gamma {inputs['k_gamma'].max():.2f}")
     if "summary" in tables:
-        own = tables["summary"].loc[lambda table: table["study"] == "nominal"]
-        lost = float(own["lost_fraction"].max()) if len(own) else 0.0
-        said.append(
-            f"a path is out of contact {format_number(100 * lost, 2)} % of the time at the nominal speed"
-            if lost > 0.0
+        nominal_groups = tables["summary"].loc[lambda table: table["study"] == "nominal"]
+        lost_share = float(nominal_groups["lost_fraction"].max()) if len(nominal_groups) else 0.0
+        share = f"{format_number(100 * lost_share, 2)} % of the time"
+        clauses.append(
+            f"a path is out of contact {share} at the nominal speed"
+            if lost_share > 0.0
             else "every path keeps contact at the nominal speed"
         )
-    text = ", and ".join(said)
+    text = ", and ".join(clauses)
     return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
@@ -192,13 +193,15 @@ def _speed_and_torque(values: Mapping[str, Any]) -> Iterator[Key]:
     transmission = values["transmission"]
     if transmission is None:
         return
-    given = [pinion.get("torque_n_m") for pinion in transmission["pinions"] if pinion["role"] == "input"]
+    given_torques = [
+        pinion.get("torque_n_m") for pinion in transmission["pinions"] if pinion["role"] == "input"
+    ]
     per_input = transmission["torque"]["per_input_n_m"]
-    torques = [per_input if torque is None else torque for torque in given]
-    each = dict.fromkeys(format_number(torque, 4) for torque in torques)
-    if len(each) == 1:
+    torques = [per_input if torque is None else torque for torque in given_torques]
+    torque_texts = dict.fromkeys(format_number(torque, 4) for torque in torques)
+    if len(torque_texts) == 1:
         times = f"{len(torques)} × " if len(torques) > 1 else ""
-        beside = f"{times}{next(iter(each))} N m in"
+        beside = f"{times}{next(iter(torque_texts))} N m in"
     else:
         beside = f"{count_noun(len(torques), 'input')}"
     speed = format_number(values["dynamics"]["speed_rpm"], 4)
@@ -207,7 +210,7 @@ def _speed_and_torque(values: Mapping[str, Any]) -> Iterator[Key]:
 
 def _powers(tables: Mapping[str, pd.DataFrame]) -> Iterator[Key]:
     """Yield the power in and out, the latter less the friction loss where it is known."""
-    numbers = rated(tables)
+    numbers = machine_numbers(tables)
     if "power_in_kw" not in numbers:
         return
     power, out = numbers["power_in_kw"], numbers["power_out_kw"]
@@ -242,18 +245,18 @@ def _k_gamma(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> I
     if groups.empty:
         return
     largest = groups.groupby("kind", sort=False)["k_gamma"].max()
-    required = values["load_sharing"]["required_k_gamma"]
+    limit = values["load_sharing"]["required_k_gamma"]
     running = "k_v" in groups
     first = largest.index[0]
-    others = [f"{kind} {factor:.2f}" for kind, factor in largest.items() if kind != first]
+    other_kinds = [f"{kind} {factor:.2f}" for kind, factor in largest.items() if kind != first]
     yield Key(
         "Load sharing K_gamma",
         f"{largest.iloc[0]:.2f}",
-        "; ".join([str(first), *others]),
+        "; ".join([str(first), *other_kinds]),
         "Largest mean load of a mesh over its nominal even share, "
         f"{'running' if running else 'at rest'}, with all errors. Below 1, less load takes this path than an "
         "even split would send through it.",
-        required is not None and bool((groups["k_gamma"] > required).any()),
+        limit is not None and bool((groups["k_gamma"] > limit).any()),
     )
 
 
@@ -281,7 +284,7 @@ def _peak_force(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -
     """Yield the largest mesh force at the nominal speed, of the most complete table that is there."""
     for name in ("dynamic_stress", "forces"):
         table = tables.get(name, pd.DataFrame())
-        column = next((one for one in ("largest_force_n", "largest_n") if one in table), None)
+        column = next((force for force in ("largest_force_n", "largest_n") if force in table), None)
         if column is None or table.empty:
             continue
         row = table.loc[table[column].idxmax()]

@@ -18,9 +18,9 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
     gear, pinion, shaper = pair["face_gear"], pair["pinion"], pair["shaper"]
     stiffness = values["mesh_stiffness"]
     more = "; ".join(
-        f"harmonic {term['order']}: {term['amplitude_um']:.3g} um" for term in error["more_harmonics"]
+        f"harmonic {term['order']}: {term['amplitude_um']:.3g} µm" for term in error["more_harmonics"]
     )
-    mean = "" if stiffness["source"] == "fem" else f", mean {stiffness['mean_n_per_m']:.3g} N/m"
+    mean = "" if stiffness["source"] == "fem" else f", mean {1e-6 * stiffness['mean_n_per_m']:.3g} N/µm"
     phasing = _phasing(error["phasing"])
     teeth = (
         []
@@ -38,7 +38,7 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
         f"power at the tail {100 * torque['tail_share']:.3g} %",
         "e(t) from contact"
         if error["source"] == "from_contact"
-        else f"e(t): {error['amplitude_um']:.4g} um read as its {error['meaning']}, cosine, "
+        else f"e(t): {error['amplitude_um']:.4g} µm read as its {error['meaning']}, cosine, "
         f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
         f"phases of the lower meshes {transmission['phase_convention']}",
         f"mesh stiffness {SOURCES[stiffness['source']]}" + mean + _variation(stiffness["variation"]),

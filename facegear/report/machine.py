@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from facegear.number_format import count_noun, format_number
-from facegear.report.balance import BALANCED, rated
+from facegear.report.balance import ROUNDING_OF_POWER, machine_numbers
 from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
 from facegear.report.inputs import SOURCES
 from facegear.report.page import Chapter, Picture
@@ -59,7 +59,7 @@ def machine_chapter(
     values: Mapping[str, Any],
     tables: Mapping[str, pd.DataFrame],
     pair: Mapping[str, Any] | None = None,
-    drawn: Sequence[Picture] = (),
+    pictures: Sequence[Picture] = (),
     base: Base | None = None,
 ) -> Chapter:
     """Write the chapter on the machine.
@@ -95,12 +95,12 @@ def machine_chapter(
             ),
         ]
     config = _config_tables(values, base)
-    return Chapter("The machine as configured", _text(values, tables), drawn, [*listed, *config])
+    return Chapter("The machine as configured", _text(values, tables), pictures, [*listed, *config])
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
     """Columns quantity, value, unit, as text; only what is known."""
-    known = _less_friction(_signed(tables) | rated(tables)) | ({} if pair is None else _teeth(pair))
+    known = _less_friction(_signed(tables) | machine_numbers(tables)) | ({} if pair is None else _teeth(pair))
     rows = []
     for name, (words, unit, digits) in NUMBERS.items():
         if name in known:
@@ -193,7 +193,7 @@ def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> st
         return ""
     size, cut = (float(table[name].iloc[0]) for name in ("e_peak_to_peak_um", "e_truncation_error_um"))
     words = (
-        f"{size:.3g} um peak to peak, the {len(table) - 1} orders kept within {cut:.2g} um of it"
+        f"{size:.3g} µm peak to peak, the {len(table) - 1} orders kept within {cut:.2g} µm of it"
         if size > 0.0
         else "constant, so e(t) from contact is zero"
     )
@@ -202,11 +202,11 @@ def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> st
 
 def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
     """What the powers say: in balance, or by how much equation (13) as printed misses it."""
-    numbers = rated(tables)
+    numbers = machine_numbers(tables)
     if "power_imbalance" not in numbers:
         return ""
     missing = numbers["power_imbalance"]
-    if abs(missing) <= BALANCED:
+    if abs(missing) <= ROUNDING_OF_POWER:
         text = "\n\nThe power brought in equals the power taken out: at rest, bearings and meshes lose none."
         loss = _signed(tables).get("loss_percent")
         if loss is None:
@@ -237,7 +237,7 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
         frame = frame.assign(**{f"against {base.name}": own, f"in {base.name}": there})
         differ = count_noun(sum(changed), "key differs", "keys differ")
         caption += f"; {differ} from {base.name}, which it extends"
-    config = Table(caption, frame, folded=True, exact=True)
+    config = Table(caption, frame, is_folded=True, exact=True)
     if values["transmission"] is None:
         return [config]
     pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")

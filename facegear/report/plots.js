@@ -3,6 +3,7 @@
 (() => {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const NARROW = 480; // px of a figure below which titles of panels are set left
   const ranges = new Map();
   let library = null, specs = null;
 
@@ -38,7 +39,14 @@
     return Object.fromEntries(Object.entries(part).map(([name, item]) => [name, themed(item, name, filled)]));
   }
 
-  function layoutOf(spec) {
+  // on a narrow screen a centred title of a panel would begin outside the figure
+  function narrow(layout) {
+    for (const note of layout.annotations || [])
+      if (/domain$/.test(note.xref) && /domain$/.test(note.yref) && note.y === 1 && note.xanchor !== "right")
+        Object.assign(note, { x: 0, xanchor: "left", align: "left", font: { ...note.font, size: 11 } });
+  }
+
+  function layoutOf(spec, width) {
     const layout = themed(spec.layout), grid = style("--rule");
     for (const [name, axis] of Object.entries(layout)) {
       if (!/^[xy]axis/.test(name)) continue;
@@ -48,6 +56,7 @@
       const kept = ranges.get(axis.title.text);
       if (name[0] === "x" && kept) axis.range = kept;
     }
+    if (width < NARROW) narrow(layout);
     return Object.assign(layout, {
       modebar: { bgcolor: "rgba(0,0,0,0)", color: style("--quiet"), activecolor: style("--text") },
       autosize: true, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
@@ -99,7 +108,7 @@
 
   async function draw(figure) {
     const graph = figure.querySelector(".live"), spec = specs[figure.id];
-    await library.newPlot(graph, themed(spec.data), layoutOf(spec), config);
+    await library.newPlot(graph, themed(spec.data), layoutOf(spec, graph.clientWidth), config);
     graph.on("plotly_relayout", (change) => link(graph, change));
     figure.dataset.drawn = "true";
   }
@@ -121,7 +130,8 @@
     dark.addEventListener("change", () => {
       for (const figure of document.querySelectorAll("figure[data-drawn]")) {
         const spec = specs[figure.id];
-        library.react(figure.querySelector(".live"), themed(spec.data), layoutOf(spec), config);
+        const graph = figure.querySelector(".live");
+        library.react(graph, themed(spec.data), layoutOf(spec, graph.clientWidth), config);
       }
     });
     document.documentElement.dataset.plots = "ready";

@@ -56,8 +56,8 @@ def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         *([Table(EDGES, meshes[["mesh", *edges]], 4)] if edges else []),
         *([Table(STRESS, tables["posed_stress"], 4)] if "posed_stress" in tables else []),
         *([Table(LEAVING, leaving, 4)] if len(leaving) else []),
-        Table(POSE, meshes.drop(columns=edges), 4, folded=True),
-        Table(CHECK, tables["poses_check"], 5, folded=True),
+        Table(POSE, meshes.drop(columns=edges), is_folded=True),
+        Table(CHECK, tables["poses_check"], is_folded=True),
     ]
 
 

@@ -13,11 +13,11 @@ import pandas as pd
 from facegear.number_format import format_number
 from facegear.report.units import ENGINEERING, UNITS, ending_of
 
-NAMED = 5
+CAPTION_WORDS = 5
 """Words of a caption that name its file."""
 PAPER_PT, COLUMN_GAP_PT, LETTER_WIDTH = 532.0, 8.0, 0.64
 """On A4: width of a table, room beside a column (pt), and the mean width of a letter in its height."""
-PRINTED = (4.0, 8.0)
+PRINT_SIZES = (4.0, 8.0)
 """Smallest and largest size of letters in a printed table, in pt."""
 LONG, LONG_COLUMN = 60, 22
 """Letters of a cell from which on a printed table may break it anywhere, and of a line of it then."""
@@ -41,7 +41,7 @@ class Table:
         The rows; a unit ends a column's name.
     digits : int
         Significant digits of numbers, dimensionless.
-    folded : bool
+    is_folded : bool
         Whether a click opens the table.
     main : sequence of str
         Columns shown at once, in this order; the first SHOWN_COLUMNS if empty. A click shows the others.
@@ -52,37 +52,61 @@ class Table:
     caption: str
     frame: pd.DataFrame
     digits: int = 4
-    folded: bool = False
+    is_folded: bool = False
     main: Sequence[str] = ()
     exact: bool = False
 
     @cached_property
     def page_frame(self) -> pd.DataFrame:
         """Columns in the order of the page: main ones first; forces in kN and stiffnesses in N/µm."""
-        known = [name for name in self.main if name in self.frame]
-        others = [name for name in self.frame.columns if name not in known]
-        table = self.frame[[*known, *others]] if known else self.frame
+        main_columns = [name for name in self.main if name in self.frame]
+        other_columns = [name for name in self.frame.columns if name not in main_columns]
+        table = self.frame[[*main_columns, *other_columns]] if main_columns else self.frame
         return table if self.exact else _engineering(table)
 
     def on_demand(self) -> list[bool]:
-        """Return for each column whether it is shown on demand only."""
+        """Return for each column whether it is shown on demand only.
+
+        Returns
+        -------
+        list of bool
+            One flag a column.
+        """
         main = sum(name in self.frame for name in self.main) or SHOWN_COLUMNS
         columns = len(self.frame.columns)
         return [columns > SHOWN_COLUMNS and at >= min(main, SHOWN_COLUMNS) for at in range(columns)]
 
     def header(self) -> list[str]:
-        """Column names as words, with their units as they are written."""
+        """Return column names as words, with their units as they are written.
+
+        Returns
+        -------
+        list of str
+            One text a column.
+        """
         return [words(str(name)) for name in self.page_frame.columns]
 
     def numeric(self) -> list[bool]:
-        """Of each column whether it holds numbers."""
+        """Return for each column whether it holds numbers.
+
+        Returns
+        -------
+        list of bool
+            One flag a column.
+        """
         return [
             pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind)
             for kind in self.page_frame.dtypes
         ]
 
     def rows(self) -> list[list[str]]:
-        """Cells as text."""
+        """Return the cells as text.
+
+        Returns
+        -------
+        list of list of str
+            Row by row.
+        """
         units = [ending_of(str(name)) for name in self.page_frame.columns]
         largest = {unit: self._largest(unit, units) for unit in set(units)}
         zero = [ROUNDING * largest[unit] for unit in units]
@@ -92,27 +116,50 @@ class Table:
         ]
 
     def print_pt(self) -> float:
-        """Size of the letters (pt) at which no word or number is broken on A4, within PRINTED."""
+        """Return the size of letters at which no word or number is broken on A4.
+
+        Returns
+        -------
+        float
+            Size within PRINT_SIZES, in points of 0.353 mm.
+        """
         cells = [self.header(), *self.rows()]
         longest = [
             max((_longest_word(text) for text in column), default=1) for column in zip(*cells, strict=True)
         ]
-        room = PAPER_PT - COLUMN_GAP_PT * len(longest)
-        return round(float(np.clip(room / (LETTER_WIDTH * sum(longest)), *PRINTED)), 2)
+        free_width = PAPER_PT - COLUMN_GAP_PT * len(longest)
+        return round(float(np.clip(free_width / (LETTER_WIDTH * sum(longest)), *PRINT_SIZES)), 2)
 
     def csv_name(self, chapter: str) -> str:
-        """Name of the file in which a reader keeps the table."""
-        said = re.findall(r"[a-z0-9]+", self.caption.lower())[:NAMED]
-        return f"{chapter}-{'-'.join(said)}.csv"
+        """Return the name of the file in which a reader keeps the table.
+
+        Parameters
+        ----------
+        chapter : str
+            Anchor of the chapter.
+
+        Returns
+        -------
+        str
+            Name with the ending csv.
+        """
+        caption_words = re.findall(r"[a-z0-9]+", self.caption.lower())[:CAPTION_WORDS]
+        return f"{chapter}-{'-'.join(caption_words)}.csv"
 
     def csv_uri(self) -> str:
-        """The table as csv with all its digits, as a data URI."""
+        """Return the table as csv with all its digits.
+
+        Returns
+        -------
+        str
+            A data URI.
+        """
         text = self.frame.to_csv(index=False)
         return f"data:text/csv;base64,{base64.b64encode(text.encode()).decode()}"
 
     def _largest(self, unit: str, units: Sequence[str]) -> float:
         """The largest number of all columns with a unit; nothing for numbers without one."""
-        columns = [self.page_frame.iloc[:, i] for i, other in enumerate(units) if unit and other == unit]
+        columns = [self.page_frame.iloc[:, i] for i, ending in enumerate(units) if unit and ending == unit]
         floats = [column for column in columns if pd.api.types.is_float_dtype(column)]
         sizes = [column[np.isfinite(column)].abs().max() for column in floats]
         return max((float(size) for size in sizes if isfinite(size)), default=0.0)
@@ -127,29 +174,42 @@ class Table:
             return str(value) if self.exact else f"{value:,}"
         if not isinstance(value, float):
             return "face gear" if value == "face_gear" else str(value)
-        shown = 0.0 if abs(value) < zero else value
-        return format_number(shown, EXACT if self.exact else self.digits, group_digits=not self.exact)
+        number = 0.0 if abs(value) < zero else value
+        return format_number(number, EXACT if self.exact else self.digits, group_digits=not self.exact)
 
 
 def _engineering(table: pd.DataFrame) -> pd.DataFrame:
     """Return a table with the units of ENGINEERING where its largest number is large enough for them."""
-    scaled, names = {}, {}
+    columns_scaled, names = {}, {}
     for name in table.columns:
         ending = ending_of(str(name))
         if ending not in ENGINEERING or not pd.api.types.is_float_dtype(table[name]):
             continue
-        other, factor, least = ENGINEERING[ending]
-        alike = [one for one in table.columns if ending_of(str(one)) == ending]
-        numbers = table[alike].select_dtypes("number").to_numpy(float)
+        larger_unit, factor, least = ENGINEERING[ending]
+        columns = [column for column in table.columns if ending_of(str(column)) == ending]
+        numbers = table[columns].select_dtypes("number").to_numpy(float)
         largest = np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)
         if largest >= least:
-            scaled[name] = factor * table[name]
-            names[name] = f"{name} ".replace(f"_{ending} ", f"_{other} ").rstrip()
-    return table.assign(**{str(name): column for name, column in scaled.items()}).rename(columns=names)
+            columns_scaled[name] = factor * table[name]
+            names[name] = f"{name} ".replace(f"_{ending} ", f"_{larger_unit} ").rstrip()
+    return table.assign(**{str(name): column for name, column in columns_scaled.items()}).rename(
+        columns=names
+    )
 
 
 def words(name: str) -> str:
-    """A column's name as words, with its unit as it is written."""
+    """Return a column's name as words, with its unit as it is written.
+
+    Parameters
+    ----------
+    name : str
+        Name of the column, whose unit is its end.
+
+    Returns
+    -------
+    str
+        Words and the unit in brackets.
+    """
     ending = ending_of(name)
     return (
         (f"{name} ".replace(f"_{ending} ", f" ({UNITS[ending]}) ") if ending else name)
@@ -166,5 +226,16 @@ def _longest_word(text: str) -> int:
 
 
 def unbroken(text: str) -> str:
-    """Text whose units in brackets are not broken."""
+    """Return text whose units in brackets are not broken.
+
+    Parameters
+    ----------
+    text : str
+        Any text.
+
+    Returns
+    -------
+    str
+        The text with spaces in units that do not break.
+    """
     return re.sub(r"\(N m\)", "(N\u00a0m)", text)

@@ -63,11 +63,11 @@ def value_in_words(key: str, value: object) -> str:
     'mesh stiffness mean 410 N/µm'
     """
     parts = [part for part in key.split(".") if not part.isdigit()]
-    named = parts[1:] if parts[0] in UNNAMED and len(parts) > 1 else parts
-    ending = next(filter(None, map(ending_of, reversed(named))), "")
-    words = " ".join(f"{part} ".replace(f"_{ending} ", " ").strip() for part in named).replace("_", " ")
+    key_parts = parts[1:] if parts[0] in UNNAMED and len(parts) > 1 else parts
+    ending = next(filter(None, map(ending_of, reversed(key_parts))), "")
+    words = " ".join(f"{part} ".replace(f"_{ending} ", " ").strip() for part in key_parts).replace("_", " ")
     if isinstance(value, bool) or not isinstance(value, int | float):
         return f"{words} {value}"
     unit, factor, _ = ENGINEERING.get(ending, (ending, 1.0, 0.0)) if ending != "n" else (ending, 1.0, 0.0)
-    written = format_number(factor * value, 4)
-    return f"{words} {written} {UNITS[unit]}" if unit else f"{words} {written}"
+    number = format_number(factor * value, 4)
+    return f"{words} {number} {UNITS[unit]}" if unit else f"{words} {number}"

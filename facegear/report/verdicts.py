@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from facegear.number_format import count_noun, format_number
-from facegear.report.balance import BALANCED
+from facegear.report.balance import ROUNDING_OF_POWER
 from facegear.ties import first_largest_row
 
 GREEN, RED, GREY = "green", "red", "grey"
@@ -15,7 +15,7 @@ NOT_COMPUTED = "Not computed."
 BEYOND = "beyond torques solved"
 MARKS = {"tip edges": "edge contact", "fillets": "fillet contact"}
 """First words of a rating's caveat, and the mark that stands for it."""
-RATED = {"bending": "Bending", "pitting": "Pitting"}
+RATED_FAILURES = {"bending": "Bending", "pitting": "Pitting"}
 OIL = {"scuffing": "Scuffing", "micropitting": "Micropitting"}
 SAFE = 1.0
 """Smallest safety against scuffing and micropitting that is green: the limits hold a test's own margin."""
@@ -65,15 +65,15 @@ def verdicts(
     list of Verdict
         Red ones first, grey ones last, each colour in the order of computation.
     """
-    judged = [
+    judgements = [
         *_teeth(pair),
-        *(_rated(values, tables, failure) for failure in RATED),
-        *(_lubricated(values, tables, failure) for failure in OIL),
+        *(_rating_verdict(values, tables, failure) for failure in RATED_FAILURES),
+        *(_oil_verdict(values, tables, failure) for failure in OIL),
     ]
     if values["transmission"] is not None:
-        judged += [_load_sharing(values, tables), *_power(tables), *_at_rest(tables)]
-    judged += _range_solved(tables)
-    return sorted(judged, key=lambda verdict: (RED, GREEN, GREY).index(verdict.colour))
+        judgements += [_load_sharing(values, tables), *_power(tables), *_at_rest(tables)]
+    judgements += _range_solved(tables)
+    return sorted(judgements, key=lambda verdict: (RED, GREEN, GREY).index(verdict.colour))
 
 
 def _teeth(pair: Mapping[str, Any] | None) -> Iterator[Verdict]:
@@ -81,51 +81,75 @@ def _teeth(pair: Mapping[str, Any] | None) -> Iterator[Verdict]:
     if pair is None:
         return
     gap = pair["interference"] or pair["smallest_gap"]
-    where = (
+    location = (
         f"gear's {gap['gear_part']} to pinion's {gap['pinion_part']}, radius {gap['gear_radius_mm']:.1f} mm"
     )
     if pair["interference"]:
         depth = f"{format_number(abs(gap['gap_um']))} µm"
-        reason = f"The bodies interfere by {depth} ({where})."
+        reason = f"The bodies interfere by {depth} ({location})."
         yield Verdict("Teeth", RED, reason, failure=f"the teeth interfere by {depth}")
     else:
         gap_um = format_number(gap["gap_um"])
-        yield Verdict("Teeth", GREEN, f"No interference; smallest gap {gap_um} µm ({where}).")
+        yield Verdict("Teeth", GREEN, f"No interference; smallest gap {gap_um} µm ({location}).")
 
 
 def flank_of(row: Any) -> str:
-    """Return body and flank of a row of a rating in words."""
+    """Return body and flank of a row of a rating in words.
+
+    Parameters
+    ----------
+    row : namedtuple or Series
+        A row of table `rating`.
+
+    Returns
+    -------
+    str
+        Such as `right input, drive flank`.
+    """
     return f"{str(row.body).replace('_', ' ')}, {row.flank} flank"
 
 
 def nearest_rating(rating: pd.DataFrame) -> Any:
-    """Return the row of table `rating` whose safety is the smallest part of what is required."""
+    """Return the row whose safety is the smallest part of what is required.
+
+    Parameters
+    ----------
+    rating : DataFrame
+        Table `rating`, not empty.
+
+    Returns
+    -------
+    Series
+        The first of rows that are equally near.
+    """
     spare = -rating["safety"] / rating["required"]
     return first_largest_row(rating.assign(spare=spare), "spare")
 
 
-def _rated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
+def _rating_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
     """Judge bending or pitting by the flank nearest to its limit."""
     rating = tables.get("rating", pd.DataFrame(columns=["failure"]))
     rows = rating[rating["failure"] == failure]
     if rows.empty:
-        return _without_result(values, "strength", RATED[failure])
+        return _without_result(values, "strength", RATED_FAILURES[failure])
     row = nearest_rating(rows)
     colour = RED if (rows["safety"] < rows["required"]).any() else GREEN
-    same = rows[(rows["body"] == row.body) & (rows["flank"] == row.flank) & (rows["method"] != row.method)]
-    other = "".join(f"; {one.safety:.2f} by {one.method}" for one in same.itertuples())
-    said = f"{flank_of(row)}: "
+    same_flank = rows[
+        (rows["body"] == row.body) & (rows["flank"] == row.flank) & (rows["method"] != row.method)
+    ]
+    other_ways = "".join(f"; {way.safety:.2f} by {way.method}" for way in same_flank.itertuples())
+    reason = f"{flank_of(row)}: "
     if colour == RED and row.reason.startswith("damage"):
-        said += f"{row.reason}; "
-    said += f"safety {row.safety:.2f} of {row.required:g} by {row.method}{other}."
+        reason += f"{row.reason}; "
+    reason += f"safety {row.safety:.2f} of {row.required:g} by {row.method}{other_ways}."
     flanks = rows[["body", "flank"]].drop_duplicates()
     failing = rows.loc[rows["safety"] < rows["required"], ["body", "flank"]].drop_duplicates()
     if len(failing) > 1:
-        said += f" {len(failing)} of {count_noun(len(flanks), 'flank')} are below what is required."
+        reason += f" {len(failing)} of {count_noun(len(flanks), 'flank')} are below what is required."
     marks = [mark for words, mark in MARKS.items() if rows["caveat"].str.contains(words).any()]
     if not rows["within_torques_solved"].all():
         marks.append(BEYOND)
-    return Verdict(RATED[failure], colour, _sentence(said), tuple(marks), _failure(row, colour))
+    return Verdict(RATED_FAILURES[failure], colour, _sentence(reason), tuple(marks), _failure(row, colour))
 
 
 def _without_result(values: Mapping[str, Any], section: str, subject: str) -> Verdict:
@@ -146,14 +170,16 @@ def _failure(row: Any, colour: str) -> str:
     return f"safety of the {body} against {row.failure} is {row.safety:.2f} of {row.required:g}"
 
 
-def _lubricated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
+def _oil_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], failure: str) -> Verdict:
     """Judge scuffing or micropitting by the loaded flank nearest to its limit, in any bin."""
     if "mesh_losses" not in tables:
         return _without_result(values, "lubrication", OIL[failure])
     losses, column = tables["mesh_losses"], f"{failure}_safety"
     if not losses[column].notna().any():
-        needed = "an FZG stage or a scuffing temperature" if failure == "scuffing" else "allowed_film_ratio"
-        return Verdict(OIL[failure], GREY, f"Not judged: the oil's card does not give {needed}.")
+        missing_data = (
+            "an FZG stage or a scuffing temperature" if failure == "scuffing" else "allowed_film_ratio"
+        )
+        return Verdict(OIL[failure], GREY, f"Not judged: the oil's card does not give {missing_data}.")
     row = first_largest_row(losses.assign(spare=-losses[column]), "spare")
     at = f"in bin {row['bin']} of the duty cycle" if row["bin"] > 0 else "at the nominal load"
     margin = f", {format_number(row['scuffing_margin_k'])} K to the limit" if failure == "scuffing" else ""
@@ -161,30 +187,41 @@ def _lubricated(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], f
     reason = f"{row['mesh']}, {row['flank']} flank, {at}: safety {safety} of {SAFE:g}{margin}."
     red = row[column] < SAFE
     marks = () if row["within_torques_solved"] else (BEYOND,)
-    failed = f"safety of {row['mesh']} against {failure} is {safety} of {SAFE:g}" if red else ""
-    return Verdict(OIL[failure], RED if red else GREEN, _sentence(reason), marks, failed)
+    status = f"safety of {row['mesh']} against {failure} is {safety} of {SAFE:g}" if red else ""
+    return Verdict(OIL[failure], RED if red else GREEN, _sentence(reason), marks, status)
 
 
 def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Verdict:
     """Judge the largest K_gamma by `load_sharing.required_k_gamma`."""
-    subject, required = "Load sharing", values["load_sharing"]["required_k_gamma"]
+    subject, limit = "Load sharing", values["load_sharing"]["required_k_gamma"]
     groups = known_k_gamma(tables)
     if groups.empty:
-        return Verdict(subject, GREY, NOT_COMPUTED if required else "No K_gamma is known of this machine.")
+        return Verdict(subject, GREY, NOT_COMPUTED if limit else "No K_gamma is known of this machine.")
     worst = first_largest_row(groups, "k_gamma")
     cycles = f" over {count_noun(int(worst['mesh_cycles']), 'mesh cycle')}" if "mesh_cycles" in worst else ""
     state = "running" if "k_v" in worst else "at rest"
-    found = f"K_gamma {worst['k_gamma']:.2f} ({worst['group']}, {state}{cycles})"
-    if required is None:
-        return Verdict(subject, GREY, f"{found}; no limit was given (load_sharing.required_k_gamma).")
-    if worst["k_gamma"] <= required:
-        return Verdict(subject, GREEN, f"{found}, {required:g} allowed.")
-    failed = f"K_gamma is {worst['k_gamma']:.2f} of {required:g} allowed"
-    return Verdict(subject, RED, f"{found}, {required:g} allowed.", failure=failed)
+    k_gamma_text = f"K_gamma {worst['k_gamma']:.2f} ({worst['group']}, {state}{cycles})"
+    if limit is None:
+        return Verdict(subject, GREY, f"{k_gamma_text}; no limit was given (load_sharing.required_k_gamma).")
+    if worst["k_gamma"] <= limit:
+        return Verdict(subject, GREEN, f"{k_gamma_text}, {limit:g} allowed.")
+    failure = f"K_gamma is {worst['k_gamma']:.2f} of {limit:g} allowed"
+    return Verdict(subject, RED, f"{k_gamma_text}, {limit:g} allowed.", failure=failure)
 
 
 def known_k_gamma(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Return the groups with their K_gamma of the running machine, else at rest; empty if not known."""
+    """Return the groups with their K_gamma of the running machine, else at rest.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+
+    Returns
+    -------
+    DataFrame
+        Rows of table `following_groups` or, at the largest torque, `hunting_groups`; else empty.
+    """
     for name in ("following_groups", "hunting_groups"):
         groups = tables.get(name, pd.DataFrame())
         if len(groups) and groups["k_gamma"].notna().any():
@@ -199,9 +236,9 @@ def _power(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
     if "ratings" not in tables:
         return
     numbers = dict(tables["ratings"].itertuples(index=False))
-    missing, power = numbers["power_imbalance"], numbers["power_in_kw"]
-    if abs(missing) > BALANCED:
-        share = f"{format_number(100 * missing)} % of the larger"
+    imbalance, power = numbers["power_imbalance"], numbers["power_in_kw"]
+    if abs(imbalance) > ROUNDING_OF_POWER:
+        share = f"{format_number(100 * imbalance)} % of the larger"
         reason = f"In less out is {share}: lever arms as printed are not those of the teeth."
         yield Verdict("Power balance", RED, reason, failure=f"power in less power out is {share}")
         return
@@ -219,14 +256,14 @@ def _at_rest(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
     meshes = tables["meshes"]
     idle = meshes.loc[meshes["flank"] == "open", "mesh"].to_list()
     contacts = tables.get("contacts", pd.DataFrame(columns=["contact", "state"]))
-    undecided = contacts.loc[contacts["state"] == "undecided", "contact"].to_list()
+    undecided_contacts = contacts.loc[contacts["state"] == "undecided", "contact"].to_list()
     if idle:
-        failed = f"{count_noun(len(idle), 'mesh carries', 'meshes carry')} no load at rest"
-        yield Verdict("Contact at rest", RED, f"No load at {', '.join(idle)}.", failure=failed)
+        failure = f"{count_noun(len(idle), 'mesh carries', 'meshes carry')} no load at rest"
+        yield Verdict("Contact at rest", RED, f"No load at {', '.join(idle)}.", failure=failure)
     else:
-        marks = (f"{count_noun(len(undecided), 'contact')} undecided",) if undecided else ()
-        carried = meshes["force_n"].abs()
-        smallest = f"{format_number(1e-3 * carried.min())} kN ({meshes['mesh'][carried.idxmin()]})"
+        marks = (f"{count_noun(len(undecided_contacts), 'contact')} undecided",) if undecided_contacts else ()
+        forces = meshes["force_n"].abs()
+        smallest = f"{format_number(1e-3 * forces.min())} kN ({meshes['mesh'][forces.idxmin()]})"
         yield Verdict("Contact at rest", GREEN, f"Every mesh carries load; the smallest {smallest}.", marks)
 
 
@@ -234,27 +271,36 @@ def _range_solved(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
     """Judge whether the loads lie within the torques for which contact was solved."""
     if "by_torque" not in tables:
         return
-    solved = tables["by_torque"]["torque_n_m"].max()
+    largest_solved = tables["by_torque"]["torque_n_m"].max()
+    torque = f"{format_number(largest_solved, 4)} N m"
     beyond = list(loads_beyond(tables))
     if "meshes" in tables:
         largest = tables["meshes"]["pinion_torque_n_m"].abs().max()
-        if largest > solved * (1.0 + BALANCED):
+        if largest > largest_solved * (1.0 + ROUNDING_OF_POWER):
             beyond.insert(0, f"a mesh at rest carries {format_number(largest, 4)} N m")
     if beyond:
         reason = (
-            f"Contact was solved up to {format_number(solved, 4)} N m; {'; '.join(beyond)}. Add torques to "
-            "contact.torques_n_m."
+            f"Contact was solved up to {torque}; {'; '.join(beyond)}. Add torques to contact.torques_n_m."
         )
-        failed = f"loads exceed the {format_number(solved, 4)} N m for which contact was solved"
-        yield Verdict("Range solved", RED, reason, failure=failed)
+        failure = f"loads exceed the {torque} for which contact was solved"
+        yield Verdict("Range solved", RED, reason, failure=failure)
     else:
-        yield Verdict(
-            "Range solved", GREEN, f"All loads lie within the {format_number(solved, 4)} N m solved."
-        )
+        yield Verdict("Range solved", GREEN, f"All loads lie within the {torque} solved.")
 
 
 def loads_beyond(tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
-    """Yield for each table with loads beyond the torques of the contact analysis how many there are."""
+    """Yield for each table with loads beyond the torques of the contact analysis how many there are.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+
+    Yields
+    ------
+    str
+        The count in words.
+    """
     for name, singular, plural in (
         ("rating", "rating", "ratings"),
         ("mesh_losses", "loss of a flank", "losses of flanks"),
@@ -267,14 +313,14 @@ def loads_beyond(tables: Mapping[str, pd.DataFrame]) -> Iterator[str]:
             yield f"{outside:,} of {count_noun(len(table), singular, plural)} {exceed} it"
 
 
-def status_line(judged: Sequence[Verdict], found: str) -> tuple[str, str, str]:
+def status_line(judgements: Sequence[Verdict], summary: str) -> tuple[str, str, str]:
     """Return colour, first words and the rest of the sentence that a page begins with.
 
     Parameters
     ----------
-    judged : sequence of Verdict
+    judgements : sequence of Verdict
         The verdicts.
-    found : str
+    summary : str
         A sentence on what else was found, empty for none.
 
     Returns
@@ -282,19 +328,19 @@ def status_line(judged: Sequence[Verdict], found: str) -> tuple[str, str, str]:
     tuple of str
         Colour of the worst verdict, a few words, and the sentences that follow them.
     """
-    red = [verdict for verdict in judged if verdict.colour == RED]
-    green = sum(verdict.colour == GREEN for verdict in judged)
-    tail = f" {found}" if found else ""
+    red = [verdict for verdict in judgements if verdict.colour == RED]
+    green = sum(verdict.colour == GREEN for verdict in judgements)
+    tail = f" {summary}" if summary else ""
     if red:
-        others = len(red) - 1
-        more = f", and {count_noun(others, 'other verdict is', 'other verdicts are')} red" if others else ""
-        return RED, "Not as required:", f"{red[0].failure}{more}.{tail}"
-    absent = sum(verdict.reason == NOT_COMPUTED for verdict in judged)
+        left = len(red) - 1
+        other_red = f", and {count_noun(left, 'other verdict is', 'other verdicts are')} red" if left else ""
+        return RED, "Not as required:", f"{red[0].failure}{other_red}.{tail}"
+    absent = sum(verdict.reason == NOT_COMPUTED for verdict in judgements)
     if green:
-        said = f"{count_noun(green, 'verdict is', 'verdicts are')} green"
+        reason = f"{count_noun(green, 'verdict is', 'verdicts are')} green"
         if absent:
-            return GREY, "As required so far:", f"{said}, {absent} not computed.{tail}"
-        return GREEN, "As required:", f"{said}.{tail}"
+            return GREY, "As required so far:", f"{reason}, {absent} not computed.{tail}"
+        return GREEN, "As required:", f"{reason}.{tail}"
     return GREY, "Not judged:", f"no limit was given.{tail}"
 
 

@@ -16,7 +16,7 @@ POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
 MOST_NAMED = 3
 """Meshes that a line names; of more it says how many."""
-WRONG, LIMITED, CHOSEN = 0, 1, 2
+WRONG, WITHIN_LIMITS, GIVEN_INPUT = 0, 1, 2
 """How serious a warning is: numbers do not hold; they hold within limits; an input was given or chosen."""
 SECTIONS = {
     "tooth_pair": "Teeth",
@@ -64,12 +64,13 @@ def grouped_warnings(
     list of (str, list of str)
         Subject and its lines, the subject with the most serious warning first, lines likewise.
     """
-    found = [*warnings(values, tables, pair), *map(_of_note, notes)]
-    subjects = dict.fromkeys(warning.subject for warning in sorted(found, key=lambda one: one.weight))
+    by_weight = [*warnings(values, tables, pair), *map(_of_note, notes)]
+    by_weight = sorted(by_weight, key=lambda warning: warning.weight)
+    subjects = dict.fromkeys(warning.subject for warning in by_weight)
     return [
         (
             subject,
-            [one.words for one in sorted(found, key=lambda one: one.weight) if one.subject == subject],
+            [warning.words for warning in by_weight if warning.subject == subject],
         )
         for subject in subjects
     ]
@@ -78,7 +79,7 @@ def grouped_warnings(
 def _of_note(note: str) -> ResultWarning:
     key, _, _ = note.partition(":")
     section = key.split(".")[0].split(" ")[0]
-    return ResultWarning(SECTIONS.get(section, "Machine"), CHOSEN, _line(note))
+    return ResultWarning(SECTIONS.get(section, "Machine"), GIVEN_INPUT, _line(note))
 
 
 def _line(words: str) -> str:
@@ -105,17 +106,21 @@ def warnings(
     if pair is not None:
         own, teeth = transmission["backlash_um"], pair["backlash_um"]["smallest"]
         if own is not None and abs(own - teeth) > BACKLASH_DIFFERS_UM:
-            taken = f"The dynamics take a backlash of {own:g} µm"
-            yield ResultWarning("Motion", LIMITED, f"{taken}; the teeth as assembled have {teeth:.1f} µm.")
+            dynamics_value = f"The dynamics take a backlash of {own:g} µm"
+            yield ResultWarning(
+                "Motion", WITHIN_LIMITS, f"{dynamics_value}; the teeth as assembled have {teeth:.1f} µm."
+            )
     yield from _undecided_warnings(tables)
     yield from _sweep_warnings(tables)
     for row in nominal(tables).itertuples():
         if row.lost_fraction > 0.0:
             share = f"{100 * row.lost_fraction:.0f} % of the time"
-            yield ResultWarning("Load sharing", LIMITED, f"{row.group}: a path is out of contact {share}.")
+            yield ResultWarning(
+                "Load sharing", WITHIN_LIMITS, f"{row.group}: a path is out of contact {share}."
+            )
         if not str(row.motion).startswith("period-"):
             words = f"{row.group}: the motion is {row.motion}, so numbers are averages."
-            yield ResultWarning("Load sharing", LIMITED, words)
+            yield ResultWarning("Load sharing", WITHIN_LIMITS, words)
 
 
 def _friction_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
@@ -129,10 +134,10 @@ def _friction_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWar
         share = (
             f"{format_number(worst['loss_outside_percent'], 2)} % of the loss at {worst['torque_n_m']:g} N m"
         )
-        others = len(rows) - 1
-        more = f", and less at {count_noun(others, 'other torque')}," if others else ""
-        words = f"{share}{more} lies outside the limits of {model}: {limit}."
-        yield ResultWarning("Friction", LIMITED, words)
+        torques_left = len(rows) - 1
+        elsewhere = f", and less at {count_noun(torques_left, 'other torque')}," if torques_left else ""
+        words = f"{share}{elsewhere} lies outside the limits of {model}: {limit}."
+        yield ResultWarning("Friction", WITHIN_LIMITS, words)
 
 
 def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
@@ -141,7 +146,7 @@ def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWa
     names = contacts.loc[contacts["state"] == "undecided", "contact"]
     if len(names):
         words = f"Too little load to tell from rounding, taken as open: {', '.join(names)}."
-        yield ResultWarning("Modes", LIMITED, words)
+        yield ResultWarning("Modes", WITHIN_LIMITS, words)
 
 
 def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarning]:
@@ -154,20 +159,22 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarnin
     if irregular.any():
         share = f"{irregular.sum()} of {count_noun(len(motions), 'speed')} (up and down sweeps together)"
         words = f"Motion is not periodic at {share}. Values there are time averages."
-        yield ResultWarning("Motion", LIMITED, words)
+        yield ResultWarning("Motion", WITHIN_LIMITS, words)
     gaps = sweep[sweep["quantity"] == "open_fraction"].groupby("body_or_mesh", sort=False)["value"]
     min_open, max_open = gaps.min(), gaps.max()
     if (always := min_open.index[min_open >= 1.0]).size:
-        yield ResultWarning("Motion", WRONG, f"Open at every speed: {_named(always, len(min_open))}.")
+        yield ResultWarning("Motion", WRONG, f"Open at every speed: {_mesh_list(always, len(min_open))}.")
     lost = max_open.index[(max_open > 0.0) & (min_open < 1.0)]
     if lost.size:
         time = f"up to {format_number(100 * max_open[lost].max(), 2)} % of the time"
         yield ResultWarning(
-            "Motion", LIMITED, f"Contact is lost at some speeds, {time}: {_named(lost, len(min_open))}."
+            "Motion",
+            WITHIN_LIMITS,
+            f"Contact is lost at some speeds, {time}: {_mesh_list(lost, len(min_open))}.",
         )
 
 
-def _named(meshes: Sequence[str], of: int) -> str:
+def _mesh_list(meshes: Sequence[str], of: int) -> str:
     """Return names of meshes; of many only how many of all they are."""
     if len(meshes) <= MOST_NAMED:
         return ", ".join(meshes)
@@ -180,7 +187,7 @@ def _contact_warnings(
     """Yield what the contact analysis does not know, a line a kind whatever the number of torques."""
     if values["mesh_stiffness"]["source"] == "fem_scaled":
         words = "Only its shape is computed; its mean is given (mesh_stiffness.mean_n_per_m)."
-        yield ResultWarning("Stiffness", CHOSEN, words)
+        yield ResultWarning("Stiffness", GIVEN_INPUT, words)
     if "ltca" in tables:
         columns = ["tip_line_load_n_per_mm", "tip_length_mm"]
         tips = tables["ltca"].groupby("torque_n_m")[columns].max()
@@ -189,7 +196,7 @@ def _contact_warnings(
             load, length = loaded.max()
             yield ResultWarning(
                 "Contact",
-                LIMITED,
+                WITHIN_LIMITS,
                 f"Edge contact: from {loaded.index[0]:g} N m on tip edges carry up to {load:.0f} N/mm over "
                 f"{length:.1f} mm, where pressure has no limit. Tip relief or a chamfer takes the load off "
                 "the pinion's tip, root relief off the gear's.",
@@ -201,7 +208,7 @@ def _contact_warnings(
     if len(pressed):
         yield ResultWarning(
             "Contact",
-            LIMITED,
+            WITHIN_LIMITS,
             f"Tips press into fillets {_torques(pressed, by_torque)} and carry up to "
             f"{100 * pressed['fillet_share'].max():.2g} % of the torque there, which is kept out of pressure "
             "and root stress.",
@@ -222,20 +229,20 @@ def _contact_warnings(
         row = coarse.loc[change[coarse.index].idxmax()]
         yield ResultWarning(
             "Contact",
-            LIMITED,
+            WITHIN_LIMITS,
             f"Transmission error {_torques(coarse, by_torque)} changes with the number of positions: at "
             f"{row['torque_n_m']:g} N m {row['ste_peak_to_peak_um']:.2f} µm peak to peak, "
             f"{row['ste_peak_to_peak_half_um']:.2f} µm with half of them (contact.positions_per_pitch).",
         )
 
 
-def _torques(some: pd.DataFrame, every: pd.DataFrame) -> str:
+def _torques(rows: pd.DataFrame, every: pd.DataFrame) -> str:
     """Return at which torques some rows of a table by torque stand, in words."""
-    torques = some["torque_n_m"]
-    if len(some) == 1:
+    torques = rows["torque_n_m"]
+    if len(rows) == 1:
         return f"at {torques.iloc[0]:g} N m"
-    if len(some) == len(every):
+    if len(rows) == len(every):
         return "at every torque"
-    if torques.to_list() == every["torque_n_m"].to_list()[-len(some) :]:
+    if torques.to_list() == every["torque_n_m"].to_list()[-len(rows) :]:
         return f"from {torques.iloc[0]:g} N m on"
-    return f"at {len(some)} of {len(every)} torques, {torques.min():g} to {torques.max():g} N m,"
+    return f"at {len(rows)} of {len(every)} torques, {torques.min():g} to {torques.max():g} N m,"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
 
-ADDED = """
+KEYWORDS_TEXT = """
 
         `size`: width and height in inches; `labels`: other words for texts of the figure (axes, titles,
         legend), by the text that stands there. Raises FacegearError for a text that the figure does not have.
@@ -46,14 +46,9 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "Figure"]:
             rename_texts(figure, labels)
         return figure
 
-    known = signature(plot)
+    plot_signature = signature(plot)
     extra = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in ("size", "labels")]
-    drawn_to_size.__signature__ = known.replace(parameters=_before_keywords(known.parameters, extra))  # type: ignore[attr-defined]
-    drawn_to_size.__doc__ = (plot.__doc__ or "").rstrip() + ADDED
+    parameters = sorted([*plot_signature.parameters.values(), *extra], key=lambda parameter: parameter.kind)
+    drawn_to_size.__signature__ = plot_signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    drawn_to_size.__doc__ = (plot.__doc__ or "").rstrip() + KEYWORDS_TEXT
     return drawn_to_size
-
-
-def _before_keywords(known: Mapping[str, Parameter], extra: list[Parameter]) -> list[Parameter]:
-    """Return parameters in an order that Python allows: any `**keywords` come last."""
-    every = [*known.values(), *extra]
-    return sorted(every, key=lambda one: one.kind)

@@ -84,8 +84,8 @@ class Study:
         (label, first), *others = self.results(answer, **arguments).items()
         if answer not in ("load_sharing", "sweep"):
             raise FacegearError(f"answer = {answer!r}: must be one of load_sharing, sweep")
-        named = {self._words(name): result for name, result in others}
-        return first.plot(label=self._words(label), beside=named, **(plot or {}))  # type: ignore[attr-defined]
+        results_by_words = {self._words(name): result for name, result in others}
+        return first.plot(label=self._words(label), beside=results_by_words, **(plot or {}))  # type: ignore[attr-defined]
 
     def _words(self, label: str) -> str:
         """Return the changes of a machine in words where its label holds their keys."""

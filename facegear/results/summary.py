@@ -1,6 +1,6 @@
 """A machine in short for the terminal: status, key numbers, verdicts and gear data of what is known."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Never
 
 from facegear.errors import extras_named
@@ -33,22 +33,26 @@ def summary_text(chain: Chain) -> str:
     has_bodies = chain.values["tooth_pair"]["pinion"] is not None
     pair = chain.part("geometry", "pair") if has_bodies else None
     tables = dict(_known_tables(chain))
-    judged = verdicts(chain.values, tables, pair)
-    _, first, sentence = status_line(judged, found_in_words(tables))
+    judgements = verdicts(chain.values, tables, pair)
+    _, first, sentence = status_line(judgements, found_in_words(tables))
     keys = [
         (card.name, card.value, f"({card.beside})" if card.beside else "")
         for card in key_cards(chain.values, tables, pair)
     ]
     reasons = [
-        (one.colour, one.subject, " ".join([one.reason, *(f"[{mark}]" for mark in one.caveats)]))
-        for one in judged
+        (
+            verdict.colour,
+            verdict.subject,
+            " ".join([verdict.reason, *(f"[{mark}]" for mark in verdict.caveats)]),
+        )
+        for verdict in judgements
     ]
     head = f"{chain.values['case']}. {first} {sentence}"
-    parts = [head, "\n".join(_aligned(keys)), "\n".join(_aligned(reasons))]
+    parts = [head, "\n".join(_align_columns(keys)), "\n".join(_align_columns(reasons))]
     if pair is not None:
         rows = data_sheet_table(pair)
         sheet = [tuple(rows.columns), *rows.itertuples(index=False, name=None)]
-        parts.append("\n".join([f"{DATA_SHEET}:", *_aligned(sheet)]))
+        parts.append("\n".join([f"{DATA_SHEET}:", *_align_columns(sheet)]))
     return "\n\n".join(parts)
 
 
@@ -73,7 +77,7 @@ def _refuse_to_compute() -> Never:
     raise _NotKnownError
 
 
-def _aligned(rows: "list[tuple[str, ...]]") -> list[str]:
+def _align_columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
     """Return rows of text with their columns below each other."""
     widths = [max(len(cell) for cell in column) for column in zip(*rows, strict=True)]
     return [

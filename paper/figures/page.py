@@ -75,8 +75,10 @@ def render(
 def _counts_in_words(rows: Sequence[Mapping[Any, Any]]) -> str:
     """Return how many claims a figure has, and how many of each verdict, differences first."""
     verdicts = Counter(str(row["verdict"]) for row in rows)
-    said = [f"{verdicts[verdict.value]} {verdict.value}" for verdict in ORDER if verdicts[verdict.value]]
-    return f"{count_noun(len(rows), 'claim')}: {', '.join(said)}"
+    counts_text = [
+        f"{verdicts[verdict.value]} {verdict.value}" for verdict in ORDER if verdicts[verdict.value]
+    ]
+    return f"{count_noun(len(rows), 'claim')}: {', '.join(counts_text)}"
 
 
 def _cells(row: Mapping[Any, Any]) -> dict[str, str]:

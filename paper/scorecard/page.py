@@ -68,9 +68,9 @@ def groups(frame: pd.DataFrame) -> list[dict[str, Any]]:
         Of each group `name` (for styles), `words`, `title`, the number of `rows`, and its `claims`. Every row
         is in one group.
     """
-    counted = frame["counted"].astype(bool)
-    parts = [(str(verdict), frame[counted & (frame["verdict"] == verdict.value)]) for verdict in ORDER]
-    parts.append(("not counted", frame[~counted]))
+    is_counted = frame["counted"].astype(bool)
+    parts = [(str(verdict), frame[is_counted & (frame["verdict"] == verdict.value)]) for verdict in ORDER]
+    parts.append(("not counted", frame[~is_counted]))
     return [
         {
             "name": words.split()[0],

@@ -21,7 +21,7 @@ from snakemake.cli import main
 try:
     main()
 finally:
-    slow = {"numba", "skfem", "xarray", "matplotlib", "scipy.sparse", "scipy.stats"}
+    slow = {"numba", "skfem", "xarray", "matplotlib", "scipy.stats"}
     print("imported:", *slow & {*sys.modules})
 """
 """A start without executors that are installed beside, and what it imported that is slow."""

@@ -26,7 +26,7 @@ from validation.references import (
 )
 
 DECLARATIONS = declarations()
-WITHOUT_NUMBERS = {"with_values", "study", "report", "run"}
+WITHOUT_NUMBERS = {"with_values", "study", "report", "run", "figures", "summary"}
 """Public methods of the Gearbox that compute nothing."""
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import hypot, pi, tan
+from pathlib import Path
 
 import pytest
 from contact_bodies import pair_design
@@ -53,17 +54,16 @@ def test_the_sheet_holds_diameters_face_position_and_backlash(designed):
     assert not sheet.isin(["None", "nan", "-0.000"]).any().any()
 
 
-def test_the_summary_holds_key_numbers_verdicts_and_the_data_sheet_and_computes_no_dynamics():
-    gearbox = facegear.example().with_values({"transmission.backlash_um": 101})
-    text = gearbox.summary()
-    for words in (
-        "example. As required so far:",
-        "23 / 143",
-        "No interference",
-        "Pitch diameter",
-        "Span over",
-    ):
+def test_the_summary_holds_key_numbers_verdicts_and_the_data_sheet():
+    text = facegear.example().with_values({"transmission.backlash_um": 101}).summary()
+    for words in ("As required so far:", "23 / 143", "No interference", "Pitch diameter", "Span over"):
         assert words in text, words
-    assert "Power in" not in text, "statics were not computed"
+
+
+def test_the_summary_computes_no_statics_and_holds_them_once_they_are_known():
+    config = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
+    gearbox = facegear.load(config, results=None)
+    assert "Power in" not in gearbox.summary()
     gearbox.statics()
-    assert "Power in → out" in gearbox.summary()
+    text = gearbox.summary()
+    assert "Power in → out" in text and "Power balance" in text and "Gear data" not in text

@@ -1,4 +1,4 @@
-"""What a reader sees first: one sentence, key numbers, verdicts with reasons, warnings by subject."""
+"""First screen of a report: one sentence, key numbers, verdicts with reasons, warnings by subject."""
 
 import numpy as np
 import pandas as pd
@@ -281,3 +281,17 @@ def test_the_sweep_picture_shows_the_mesh_that_vibrates_most_and_ignores_gaps():
     assert picture.title == "Vibration of b/upper" and "nan" not in picture.svg
     assert len(picture.svg) < 30_000 and picture.svg.count('class="jump up"') == 1
     assert sweep_picture(None, None, 7500.0) is None and error_picture(None) is None
+
+
+@pytest.mark.parametrize("known", [(), ("by_torque",), ("ratings", "bodies", "meshes")])
+def test_the_first_screen_of_a_pair_alone_and_of_few_results_stands(example, known):
+    values, tables = example
+    shown = {name: {**tables, **contact()}[name] for name in known}
+    for transmission in (values["transmission"], None):
+        case = {**values, "transmission": transmission}
+        if transmission is None:
+            shown = {name: table for name, table in shown.items() if name == "by_torque"}
+        screen = first_screen(case, shown, PAIR)
+        assert screen.status and screen.keys[0].value == "23 / 143"
+        text = repr(screen)
+        assert "nan" not in text and "-0.0" not in text and "1 verdicts" not in text

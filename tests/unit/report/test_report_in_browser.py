@@ -65,6 +65,26 @@ def dim_colours():
     return figure
 
 
+def wide_legend():
+    """A panel below a legend as wide as the figure."""
+    figure, axis = plt.subplots(figsize=(4.7, 3.0))
+    for number in range(4):
+        axis.plot([0.0, 1.0], [0.0, number], label=f"curve of the mesh {number}")
+    axis.set(xlabel="speed (rpm)", ylabel="force (kN)")
+    axis.legend()
+    return figure
+
+
+def long_title():
+    """A narrow panel beside a bar of colours, below a title wider than the panel."""
+    figure, axis = plt.subplots(figsize=(4.7, 3.0), layout="constrained")
+    drawn_map = axis.pcolormesh([0.0, 1.0, 2.0], [0.0, 1.0], [[1.0, 2.0]])
+    figure.colorbar(drawn_map, label="Pressure (MPa)")
+    axis.set_title("1200 N m: 1568 ± 9 MPa; tip edges up to 857 N/mm")
+    axis.set(xlabel="along (mm)", ylabel="radius (mm)")
+    return figure
+
+
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     """Two figures of a sweep, a narrow and the widest kind of table, and verdicts of each colour."""
@@ -91,6 +111,10 @@ def report(tmp_path_factory):
         save(figure, folder / f"{name}.svg", folder / f"{name}.json")
     drawn["dim"] = dim_colours()
     save(drawn["dim"], folder / "dim.svg", folder / "dim.json")
+    drawn["legend"] = wide_legend()
+    save(drawn["legend"], folder / "legend.svg", folder / "legend.json")
+    drawn["titled"] = long_title()
+    save(drawn["titled"], folder / "titled.svg", folder / "titled.json")
     pictures = [Picture(folder / f"{name}.svg", f"Sweep, {name}.") for name in drawn]
     modes = pd.DataFrame({"mode": ["7", "8", "9"], "frequency_hz": [597.5591, 1010.1912, 812.3]})
     wide = pd.DataFrame({f"largest_line_load_{n}_n_per_mm": [1234.5678 + n] * 4 for n in range(20)})
@@ -277,12 +301,22 @@ def test_a_still_on_the_page_shows_the_stored_drawing_dot_for_dot(browser, repor
 
 def test_the_toolbar_of_a_figure_never_covers_its_legend(opened):
     page = opened()
-    drawn(page, OVER_SPEED).hover()
-    for part in (".legend", ".annotation", ".main-svg .gtitle"):
-        for box in page.locator(f"#{OVER_SPEED} {part}").all():
-            text, bar = (
-                box.bounding_box(),
-                page.locator(f"#{OVER_SPEED} .modebar-container .modebar").bounding_box(),
-            )
-            apart = text["y"] >= bar["y"] + bar["height"] or text["x"] + text["width"] <= bar["x"]
-            assert apart, (part, text, bar)
+    for name in (OVER_SPEED, "figure-legend"):
+        drawn(page, name).hover()
+        bar = page.locator(f"#{name} .modebar").bounding_box()
+        for part in (".legend", ".annotation"):
+            for text in (one.bounding_box() for one in page.locator(f"#{name} {part}").all()):
+                below = text["y"] >= bar["y"] + bar["height"]
+                assert below or text["x"] + text["width"] <= bar["x"], (name, part, text, bar)
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_title_of_no_panel_is_cut(opened, width):
+    """At 390 px titles of the contact pattern began outside the figure."""
+    page = opened(width)
+    for name in (OVER_SPEED, "figure-titled"):
+        drawn(page, name)
+        whole = page.locator(f"#{name} .live").bounding_box()
+        for note in page.locator(f"#{name} .annotation").all():
+            box = note.bounding_box()
+            assert box["x"] >= whole["x"] and box["x"] + box["width"] <= whole["x"] + whole["width"] + 1

@@ -4,7 +4,9 @@ concentric.zip holds them and the sizes of the figures: `python -m validation.re
 --store tests/unit/report/concentric.zip` after `snakemake --cores 2 --configfile config/concentric.yaml`.
 """
 
+import html
 import json
+import re
 import shutil
 import zipfile
 from pathlib import Path
@@ -22,6 +24,13 @@ from validation.report_pages import A4, chromium, printed
 ROOT = Path(__file__).parents[3]
 CONFIG = ROOT / "config" / "concentric.yaml"
 MOST_PAGES = 25
+WIDE = """[...document.querySelectorAll('.scroll')]
+  .filter(box => box.checkVisibility() && box.scrollWidth > box.clientWidth + 1)
+  .map(box => box.getAttribute('aria-label'))"""
+"""Tables that are wider than the page."""
+COLUMNS = """[...document.querySelectorAll('main table')].filter(table => table.checkVisibility())
+  .map(table => [...table.rows[0].cells].filter(cell => cell.checkVisibility()).length)"""
+"""Columns that each table shows."""
 pytestmark = [
     pytest.mark.xdist_group("browser"),
     pytest.mark.skipif(shutil.which("chromium") is None, reason="no chromium: .ci/run installs it"),
@@ -63,3 +72,20 @@ def test_a_whole_machine_prints_on_at_most_25_pages_of_a4_with_every_column_of_e
     assert pages <= MOST_PAGES
     assert max(right_edges) <= A4["width"]
     assert unread == 0, "stills that no reader has scrolled to are printed, too"
+
+
+def test_the_page_holds_no_none_no_minus_zero_and_no_plural_of_one(concentric):
+    page = concentric.read_text(encoding="utf-8").split("<main>")[1].split("</main>")[0]
+    text = html.unescape(re.sub(r"<[^>]*>", " ", re.sub(r"(?s)<img [^>]*>|<svg.*?</svg>", " ", page)))
+    assert len(text) > 10_000
+    wrong = r"(?<!\w)(?:None|nan|-0|-0\.0+|1 (?:keys|cases|verdicts|flanks|jumps|speeds))(?![\w.,])"
+    assert re.findall(wrong, text) == []
+
+
+def test_every_table_fits_1280_px_and_shows_at_most_eight_columns(concentric):
+    with chromium() as browser:
+        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page.goto(concentric.as_uri())
+        wide = page.evaluate(WIDE)
+        columns = page.evaluate(COLUMNS)
+    assert wide == [] and len(columns) >= 15 and max(columns) <= 8
