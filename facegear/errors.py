@@ -93,14 +93,14 @@ def extras_named() -> Iterator[None]:
         raise MissingExtra(library, EXTRAS[library]) from error
 
 
-def file_path(value: object, what: str = "path") -> Path:
+def file_path(value: object, argument: str = "path") -> Path:
     """Return a path from the argument of a user.
 
     Parameters
     ----------
     value : object
         The argument.
-    what : str
+    argument : str
         Name of the argument.
 
     Returns
@@ -114,7 +114,7 @@ def file_path(value: object, what: str = "path") -> Path:
         For anything but text or a path, and for an empty text.
     """
     if not isinstance(value, str | Path) or not str(value):
-        raise FacegearError(f"{what} = {value!r}: must be the name of a file or folder")
+        raise FacegearError(f"{argument} = {value!r}: must be the name of a file or folder")
     return Path(value)
 
 

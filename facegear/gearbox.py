@@ -209,9 +209,9 @@ class Gearbox:
         with extras_named():
             from facegear.stages.displaced_contact import displaced_contact, loaded_displaced_contact
 
-        for body, moved in {"pinion": pinion, "face_gear": face_gear}.items():
-            if moved is not None and not isinstance(moved, Mapping):
-                raise FacegearError(f"{body} = {moved!r}: must be a mapping such as {{'x_um': 10}}")
+        for body, displacement in {"pinion": pinion, "face_gear": face_gear}.items():
+            if displacement is not None and not isinstance(displacement, Mapping):
+                raise FacegearError(f"{body} = {displacement!r}: must be a mapping such as {{'x_um': 10}}")
         config, given = self.config, (dict(pinion or {}), dict(face_gear or {}))
         flanks = displaced_contact(config.tooth_pair, config.transmission, mesh, *given, position)
 

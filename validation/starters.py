@@ -67,12 +67,12 @@ def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[Known]:
         )
 
 
-def run_machine(known: Known, folder: Path) -> dict[str, object]:
+def run_machine(machine: Known, folder: Path) -> dict[str, object]:
     """Write the config of a machine and its report.
 
     Parameters
     ----------
-    known : Known
+    machine : Known
         The machine.
     folder : Path
         Where config and page go.
@@ -83,34 +83,36 @@ def run_machine(known: Known, folder: Path) -> dict[str, object]:
         A row of the table: the machine's numbers, `outcome` (report, incomplete or refused), `reason` of what
         is missing, `stages` that were computed, and `processor_s`.
     """
-    start, stages, missing = time.process_time(), [], []
+    stages: list[str] = []
+    reasons: list[str] = []
+    start = time.process_time()
 
     def note(stage: str, summary: str) -> None:
         if summary.startswith("not computed: "):
-            missing.append(f"{stage}: {summary.removeprefix('not computed: ')}")
+            reasons.append(f"{stage}: {summary.removeprefix('not computed: ')}")
         elif stage != "report":
             stages.append(stage)
 
     outcome = "refused"
     try:
-        path = folder / f"{known.case}.yaml"
-        path.write_text(first_machine(known).text, encoding="utf-8")
-        load(path, None).report(folder / f"{known.case}.html", note)
-        outcome = "incomplete" if missing else "report"
+        path = folder / f"{machine.case}.yaml"
+        path.write_text(first_machine(machine).text, encoding="utf-8")
+        load(path, None).report(folder / f"{machine.case}.html", note)
+        outcome = "incomplete" if reasons else "report"
     except FacegearError as error:
-        missing.append(str(error).splitlines()[0])
+        reasons.append(str(error).splitlines()[0])
     return {
-        "machine": known.case,
-        "pinion_teeth": known.pinion_teeth,
-        "face_gear_teeth": known.face_gear_teeth,
-        "module_mm": known.module_mm,
-        "pressure_angle_deg": known.pressure_angle_deg,
-        "inputs": known.pinions,
-        "idlers": known.idlers,
-        "torque_n_m": known.torque_n_m,
-        "speed_rpm": known.speed_rpm,
+        "machine": machine.case,
+        "pinion_teeth": machine.pinion_teeth,
+        "face_gear_teeth": machine.face_gear_teeth,
+        "module_mm": machine.module_mm,
+        "pressure_angle_deg": machine.pressure_angle_deg,
+        "inputs": machine.pinions,
+        "idlers": machine.idlers,
+        "torque_n_m": machine.torque_n_m,
+        "speed_rpm": machine.speed_rpm,
         "outcome": outcome,
-        "reason": "; ".join(missing),
+        "reason": "; ".join(reasons),
         "stages": len(stages),
         "processor_s": round(time.process_time() - start, 1),
     }
@@ -135,16 +137,18 @@ def run_all(machines: Sequence[Known]) -> pd.DataFrame:
     ).stdout.strip()
     rows = []
     with TemporaryDirectory() as folder:
-        for known in machines:
-            rows.append(run_machine(known, Path(folder)) | {"commit": commit})
-            print(f"{known.case}: {rows[-1]['outcome']}, {rows[-1]['processor_s']} s", file=sys.stderr)
+        for machine in machines:
+            rows.append(run_machine(machine, Path(folder)) | {"commit": commit})
+            print(f"{machine.case}: {rows[-1]['outcome']}, {rows[-1]['processor_s']} s", file=sys.stderr)
     return pd.DataFrame(rows)
 
 
 if __name__ == "__main__":
     numbers = {int(word) for word in sys.argv[1:]}
-    drawn = [known for number, known in enumerate(draw_machines(), 1) if not numbers or number in numbers]
-    table = run_all(drawn)
+    chosen_machines = [
+        machine for number, machine in enumerate(draw_machines(), 1) if not numbers or number in numbers
+    ]
+    table = run_all(chosen_machines)
     if numbers:
         print(table.to_string(index=False))
     else:

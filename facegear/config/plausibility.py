@@ -273,6 +273,7 @@ def _machine_sizes(values: Mapping[str, Any], teeth: _Teeth) -> Iterator[Expecte
         if torque is not None:
             usual = 2.0 * teeth.mesh_torque
             yield ExpectedSize(f"transmission.pinions[{number}].torque_n_m", torque, usual, usual)
+    bodies: list[tuple[tuple[str, ...], tuple[float, float]]]
     bodies = [(("pinion",), teeth.pinion), (("face_gear",), teeth.gear)]
     bodies += [(("single_pinions", name), teeth.pinion) for name in _names(machine, "single_pinions")]
     bodies += [(("single_gears", name), teeth.gear) for name in _names(machine, "single_gears")]

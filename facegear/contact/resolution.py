@@ -21,7 +21,7 @@ ROUNDING = 1e-9
 DEEPEST = 2.0
 """Depth of the first row below a fillet over its smallest radius, with which root stress errs by some 6 %."""
 ROUNDINGS = {"pinion": "rounding of the rack's tip", "face_gear": "rounding of the shaper's tip"}
-"""What rounds the fillets of each gear."""
+"""Dimension of the tool that rounds the fillets of each gear."""
 MEMORY_ERROR = 1.2
 """Largest factor between the estimate of memory and what was measured."""
 

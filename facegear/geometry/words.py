@@ -1,4 +1,4 @@
-"""What the analysis of a pair found, in one line each."""
+"""Findings of the analysis of a pair, in one line each."""
 
 from math import isfinite
 
@@ -7,7 +7,20 @@ from facegear.geometry.jam import Jam
 
 
 def jam_in_words(analysis: PairAnalysis, stuck: Jam) -> str:
-    """Where and how deep bodies jam."""
+    """Say where and how deep bodies jam.
+
+    Parameters
+    ----------
+    analysis : PairAnalysis
+        Analysis of the pair, with an interference.
+    stuck : Jam
+        Least room over a pitch.
+
+    Returns
+    -------
+    str
+        Depth, um, gear radius, mm, and the parts that meet.
+    """
     gap = analysis.interference
     assert gap is not None
     depth = f"by {1e6 * stuck.depth:.1f} um along the line of action"
@@ -19,7 +32,18 @@ def jam_in_words(analysis: PairAnalysis, stuck: Jam) -> str:
 
 
 def summary_in_words(analysis: PairAnalysis) -> str:
-    """Contact ratio, backlash and smallest gap."""
+    """Say contact ratio, backlash and smallest gap.
+
+    Parameters
+    ----------
+    analysis : PairAnalysis
+        Analysis of the pair.
+
+    Returns
+    -------
+    str
+        The numbers, lengths in um.
+    """
     gap = analysis.interference or analysis.smallest
     verdict = "interference" if analysis.interference else "smallest gap"
     return (

@@ -69,7 +69,7 @@ def estimated_seconds(case: Case, stages: Sequence[Stage]) -> float:
     Returns
     -------
     float
-        Seconds, without compilation.
+        Processor time, s, without compilation.
     """
     before = {name for stage in stages for name in stages_before(stage.name, case.values)}
     figures = sum(len(stage.figures.named(case)) for stage in stages if stage.figures)

@@ -15,26 +15,33 @@ HARMONICS_GIVEN = ("torque_n_m", "definition")
 """Keys of mesh_stiffness that belong to a computed stiffness."""
 
 
-def idle_keys(given: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) -> list[str]:
+def idle_keys(file_values: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) -> list[str]:
     """List keys that are given in a config file and have no effect, one line each with the reason.
 
     Parameters
     ----------
-    given : mapping
+    file_values : mapping
         Values as they stand in the file, without those of a file that it extends.
     cases : mapping
         Plain values of all cases of the config by case id, with defaults (`expand_cases`); a key that any of
         them reads has an effect.
+
+    Returns
+    -------
+    list of str
+        Keys with reasons, in the order of the file.
     """
     read = set(ALWAYS_READ)
     for values in cases.values():
         read |= set(_keys_read(Case(values, cases)))
-    unread = list(_unread(given, read))
+    unread = list(_unread(file_values, read))
     reasons = [dict(_switched_off(values)) for values in cases.values()]
     off = {
         key: reason
         for key, reason in reasons[0].items()
-        if all(key in others for others in reasons) and _is_given(given, key) and not _is_below(key, unread)
+        if all(key in of_case for of_case in reasons)
+        and _is_given(file_values, key)
+        and not _is_below(key, unread)
     }
     return [f"{key}: no stage that this config asks for reads it" for key in unread] + [
         f"{key}: {reason}" for key, reason in off.items()
@@ -43,8 +50,8 @@ def idle_keys(given: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) 
 
 def _keys_read(case: Case) -> Iterator[str]:
     """Dotted keys that the stages of a plain run, those before them and their figures take."""
-    wanted = [name for name, stage in STAGES.items() if stage.asked is not None and stage.asked(case)]
-    for name in dict.fromkeys(before for stage in wanted for before in stages_before(stage, case.values)):
+    run = [name for name, stage in STAGES.items() if stage.asked is not None and stage.asked(case)]
+    for name in dict.fromkeys(before for stage in run for before in stages_before(stage, case.values)):
         if name in ONLY_DECIDES:
             continue
         for need in STAGES[name].needs.values():
@@ -61,22 +68,22 @@ def _keys(need: Need) -> tuple[str, ...]:
     return (need,) if isinstance(need, str) else need
 
 
-def _unread(given: Mapping[str, Any], read: set[str], above: str = "") -> Iterator[str]:
+def _unread(section: Mapping[str, Any], read: set[str], above: str = "") -> Iterator[str]:
     """Keys of a file that neither stand in a section that is read nor hold one; whole sections as one."""
-    for name, value in given.items():
+    for name, value in section.items():
         key = f"{above}{name}"
         parts = key.split(".")
         if any(".".join(parts[:depth]) in read for depth in range(1, len(parts) + 1)):
             continue
-        holds_read = any(one.startswith(f"{key}.") for one in read)
+        holds_read = any(longer.startswith(f"{key}.") for longer in read)
         if holds_read and isinstance(value, Mapping):
             yield from _unread(value, read, f"{key}.")
         elif not holds_read and value is not None:
             yield key
 
 
-def _is_given(given: Mapping[str, Any], key: str) -> bool:
-    inside: Any = given
+def _is_given(file_values: Mapping[str, Any], key: str) -> bool:
+    inside: Any = file_values
     for part in key.split("."):
         if not isinstance(inside, Mapping) or part not in inside:
             return False
@@ -103,8 +110,8 @@ def _switched_off(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         for key in ("phase_deg", "meaning"):
             yield f"transmission.transmission_error.{key}", "amplitude_um is 0"
     inputs = [pinion for pinion in machine["pinions"] if pinion["role"] == "input"]
-    unused = all(pinion["torque_n_m"] is not None for pinion in inputs)
-    if unused and machine["torque"]["per_input_n_m"] != 0.0:
+    has_no_reader = all(pinion["torque_n_m"] is not None for pinion in inputs)
+    if has_no_reader and machine["torque"]["per_input_n_m"] != 0.0:
         reason = "every input has a torque_n_m of its own" if inputs else "no pinion has the role input"
         yield "transmission.torque.per_input_n_m", reason
     for role in machine["shafts"]:

@@ -20,13 +20,15 @@ from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
 from facegear.plots.style import save
 from facegear.provenance.manifest import versions
-from facegear.report.missing import with_missing
+from facegear.report.omissions import with_omissions
 from facegear.results.base import StageOutput
 from facegear.results.chain import Chain
 from facegear.results.partial import PartialResults
 
 OnStage = Callable[[str, str], None]
 """Is called with the name of each stage and its summary as soon as it is known."""
+NOT_COMPUTED = "not computed"
+"""Beginning of the summary of a stage that failed."""
 PICTURE_ENDINGS = (".eps", ".jpg", ".pdf", ".png", ".svg", ".tif", ".webp")
 """Endings of the formats in which figures are written."""
 NOT_REPORTED = ("mesh", "mesh_law", "machine_code")
@@ -62,7 +64,7 @@ class WholeCase:
         with extras_named(), TemporaryDirectory() as folder:
             stages = [stage for stage in self._asked() if _is_reported(stage)]
             text = resumed._page(Path(folder), resumed._computable(stages))
-        text = with_missing(text, [f"{titles}: {reason}" for titles, reason in self.missing()])
+        text = with_omissions(text, [f"{titles}: {reason}" for titles, reason in self.missing()])
         with atomic_path(path) as temporary:
             temporary.write_text(text, encoding="utf-8")
         if not self.failures:
@@ -164,8 +166,9 @@ class WholeCase:
         return [stage for stage in stages if stage.name not in self.failures]
 
     def _note_failure(self, name: str, reason: str) -> None:
+        is_known = reason in self.failures.values()
         self.failures[name] = reason
-        self.on_stage(name, f"not computed: {reason}")
+        self.on_stage(name, f"{NOT_COMPUTED}: {'for the same reason' if is_known else reason}")
 
     def _output(self, stage: Stage) -> StageOutput:
         """What a stage gives; recorded the first time."""

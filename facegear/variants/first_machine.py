@@ -277,7 +277,6 @@ class Draft:
             positions=positions,
             kept=kept,
             points=points,
-            cycles=cycles,
             mesh_torque=f"{loads[1]:.4g}",
             duty_torque=f"{loads[1]:.4g}",
             pinions=_pinions(known),
@@ -290,9 +289,18 @@ class Draft:
             single_pinions=self._single_pinions(bearings),
             input_torque=f"{known.torque_n_m:.10g}",
             speed=f"{known.speed_rpm:.10g}",
+            load_sharing=self._load_sharing(cycles, points),
             slow=f"{max(SPEEDS[0] * known.speed_rpm, 1.0):.6g}",
             fast=f"{SPEEDS[1] * known.speed_rpm:.6g}",
         )
+
+    def _load_sharing(self, cycles: int, points: int) -> str:
+        """Section load_sharing; nothing for a machine of one mesh, which shares no load."""
+        if self.known.pinions + self.known.idlers == 1:
+            return ""
+        slow, fast = (factor * self.known.speed_rpm for factor in SPEEDS)
+        speeds = f"{{from_rpm: {max(slow, 1.0):.6g}, to_rpm: {fast:.6g}, points: {points}}}"
+        return f"load_sharing: {{cycles: {cycles}, speed_range: {speeds}}}"
 
     def _refinement(self, torque: float) -> int:
         """Cuts across the profile that resolve the contact at a torque, N m.

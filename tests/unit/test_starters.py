@@ -1,5 +1,11 @@
 """Starter machines are the same in every run, and the cheapest of them comes to its report."""
 
+import pytest
+
+from facegear.checking import check_config
+from facegear.config.load import load_config
+from facegear.config.yaml_file import read_yaml
+from facegear.variants.first_machine import first_machine
 from validation.starters import COUNT, draw_machines, run_all
 
 LIGHTEST = 18
@@ -17,3 +23,12 @@ def test_a_starter_machine_comes_to_its_report_with_nothing_missing():
     row = table.iloc[0]
     assert (row["outcome"], row["reason"]) == ("report", "")
     assert row["stages"] >= 10
+
+
+@pytest.mark.parametrize("known", [*draw_machines()][::6], ids=lambda known: known.case)
+def test_check_has_nothing_to_say_of_a_starter_machine(known, tmp_path):
+    path = tmp_path / "own.yaml"
+    path.write_text(first_machine(known).text)
+    result = check_config(load_config(path), read_yaml(path))
+    assert result.failures == ()
+    assert not [line for line in result.remarks if "without effect" in line or "would be usual" in line]
