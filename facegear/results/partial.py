@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 MANIFEST = "partial.provenance.json"
 """Record beside the files of a stage; it is written last."""
 COMMAND = "facegear report"
-"""What makes a damaged file again."""
+"""Command that makes a damaged file again."""
 
 
 @dataclass(frozen=True)
@@ -41,50 +41,83 @@ class PartialResults:
     def output(
         self, stages: list[str], key: str, compute: Callable[[], "Outcome"]
     ) -> tuple[Mapping[str, Any], str, bool]:
-        """Content and summary of a stage, and whether they were kept; computed and kept otherwise.
+        """Find what a stage gave, or compute and keep it.
 
-        `stages`: the stage and all before it; `key`: the part of the config that they depend on.
+        Parameters
+        ----------
+        stages : list of str
+            The stage and all before it.
+        key : str
+            The part of the config that they depend on, as text.
+        compute : callable
+            Computes the stage.
+
+        Returns
+        -------
+        content : mapping
+            Parts of the stage by name.
+        summary : str
+            Its line.
+        is_kept : bool
+            Whether it was kept.
         """
         name = stages[0]
-        files, place = STAGES[name].readable, self._place(stages, key)
+        files, subfolder = STAGES[name].readable, self._subfolder(stages, key)
         try:
-            content = {part: file.read(place / _name(part, file)) for part, file in files.items()}
-            return content, documents.read(place / MANIFEST, ["summary"])["summary"], True
+            content = {part: file.read(subfolder / _name(part, file)) for part, file in files.items()}
+            return content, documents.read(subfolder / MANIFEST, ["summary"])["summary"], True
         except CorruptFile:
             pass  # not kept, or not to its end
         start = time.perf_counter()
         outcome = compute()
         parts = {_name(part, file): outcome.content[part] for part, file in files.items()}
-        self._keep(place, name, parts, outcome.summary, start)
+        self._keep(subfolder, name, parts, outcome.summary, start)
         return outcome.content, outcome.summary, False
 
     def part(self, stages: list[str], key: str, file: File, compute: Callable[[], Any]) -> Any:
-        """The content of one file of a stage with wildcards, which `key` must hold."""
-        place, name = self._place(stages, key), _name("part", file)
+        """Find the content of one file of a stage with wildcards, or compute and keep it.
+
+        Parameters
+        ----------
+        stages : list of str
+            The stage and all before it.
+        key : str
+            The part of the config that they depend on, and the wildcards, as text.
+        file : File
+            The file.
+        compute : callable
+            Computes its content.
+
+        Returns
+        -------
+        Any
+            The content.
+        """
+        subfolder, name = self._subfolder(stages, key), _name("part", file)
         try:
-            return file.read(place / name)
+            return file.read(subfolder / name)
         except CorruptFile:
             pass
         start = time.perf_counter()
         content = compute()
-        self._keep(place, stages[0], {name: content}, "", start)
+        self._keep(subfolder, stages[0], {name: content}, "", start)
         return content
 
     def remove(self) -> None:
         """Remove what was kept."""
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def _place(self, stages: list[str], key: str) -> Path:
+    def _subfolder(self, stages: list[str], key: str) -> Path:
         codes = [stage_fingerprint(STAGES[stage].modules, ROOT) for stage in stages]
         digest = hashlib.sha256("\n".join([key, *codes]).encode()).hexdigest()
         return self.folder / f"{stages[0]}_{digest[:16]}"
 
-    def _keep(self, place: Path, name: str, parts: Mapping[str, Any], summary: str, start: float) -> None:
+    def _keep(self, subfolder: Path, name: str, parts: Mapping[str, Any], summary: str, start: float) -> None:
         for file, content in parts.items():
-            write_part(str(place / file), content)
+            write_part(str(subfolder / file), content)
         seconds = time.perf_counter() - start
-        paths = [place / file for file in parts]
-        write_manifest(place / MANIFEST, paths, [], {}, name, seconds, summary, COMMAND)
+        paths = [subfolder / file for file in parts]
+        write_manifest(subfolder / MANIFEST, paths, [], {}, name, seconds, summary, COMMAND)
 
 
 def _name(part: str, file: File) -> str:

@@ -65,9 +65,26 @@ class Study:
         return pd.concat(parts, ignore_index=True)
 
     def to_excel(self, path: str | Path, answer: str, **arguments: Any) -> Path:
-        """Write the table of an answer, with the changed keys in front, as a sheet of a workbook (.xlsx).
+        """Write the table of an answer, with the changed keys in front, as a sheet of a workbook.
 
-        Returns the path. Raises MissingExtra where openpyxl is not installed, and what `table` raises.
+        Parameters
+        ----------
+        path : str or Path
+            Workbook to write, which ends in ``.xlsx``.
+        answer : str
+            Method of a gearbox, such as ``modes``.
+        **arguments
+            Its arguments.
+
+        Returns
+        -------
+        Path
+            The workbook.
+
+        Raises
+        ------
+        MissingExtra
+            Where openpyxl is not installed.
         """
         from facegear.io.workbook import write
 

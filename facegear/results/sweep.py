@@ -33,7 +33,11 @@ class SweepResult(Result):
     def dataset(self) -> "xr.Dataset":
         """Every quantity (unit at the end of its name) over direction, speed_rpm and mesh or body.
 
-        `class` is the class of motion; a value that does not exist at a speed is NaN.
+        Returns
+        -------
+        xarray.Dataset
+            Quantities by name; `class` is the class of motion, and a value that does not exist at a speed is
+            NaN.
         """
         from facegear.results.sweep_dataset import sweep_dataset
 

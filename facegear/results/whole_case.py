@@ -60,26 +60,38 @@ class WholeCase:
         self.on_stage("report", self.outlook())
         partial = PartialResults(path.with_suffix(".partial"))
         store = replace(self.chain.store, partial=partial, failures={})
-        resumed = replace(self, chain=replace(self.chain, store=store))
+        going_on = replace(self, chain=replace(self.chain, store=store))
         with extras_named(), TemporaryDirectory() as folder:
             stages = [stage for stage in self._asked() if _is_reported(stage)]
-            text = resumed._page(Path(folder), resumed._computable(stages))
-        text = with_omissions(text, [f"{titles}: {reason}" for titles, reason in self.missing()])
+            text = going_on._page(Path(folder), going_on._computable(stages))
+        text = with_omissions(text, [f"{titles}: {reason}" for titles, reason in self.omissions()])
         with atomic_path(path) as temporary:
             temporary.write_text(text, encoding="utf-8")
         if not self.failures:
             partial.remove()
         return path
 
-    def missing(self) -> list[tuple[str, str]]:
-        """Titles of the stages that could not be computed, joined by commas, and the reason of each group."""
+    def omissions(self) -> list[tuple[str, str]]:
+        """List the stages that could not be computed, those with one reason together.
+
+        Returns
+        -------
+        list of tuple
+            Titles of stages, joined by commas, and the reason.
+        """
         by_reason: dict[str, list[str]] = {}
         for name, reason in self.failures.items():
             by_reason.setdefault(reason, []).append(STAGES[name].title)
         return [(", ".join(titles), reason) for reason, titles in by_reason.items()]
 
     def outlook(self) -> str:
-        """Number of stages that a report computes, and about how long they will take."""
+        """Say how many stages a report computes, and about how long they will take.
+
+        Returns
+        -------
+        str
+            Number of stages, and their processor time in s or min.
+        """
         return outlook_in_words(self.chain.case, [stage for stage in self._asked() if _is_reported(stage)])
 
     def write(self, folder: str | Path) -> Path:
@@ -232,8 +244,8 @@ class WholeCase:
                 raise
 
     def _part(self, stage: str, file: str) -> Any:
-        wanted = asked_for(stage, self.chain.case) and stage not in self.failures
-        return self.chain.part(stage, file) if wanted else None
+        is_there = asked_for(stage, self.chain.case) and stage not in self.failures
+        return self.chain.part(stage, file) if is_there else None
 
     def _view(self) -> Any:
         if (loads := self._part("contact", "pressure")) is None:

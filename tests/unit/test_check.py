@@ -116,7 +116,7 @@ def test_keys_without_effect_are_listed_and_no_others(text, keys, tmp_path):
 
 
 def test_no_shipped_config_lists_a_key_without_effect_but_one():
-    """Of unequal_inputs.yaml each input has its own torque, and the schema requires the common one."""
+    """Each input of unequal_inputs.yaml has its own torque, and the schema requires the common one."""
     lines = [line for path in SHIPPED for line in checked(path).remarks if "without effect" in line]
     assert lines in (
         [],
