@@ -5,7 +5,7 @@ BIN := .venv/bin
 LOCKED := $(BIN)/pip install --quiet --require-hashes -r
 PYTEST := $(BIN)/python -m pytest -n $(CORES) --dist loadgroup --max-worker-restart=0 # a crash ends the tests
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes pyproject.toml
-.PHONY: all env tools check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms mutation lock clean
+.PHONY: all env tools check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms starters mutation lock clean
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 env: .venv/run
@@ -48,8 +48,8 @@ ratios: check tools # processor time of the dear jobs against an earlier commit:
 	$(BIN)/python -m validation.ratios.run $(SINCE)
 verification: check tools # the table of what was checked against which reference
 	$(PYTEST) -m reference --references=validation/references.csv
-platforms: check tools # what moves on two threads and with lower levels of instructions
-	$(BIN)/python -m validation.platforms
+platforms starters: check tools # what moves on two threads and with lower levels of instructions; 20 machines of `facegear new`
+	$(BIN)/python -m validation.$@
 mutation: check tools # whether the tests notice mutants that survived before
 	$(BIN)/uv tool run --from cosmic-ray==8.7.0 python -m validation.mutation.run docs/measured/mutation.csv --survivors
 lock: tools

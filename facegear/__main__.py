@@ -15,6 +15,8 @@ from facegear.io.atomic import atomic_path, require_writable, require_writable_f
 from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
+INTERRUPTED = 130
+"""Exit code of a command that was stopped by Ctrl-C, as shells have it."""
 CONFIG = "config file (yaml)"
 
 
@@ -77,7 +79,9 @@ def parser() -> argparse.ArgumentParser:
     figures.add_argument("--results", default="results", help="folder of stored results to read (results)")
     figures.add_argument("--output", type=Path, help="folder to write to (figures/ of the case's results)")
     figures.set_defaults(command=_figures)
-    check = commands.add_parser("check", help="read and check a config, and compute nothing")
+    check = commands.add_parser(
+        "check", help="find mistakes, implausible values and what would fail later, in seconds"
+    )
     check.add_argument("config", type=Path, help=CONFIG)
     check.set_defaults(command=_check)
     limits = commands.add_parser("limits", help="between which radii the face of a gear may lie")
@@ -164,7 +168,7 @@ def _with_snakemake(given: argparse.Namespace) -> NoReturn:
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
     folder = Path(given.directory)
-    for inside in ("", ".snakemake", "results"):
+    for inside in () if given.dry_run else ("", ".snakemake", "results"):
         require_writable(folder / inside)
     os.execve(sys.executable, [*command, "--", *given.targets], _with_cache(folder.resolve()))
 
@@ -200,8 +204,19 @@ def _report(given: argparse.Namespace) -> int:
 
     gearbox = facegear.load(given.config, given.results)
     path = given.output or Path(f"{gearbox.config.case}.html")
-    print(gearbox.report(path, _printed))
-    return 0
+    failures: list[str] = []
+
+    def print_stage(stage: str, summary: str) -> None:
+        failures.extend([stage] * summary.startswith("not computed: "))
+        _printed(stage, summary)
+
+    try:
+        page = gearbox.report(path, print_stage)
+    except KeyboardInterrupt:
+        print("report: stopped; the same command goes on from here", file=sys.stderr)
+        return INTERRUPTED
+    print(page)
+    return 1 if failures else 0
 
 
 def _figures(given: argparse.Namespace) -> int:
@@ -213,8 +228,8 @@ def _figures(given: argparse.Namespace) -> int:
         folder = (gearbox.store.folder or Path(given.results) / gearbox.config.case) / "figures"
         if not given.png:
             raise FacegearError(f"figures: the svg in {folder} are those of the run: add --png or --output")
-    for path in gearbox.figures(folder, given.names, suffix, _printed):
-        print(path)
+    paths = gearbox.figures(folder, given.names, suffix, _printed)
+    print(paths[0] if len(paths) == 1 else f"{len(paths)} figures in {folder}")
     return 0
 
 
@@ -223,10 +238,19 @@ def _printed(stage: str, summary: str) -> None:
 
 
 def _check(given: argparse.Namespace) -> int:
-    from facegear.config.cases import expand_cases
+    """Exit code 1 where a run would fail."""
+    from facegear.checking import check_config
+    from facegear.config.yaml_file import read_yaml
 
-    cases = expand_cases(load_config(given.config))
-    print(f"{given.config}: no mistakes; {len(cases)} case{'s' * (len(cases) > 1)}: {', '.join(cases)}")
+    result = check_config(load_config(given.config), read_yaml(given.config))
+    for line in result.remarks:
+        print(line)
+    if result.failures:
+        for line in result.failures:
+            print(f"{given.config}: would fail later: {line}", file=sys.stderr)
+        return 1
+    count = len(result.cases)
+    print(f"{given.config}: no mistakes; {count} case{'s' * (count > 1)}: {', '.join(result.cases)}")
     return 0
 
 

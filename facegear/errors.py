@@ -93,6 +93,31 @@ def extras_named() -> Iterator[None]:
         raise MissingExtra(library, EXTRAS[library]) from error
 
 
+def file_path(value: object, what: str = "path") -> Path:
+    """Return a path from the argument of a user.
+
+    Parameters
+    ----------
+    value : object
+        The argument.
+    what : str
+        Name of the argument.
+
+    Returns
+    -------
+    Path
+        The path.
+
+    Raises
+    ------
+    FacegearError
+        For anything but text or a path, and for an empty text.
+    """
+    if not isinstance(value, str | Path) or not str(value):
+        raise FacegearError(f"{what} = {value!r}: must be the name of a file or folder")
+    return Path(value)
+
+
 def chosen(name: str, allowed: Sequence[str], what: str) -> str:
     """`name` if it is one of `allowed`; raises FacegearError with one line otherwise."""
     if name not in allowed:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from facegear.config.cases import changed_config, expand_cases
 from facegear.config.load import config_of, load_config, plain
 from facegear.config.model import Config, resolved
-from facegear.errors import ConfigError, extras_named
+from facegear.errors import ConfigError, FacegearError, chosen, extras_named, file_path
 from facegear.results.chain import Chain
 from facegear.results.store import Store, case_folder
 
@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     from facegear.stages.outcome import Outcome
     from facegear.transmission.machine import Machine
 
+ENDINGS = (".step", ".stp", ".stl", ".glb", ".fmu", ".rexs", ".csv")
+"""Endings of the files that `Gearbox.export` writes."""
 HOLDS = {"tolerances": "causes and what is asked of them", "search": "variables and objectives"}
 """Sections that a config may leave out, and what they say."""
 
@@ -71,8 +73,11 @@ def load(config: str | Path | Mapping[str, Any], results: str | Path | None = "r
     if isinstance(config, Mapping):
         read, folders = config_of(config), [Path()]
     else:
-        read, folders = load_config(config), [Path(), Path(config).resolve().parent.parent]
-    return Gearbox(read, Store(None if results is None else case_folder(folders, results, read.case)))
+        path = file_path(config, "config")
+        read, folders = load_config(path), [Path(), path.resolve().parent.parent]
+    if results is None:
+        return Gearbox(read, Store())
+    return Gearbox(read, Store(case_folder(folders, file_path(results, "results"), read.case)))
 
 
 @cache
@@ -128,6 +133,8 @@ class Gearbox:
         >>> stiffer.values["mesh_stiffness"]["mean_n_per_m"]
         500000000.0
         """
+        if not isinstance(changes, Mapping) or not all(isinstance(key, str) for key in changes):
+            raise FacegearError(f"changes = {changes!r}: must be a mapping of dotted config keys to values")
         return self._changed("with_values", changes)
 
     def geometry(self) -> "GeometryResult":
@@ -202,6 +209,9 @@ class Gearbox:
         with extras_named():
             from facegear.stages.displaced_contact import displaced_contact, loaded_displaced_contact
 
+        for body, moved in {"pinion": pinion, "face_gear": face_gear}.items():
+            if moved is not None and not isinstance(moved, Mapping):
+                raise FacegearError(f"{body} = {moved!r}: must be a mapping such as {{'x_um': 10}}")
         config, given = self.config, (dict(pinion or {}), dict(face_gear or {}))
         flanks = displaced_contact(config.tooth_pair, config.transmission, mesh, *given, position)
 
@@ -393,14 +403,14 @@ class Gearbox:
 
         >>> import facegear
         >>> found = facegear.example().sweep(1000, 1200, points=3, directions=["up"])
-        >>> found.table()["deflection_ac_rms_um"].dims
+        >>> found.dataset()["deflection_ac_rms_um"].dims
         ('direction', 'speed_rpm', 'mesh')
         """
         from facegear.results.sweep import SweepResult
 
         given = {"from_rpm": from_rpm, "to_rpm": to_rpm, "points": points, "directions": directions}
         changes = _given({f"dynamics.sweep.{key}": value for key, value in given.items()})
-        if points is not None and points < self._values["dynamics"]["sweep"]["chunks"]:
+        if isinstance(points, int) and points < self._values["dynamics"]["sweep"]["chunks"]:
             changes["dynamics.sweep.chunks"] = 1
         return self._changed("sweep", changes)._chain.result(SweepResult, threads=threads)
 
@@ -575,8 +585,29 @@ class Gearbox:
     def report(self, path: str | Path, on_stage: Callable[[str, str], None] | None = None) -> Path:
         """Write the report of all that the config asks for on one page that needs no other file.
 
-        `on_stage` is called with the name of each stage and its summary as soon as it is known. Returns the
-        path. Raises MissingExtra where a library of the report is not installed, and what the stages raise.
+        A stage that fails is named at the head of the page with its reason; all else is computed. Until the
+        page is complete, what is computed is kept beside it in a folder that ends in ``.partial``: a report
+        that was stopped goes on from there.
+
+        Parameters
+        ----------
+        path : str or Path
+            Page to write, which ends in ``.html``.
+        on_stage : callable, optional
+            Called with ``report`` and about how long it will take, and then with the name of each stage and
+            its summary, or ``not computed:`` and the reason, as soon as it is known.
+
+        Returns
+        -------
+        Path
+            The page.
+
+        Raises
+        ------
+        FacegearError
+            For a path that cannot be written.
+        MissingExtra
+            Where a library of the report is not installed.
         """
         return self._whole_case(on_stage).write_report(path)
 
@@ -652,18 +683,20 @@ class Gearbox:
         else and for what an FMU cannot hold, ConfigError for a pair without bodies and a config without a
         transmission.
         """
-        if Path(path).suffix == ".fmu":
+        path = file_path(path)
+        ending = chosen(path.suffix.lower(), ENDINGS, "ending of the path")
+        if ending == ".fmu":
             from facegear.exchange.fmu import write_fmu
 
             return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
-        if Path(path).suffix == ".glb":
-            return self._scene(Path(path))
-        if Path(path).suffix == ".csv":
+        if ending == ".glb":
+            return self._scene(path)
+        if ending == ".csv":
             from facegear.config.flank_table import write_nominal_points
 
             return write_nominal_points(path, self.config.tooth_pair)
-        if Path(path).suffix == ".rexs":
-            return self._gear_unit(Path(path))
+        if ending == ".rexs":
+            return self._gear_unit(path)
         with extras_named():
             from facegear.stages.cad import export
 
@@ -716,7 +749,6 @@ class Gearbox:
         Twelve times `samples` machines are computed. Raises ConfigError without a section `tolerances`,
         FacegearError for names that do not exist, or a limit exceeded without any deviation.
         """
-        from facegear.errors import chosen
         from facegear.scenarios.inverse import loosest
 
         given = self._required("tolerances")["causes"]

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from facegear.config.keys import config_error
+from facegear.config.plausibility import plausibility_notes, unit_suggestion
 from facegear.errors import ConfigError, ConfigErrors, InvalidInput
 
 
@@ -80,7 +81,27 @@ def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "co
         return model.model_validate_json(text)
     except ValidationError as error:
         lines = _lines(model, values, error.errors(include_url=False))
-        raise ConfigErrors(source, list(dict.fromkeys(lines))) from None
+        raise ConfigErrors(source, _with_likely_units(lines, values)) from None
+
+
+def _with_likely_units(lines: list[str], values: Mapping[str, Any]) -> list[str]:
+    """The lines, those that a wrong unit elsewhere may have caused with a note of that value.
+
+    A face width in m is refused because it is narrower than the gear's face, which alone says little.
+    """
+    notes = {note.partition(" = ")[0].partition("[")[0]: note for note in plausibility_notes(values)}
+    for key, note in notes.items():
+        if any(line.startswith(key) and "; is it in " in line for line in lines):
+            continue
+        section = ".".join(key.split(".")[:2]) + "."
+        about = [number for number, line in enumerate(lines) if key in line]
+        about += [number for number, line in enumerate(lines) if line.startswith(section)]
+        if not about:
+            continue
+        caused = about[0]
+        reason = note.partition(": ")[2] if lines[caused].startswith(key) else note
+        lines[caused] = f"{lines[caused]}; {reason}"
+    return lines
 
 
 def _refuse_value(value: object) -> NoReturn:
@@ -96,12 +117,36 @@ def _lines(model: type[Section], values: Mapping[str, Any], mistakes: list[Error
         for location, details in zip(locations, mistakes, strict=True)
         if details["type"] == "extra_forbidden"
     ]
-    return [
-        line
-        for location, details in zip(locations, mistakes, strict=True)
-        if (details["type"] != "missing" or location not in meant) and not _follows(details)
-        for line in _messages(model, details, location)
-    ]
+    lines: dict[str, list[str]] = {}
+    for location, details in zip(locations, mistakes, strict=True):
+        if details["type"] == "missing" and location in meant:
+            continue
+        if _follows(details) or _is_other_kind(location, details, locations):
+            continue
+        for line in _messages(model, details, location):
+            head, _, rule = line.partition(": must ")
+            lines.setdefault(head, []).append(rule)
+    return [_one_line(head, rules) for head, rules in lines.items()]
+
+
+def _one_line(head: str, rules: Sequence[str]) -> str:
+    """One line for a value, whatever number of rules it breaks or kinds of value are allowed."""
+    distinct = list(dict.fromkeys(rule for rule in rules if rule))
+    if not distinct:
+        return head
+    return f"{head}: must " + ", or ".join(
+        [distinct[0], *(rule.removeprefix("be ") for rule in distinct[1:])]
+    )
+
+
+def _is_other_kind(
+    location: list[int | str], details: ErrorDetails, locations: list[list[int | str]]
+) -> bool:
+    """Whether a mapping was given where text would do as well: its own keys are refused by name."""
+    if not isinstance(details["input"], Mapping) or details["type"] in ("refused", "missing"):
+        return False
+    depth = len(location)
+    return any(len(deeper) > depth and deeper[:depth] == location for deeper in locations)
 
 
 def _follows(details: ErrorDetails) -> bool:
@@ -129,9 +174,48 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
         count = details["ctx"][name]
         items = f"{words} {count} item{'s' * (count != 1)}"
         return [f"{key} = {_shown(details['input'])}: must have {items}, not {len(details['input'])}"]
-    message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
-    message = message.replace("should ", "must ", 1)
-    return [f"{key} = {_shown(details['input'])}: {message[:1].lower()}{message[1:]}"]
+    if kind in RULES:
+        rule = RULES[kind]
+    elif kind == "string_pattern_mismatch":
+        rule = NAME_RULE.get(details["ctx"]["pattern"], f"match {details['ctx']['pattern']}")
+    elif kind in ("string_too_short", "string_too_long"):
+        words, name = ("at least", "min_length") if kind == "string_too_short" else ("at most", "max_length")
+        count = details["ctx"][name]
+        rule = f"have {words} {count} character{'s' * (count != 1)}"
+    else:
+        message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
+        rule = message.replace("should ", "", 1) if message.startswith("should ") else message
+        rule += _likely_unit(key, details)
+    return [f"{key} = {_shown(details['input'])}: must {rule}"]
+
+
+NAME_RULE = {
+    r"^[a-z][a-z0-9_]{0,39}$": "be at most 40 lower-case letters, digits and underscores, "
+    "starting with a letter",
+    r"^[a-z][a-z0-9_]*$": "be lower-case letters, digits and underscores, starting with a letter",
+}
+"""Rules of names in words, by the patterns of the schema."""
+RULES = {
+    "string_type": "be text",
+    "int_type": "be a whole number",
+    "int_from_float": "be a whole number",
+    "bool_type": "be true or false",
+    "tuple_type": "be a list",
+    "list_type": "be a list",
+    "dict_type": "be a mapping of keys to values",
+    "model_type": "be a mapping of keys to values",
+    "model_attributes_type": "be a mapping of keys to values",
+}
+"""Rules in words by the kind of mistake, where the validation library speaks of its own types."""
+
+
+def _likely_unit(key: str, details: ErrorDetails) -> str:
+    """The unit that a number beyond a bound was likely given in, as the end of its line."""
+    value, bounds = details["input"], details.get("ctx", {})
+    if not isinstance(value, int | float):
+        return ""
+    low, high = bounds.get("ge", bounds.get("gt")), bounds.get("le", bounds.get("lt"))
+    return "" if low is None and high is None else unit_suggestion(key, value, low, high)
 
 
 RENAMED = {

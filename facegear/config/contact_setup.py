@@ -6,7 +6,7 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import Pair, ToothPair, pair
 from facegear.contact.options import ContactPlan
-from facegear.contact.resolution import along_the_ellipse
+from facegear.contact.resolution import along_the_ellipse, estimated_memory
 from facegear.mesh.sizes import MeshSizes
 
 
@@ -17,6 +17,11 @@ class ContactSetup:
     pair: Pair
     sizes: MeshSizes
     plan: ContactPlan
+
+    @property
+    def memory(self) -> float:
+        """Estimated bytes of the larger body's compliance."""
+        return estimated_memory(self.pair.design, self.sizes, self.plan)
 
 
 def contact_setup(tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> ContactSetup:

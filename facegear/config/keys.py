@@ -13,6 +13,8 @@ KEYS = {
     "torques of the contact analysis": "contact.torques_n_m",
     "modelled teeth of the pinion": "contact.sector.pinion_teeth",
     "modelled teeth of the face gear": "contact.sector.face_gear_teeth",
+    "rounding of the rack's tip": "tooth_pair.pinion.rack_tip_radius_modules",
+    "rounding of the shaper's tip": "tooth_pair.shaper.tip_rounding_modules",
     "gauges on the fillets": "contact.root_stress",
     "torque of the mesh stiffness": "mesh_stiffness.torque_n_m",
     "variation of the mesh stiffness": "mesh_stiffness.variation",

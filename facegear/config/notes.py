@@ -6,6 +6,7 @@ from typing import Any
 from facegear.config.buildable import preloads
 from facegear.config.checks import geometric_backlash
 from facegear.config.machine_layout import lumped_sections
+from facegear.config.plausibility import plausibility_notes
 from facegear.config.tooth_pair import ToothPair
 from facegear.geometry.design import BACKLASH_DIFFERS_UM
 
@@ -41,11 +42,12 @@ def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
     with a backlash other than that of the teeth, for preloads and external forces, for numbers that several
     causes move, for friction that samples and designs leave out of their motion, for friction of teeth as
-    assembled beside an operating pose, and for single teeth.
+    assembled beside an operating pose, for single teeth, and for values far from their usual size.
     """
     transmission = values["transmission"]
+    implausible = plausibility_notes(values)
     if transmission is None:
-        return []
+        return implausible
     own = values["reproduction"] is None and transmission["mesh_kinematics"] == "printed"
     return (
         [PRINTED] * own
@@ -57,6 +59,7 @@ def notes(values: Mapping[str, Any]) -> list[str]:
         + _without_friction(values)
         + [AS_ASSEMBLED] * (transmission["operating_pose"] == "static" and bool(values.get("lubrication")))
         + _single_teeth(values)
+        + implausible
     )
 
 

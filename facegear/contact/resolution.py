@@ -20,6 +20,8 @@ MAX_CUTS = 16
 ROUNDING = 1e-9
 DEEPEST = 2.0
 """Depth of the first row below a fillet over its smallest radius, with which root stress errs by some 6 %."""
+ROUNDINGS = {"pinion": "rounding of the rack's tip", "face_gear": "rounding of the shaper's tip"}
+"""What rounds the fillets of each gear."""
 MEMORY_ERROR = 1.2
 """Largest factor between the estimate of memory and what was measured."""
 
@@ -157,11 +159,13 @@ def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> Non
 
     Raises InvalidInput.
     """
-    radius = min(smallest_radius(design, body) for body in BODIES)
+    radii = {body: smallest_radius(design, body) for body in BODIES}
+    sharpest = min(radii, key=lambda body: radii[body])
+    radius = radii[sharpest]
     depth = sizes.fillet_depth or sizes.profile
     if plan.root_stress and depth > DEEPEST * radius:
         allowed = (
             f"at most {1e3 * DEEPEST * radius:.3g} mm, {DEEPEST:g} times the smallest radius of the fillets: "
-            "it is too coarse to resolve their stress"
+            f"it is too coarse to resolve their stress; a larger `{ROUNDINGS[sharpest]}` rounds them"
         )
         raise InvalidInput("element size", f"{1e3 * depth:.3g} mm below the fillets", allowed)

@@ -9,7 +9,7 @@ from zipfile import BadZipFile
 
 import pandas as pd
 
-from facegear.errors import FacegearError
+from facegear.errors import FacegearError, file_path
 from facegear.io.atomic import atomic_path
 from facegear.io.tables import NAMES
 
@@ -21,7 +21,7 @@ MAX_ROWS = 1_048_575
 
 def write(path: str | Path, tables: Mapping[str, pd.DataFrame]) -> Path:
     """Write each table to a sheet of its name. Raises FacegearError for what a workbook cannot hold."""
-    path = Path(path)
+    path = file_path(path)
     if path.suffix != ".xlsx":
         raise FacegearError(f"path = {str(path)!r}: must end in .xlsx")
     if not tables:

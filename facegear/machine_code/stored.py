@@ -131,9 +131,9 @@ class SourcesCache(_Cache):
 
 def _wait(name: str) -> FileLock | None:
     """The lock that one process may hold; None after PATIENCE and where nothing can be written."""
-    lock = FileLock(kept.folder() / f"{name}.lock", timeout=PATIENCE, poll_interval=0.02)
     with suppress(OSError, Timeout):
         kept.folder().mkdir(parents=True, exist_ok=True)
+        lock = FileLock(kept.folder() / f"{name}.lock", timeout=PATIENCE, poll_interval=0.02)
         lock.acquire()
         return lock
     return None

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 
 import pandas as pd
 
-from facegear.errors import extras_named
+from facegear.errors import extras_named, file_path
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.table import STAGES
 
@@ -28,6 +28,9 @@ class StageOutput:
 class Result:
     """One stage's results; `source` says whether they were computed now or stored by the workflow.
 
+    Its tables are pandas frames; the unit of a column stands at the end of its name (`_um`, `_n_per_m`), and
+    a column without one is a name, a count, a fraction or a ratio.
+
     - STAGE: name of the stage
     - BESIDE: parts that are shown with them, each from a file of another stage
     """
@@ -46,8 +49,8 @@ class Result:
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write the files that the workflow writes for this stage, below `folder`; returns their paths."""
-        stage = STAGES[self.STAGE]
-        paths = {name: str(Path(folder) / file.path) for name, file in stage.files.items()}
+        stage, folder = STAGES[self.STAGE], file_path(folder, "folder")
+        paths = {name: str(folder / file.path) for name, file in stage.files.items()}
         return write_stage(stage, self.content, paths)
 
     def to_excel(self, path: str | Path) -> Path:

@@ -17,7 +17,10 @@ class BranchLociResult(Result):
     STAGE: ClassVar = "branches_loci"
 
     def table(self) -> pd.DataFrame:
-        """One row a point: locus, kind, parameter and the factor on it, speed_rpm; `corner` at a cusp."""
+        """One row a point: locus, kind, parameter and the factor on it, speed_rpm; `corner` at a cusp.
+
+        Columns, among others: locus, kind, factor, speed_rpm, corner.
+        """
         return self.content["loci"].copy()
 
     @fit_for_paper

@@ -24,37 +24,63 @@ class BranchesResult(Result):
     BESIDE: ClassVar = {"sweep": ("dynamics_sweep", "sweep")}
 
     def table(self) -> pd.DataFrame:
-        """One row a branch, point and mesh: speed, stable or not, deflections, peak force, contact."""
+        """One row a branch, point and mesh: speed, stable or not, deflections, peak force, contact.
+
+        Columns, among others: branch, point, arc, speed_rpm, period, stable, mesh, deflection_ac_rms_um,
+        deflection_rms_um, deflection_minimum_um, deflection_maximum_um, peak_force_n, open_fraction,
+        drive_fraction, back_fraction.
+        """
         return self.content["branches"].copy()
 
     def images(self) -> pd.DataFrame:
-        """Return branch and image_of: the branches that are mirror images, and the followed ones they map."""
+        """Return branch and image_of: the branches that are mirror images, and the followed ones they map.
+
+        Columns, among others: branch, period, points, image_of, tried.
+        """
         ends = self.content["ends"]
         rows = ends[ends["image_of"].astype(str) != ""]
         return rows[["branch", "image_of"]].astype(int).reset_index(drop=True)
 
     def special_points(self) -> pd.DataFrame:
-        """One row a fold, period doubling, Neimark-Sacker point, branch point or graze, with its proof."""
+        """One row a fold, period doubling, Neimark-Sacker point, branch point or graze, with its proof.
+
+        Columns, among others: branch, period, kind, speed_rpm, arc, meshes, edge, proof.
+        """
         return self.content["special"].copy()
 
     def margins(self) -> pd.DataFrame:
-        """How far each stable motion at the nominal speed is from its end, in speed and in torque."""
+        """How far each stable motion at the nominal speed is from its end, in speed and in torque.
+
+        Columns, among others: branch, parameter, margin.
+        """
         return self.content["margins"].copy()
 
     def ranges(self) -> pd.DataFrame:
-        """Speeds between which several stable motions exist."""
+        """Speeds between which several stable motions exist.
+
+        Columns, among others: from_rpm, to_rpm, branches.
+        """
         return self.content["ranges"].copy()
 
     def coexistence(self) -> pd.DataFrame:
-        """Fraction of random starts that ends on each motion, with its standard error."""
+        """Fraction of random starts that ends on each motion, with its standard error.
+
+        Columns, among others: speed_rpm, fraction, error, branch, motion.
+        """
         return self.content["coexistence"].copy()
 
     def jumps(self) -> pd.DataFrame:
-        """Each jump of the sweep with the special point that its motion runs into, or why there is none."""
+        """Each jump of the sweep with the special point that its motion runs into, or why there is none.
+
+        Columns, among others: direction, speed_before_rpm, speed_after_rpm, class_before, branch, kind, note.
+        """
         return self.content["jumps"].copy()
 
     def swept(self) -> pd.DataFrame:
-        """Each periodic motion of the sweep with the branch it lies on, or why it lies on none."""
+        """Each periodic motion of the sweep with the branch it lies on, or why it lies on none.
+
+        Columns, among others: direction, period, branch, note.
+        """
         return self.content["swept"].copy()
 
     @fit_for_paper

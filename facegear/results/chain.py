@@ -1,7 +1,7 @@
 """The stages one after the other in one process: each finds or computes what it needs of those before it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -84,10 +84,10 @@ class Chain:
             return self
         folder = self.store.folder
         if folder is None:
-            return Chain(self.cases[case], Store(known=self.store.known))
+            return Chain(self.cases[case], replace(self.store, folder=None, others=()))
         folders = [folder / Path(name).relative_to(own) for name in self.cases if name != case]
         below = folder / Path(case).relative_to(own)
-        return Chain(self.cases[case], Store(below, self.store.known, tuple(folders)))
+        return Chain(self.cases[case], replace(self.store, folder=below, others=tuple(folders)))
 
 
 def _without_case(where: Wildcards) -> dict[str, str]:

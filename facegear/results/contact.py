@@ -21,13 +21,24 @@ class ContactResult(Result):
     STAGE: ClassVar = "contact"
 
     def table(self) -> pd.DataFrame:
-        """One row a torque and position; columns in docs/stages.md."""
+        """One row a torque and position; columns in docs/stages.md.
+
+        Columns: torque_n_m, position, ste_um, unloaded_ste_um, k_average_n_per_m, k_local_n_per_m,
+        pairs_in_contact, load_share_pair_m2, load_share_pair_m1, load_share_pair_0, load_share_pair_p1,
+        load_share_pair_p2, pressure_mpa, pressure_error_mpa, tip_line_load_n_per_mm, tip_length_mm,
+        fillet_share, interference_um, kkt_residual, torque_residual.
+        """
         return self.content["ltca"].copy()
 
     def by_torque(self) -> pd.DataFrame:
         """One row a torque: stiffness, peak-to-peak transmission error, pressure, radius of the contact path.
 
         Peak-to-peak values are those of the positions solved, and so a lower bound of the true ones.
+
+        Columns: torque_n_m, positions, k_average_mean_n_per_m, k_average_min_n_per_m,
+        k_average_max_n_per_m, k_local_mean_n_per_m, ste_peak_to_peak_um, ste_peak_to_peak_half_um,
+        unloaded_peak_to_peak_um, pairs_min, pairs_max, pressure_mpa, pressure_error_mpa,
+        tip_line_load_n_per_mm, tip_length_mm, fillet_share, interference_um, path_radius_mm.
         """
         return self.content["by_torque"].copy()
 
@@ -47,6 +58,12 @@ class ContactResult(Result):
         """`by_torque` for drive and back flank of the upper and the lower gear, with the errors of each.
 
         They differ where `tooth_pair.assembly` gives errors, which hold for the upper gear's drive flank.
+
+        Columns: gear, flank, offset_um, shaft_angle_error_deg, axial_shift_um, torque_n_m, positions,
+        k_average_mean_n_per_m, k_average_min_n_per_m, k_average_max_n_per_m, k_local_mean_n_per_m,
+        ste_peak_to_peak_um, ste_peak_to_peak_half_um, unloaded_peak_to_peak_um, pairs_min, pairs_max,
+        pressure_mpa, pressure_error_mpa, tip_line_load_n_per_mm, tip_length_mm, fillet_share,
+        interference_um, path_radius_mm.
         """
         return self.content["by_flank"].copy()
 

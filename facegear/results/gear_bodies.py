@@ -17,7 +17,13 @@ class GearBodiesResult(Result):
     STAGE: ClassVar = "gear_bodies"
 
     def table(self) -> pd.DataFrame:
-        """One row a mode: gear, nodal diameters, frequency at rest, waves in space, resonant speeds."""
+        """One row a mode: gear, nodal diameters, frequency at rest, waves in space, resonant speeds.
+
+        Columns: gear, nodal_diameters, mode, frequency_hz, round_fraction, gyroscopic_factor,
+        stiffening_factor, damping_ratio, hub_axial_sqrt_kg, hub_spin_sqrt_kg_m, hub_sideways_sqrt_kg,
+        hub_tilt_sqrt_kg_m, speed_rpm, forward_hz, backward_hz, forward_met_rpm, backward_met_rpm,
+        frequency_change.
+        """
         return self.content["modes"].copy()
 
     def coefficients(self) -> pd.DataFrame:
@@ -45,19 +51,33 @@ class GearBodiesResult(Result):
         return modes[[*columns, "stiffening_factor", "damping_ratio", *couplings]].copy()
 
     def bodies(self) -> pd.DataFrame:
-        """One row a gear: mass and inertia of its section, compliance at a mesh, numerical error."""
+        """One row a gear: mass and inertia of its section, compliance at a mesh, numerical error.
+
+        Columns: gear, mass_kg, inertia_kg_m2, diametral_inertia_kg_m2, elements, coordinates,
+        own_compliance_m_per_n, modal_fraction, left_out_between_flanks_m_per_n,
+        left_out_between_meshes_m_per_n, frequency_change.
+        """
         return self.content["bodies"].copy()
 
     def crossings(self) -> pd.DataFrame:
-        """One row a speed at which a mesh harmonic meets a wave, with how the meshes' phases add up."""
+        """One row a speed at which a mesh harmonic meets a wave, with how the meshes' phases add up.
+
+        Columns: gear, nodal_diameters, mode, wave, harmonic, speed_rpm, frequency_hz, phase_factor.
+        """
         return self.content["crossings"].copy()
 
     def compliance(self) -> pd.DataFrame:
-        """One row a gear and order: motions below a mesh by unit forces."""
+        """One row a gear and order: motions below a mesh by unit forces.
+
+        Columns: gear, order, axial_m_per_n, round_m_per_n, axial_round_m_per_n.
+        """
         return self.content["compliance"].copy()
 
     def influence(self) -> pd.DataFrame:
-        """One row for two flanks of a gear: motion of the first against its force, by 1 N on the second."""
+        """One row for two flanks of a gear: motion of the first against its force, by 1 N on the second.
+
+        Columns: gear, first, first_flank, second, second_flank, compliance_m_per_n.
+        """
         return self.content["influence"].copy()
 
     @fit_for_paper

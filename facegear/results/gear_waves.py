@@ -17,15 +17,24 @@ class GearWavesResult(Result):
     STAGE: ClassVar = "gear_waves"
 
     def table(self) -> pd.DataFrame:
-        """One row a mode, gear and nodal diameters: frequency, damping, energy, how much travels forward."""
+        """One row a mode, gear and nodal diameters: frequency, damping, energy, how much travels forward.
+
+        Columns, among others: order, frequency_hz, damping_ratio.
+        """
         return self.content["waves"].copy()
 
     def campbell(self) -> pd.DataFrame:
-        """One row a speed and mode: frequency, damping, the waves with most of its energy, and its line."""
+        """One row a speed and mode: frequency, damping, the waves with most of its energy, and its line.
+
+        Columns, among others: speed_rpm, line, frequency_hz.
+        """
         return self.content["campbell"].copy()
 
     def crossings(self) -> pd.DataFrame:
-        """One row a speed at which a mesh harmonic meets a mode, with how the meshes' phases add up."""
+        """One row a speed at which a mesh harmonic meets a mode, with how the meshes' phases add up.
+
+        Columns, among others: line, speed_rpm, phase_factor.
+        """
         return self.content["campbell_crossings"].copy()
 
     @fit_for_paper

@@ -18,19 +18,33 @@ class HuntingResult(Result):
     STAGE: ClassVar = "hunting"
 
     def table(self) -> pd.DataFrame:
-        """One row a group: loads of its meshes and K_gamma, the largest over the nominal even share."""
+        """One row a group: loads of its meshes and K_gamma, the largest over the nominal even share.
+
+        Columns: group, kind, mean, least, largest, k_gamma, group_ratio, undefined_fraction, torque_n_m,
+        mesh_cycles, kkt_residual.
+        """
         return self.content["groups"].copy()
 
     def meshes(self) -> pd.DataFrame:
-        """One row a mesh: loads (N), K_gamma, fractions of the cycle on each flank, open and wedged."""
+        """One row a mesh: loads (N), K_gamma, fractions of the cycle on each flank, open and wedged.
+
+        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, group_ratio,
+        drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
+        """
         return self.content["meshes"].copy()
 
     def bearings(self) -> pd.DataFrame:
-        """One row a body: force on its bearing (N)."""
+        """One row a body: force on its bearing (N).
+
+        Columns: body, mean_x_n, mean_y_n, mean_z_n, mean_radial_n, largest_radial_n, largest_axial_n.
+        """
         return self.content["bearings"].copy()
 
     def cycles(self) -> pd.DataFrame:
-        """One row a mesh cycle: share of each mesh in its group's load."""
+        """One row a mesh cycle: share of each mesh in its group's load.
+
+        Columns: cycle, and one of each mesh, such as `input 1/upper`, N.
+        """
         return self.content["cycles"].copy()
 
     @fit_for_paper
@@ -47,11 +61,17 @@ class SensitivityResult(Result):
     STAGE: ClassVar = "hunting"
 
     def table(self) -> pd.DataFrame:
-        """One row an error and group, largest first: change of K_gamma per um."""
+        """One row an error and group, largest first: change of K_gamma per um.
+
+        Columns: error, group, per_um.
+        """
         return self.content["sensitivity"].copy()
 
     def bearing_stiffness(self) -> pd.DataFrame:
-        """K_gamma against the bearing stiffness of the pinions of each role."""
+        """K_gamma against the bearing stiffness of the pinions of each role.
+
+        Columns: kinematics, varied, stiffness_n_per_m, kind, k_gamma.
+        """
         return self.content["scan"].copy()
 
     @fit_for_paper
@@ -68,11 +88,19 @@ class FollowingResult(Result):
     STAGE: ClassVar = "following"
 
     def table(self) -> pd.DataFrame:
-        """One row a group: K_gamma and K_v of the running machine beside K_gamma at rest."""
+        """One row a group: K_gamma and K_v of the running machine beside K_gamma at rest.
+
+        Columns: group, kind, speed_rpm, mesh_cycles, mean, torque_n_m, k_gamma, k_v, k_gamma_static,
+        k_gamma_static_whole, cut, sampling, lead_cycles, memory.
+        """
         return self.content["groups"].copy()
 
     def meshes(self) -> pd.DataFrame:
-        """One row a mesh: loads (N), K_gamma and K_v."""
+        """One row a mesh: loads (N), K_gamma and K_v.
+
+        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, k_v,
+        group_ratio, drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
+        """
         return self.content["meshes"].copy()
 
 

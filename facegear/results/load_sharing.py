@@ -21,11 +21,20 @@ class LoadSharingResult(Result):
     STAGE: ClassVar = "load_sharing"
 
     def table(self) -> pd.DataFrame:
-        """One row a group: mean and its half_width, extremes, lost contact, class of motion."""
+        """One row a group: mean and its half_width, extremes, lost contact, class of motion.
+
+        Columns: group, kind, mean, half_width, minimum, maximum, cycle_minimum, cycle_low, cycle_high,
+        lost_fraction, undefined_fraction, motion, cycles, starts_low, starts_high, motions_from_starts,
+        periodic.
+        """
         return self.content["summary"].copy()
 
     def curve(self) -> pd.DataFrame:
-        """Coefficient of every group over one mesh cycle, with the envelope over all cycles."""
+        """Coefficient of every group over one mesh cycle, with the envelope over all cycles.
+
+        Columns: group, kind, cycle_fraction, time_s, coefficient, envelope_low, envelope_high,
+        lost_fraction.
+        """
         return self.content["curve"].copy()
 
     @fit_for_paper

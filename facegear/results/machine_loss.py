@@ -17,15 +17,28 @@ class MachineLossResult(Result):
     STAGE: ClassVar = "machine_loss"
 
     def table(self) -> pd.DataFrame:
-        """A row a bin, 0 being the nominal load at rest and -1 the whole duty cycle: loss and efficiency."""
+        """A row a bin, 0 being the nominal load at rest and -1 the whole duty cycle: loss and efficiency.
+
+        Columns: bin, hours, speed_rpm, power_in_w, power_through_meshes, loss_w, loss_percent, efficiency,
+        energy_lost_kwh, within_torques_solved.
+        """
         return self.content["machine"].copy()
 
     def meshes(self) -> pd.DataFrame:
-        """A row a bin and loaded flank: power, loss, temperatures, safety, film."""
+        """A row a bin and loaded flank: power, loss, temperatures, safety, film.
+
+        Columns: bin, speed_rpm, mesh, flank, pinion_torque_n_m, largest_torque_n_m, power_w, loss_w,
+        loss_percent, loss_in_motion_w, pinion_heat_w, face_gear_heat_w, pinion_bulk_c, face_gear_bulk_c,
+        largest_flash_k, contact_temperature_c, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
+        smallest_micropitting_film_ratio, micropitting_safety, within_torques_solved.
+        """
         return self.content["meshes"].copy()
 
     def bodies(self) -> pd.DataFrame:
-        """A row a bin and body: heat and bulk temperature."""
+        """A row a bin and body: heat and bulk temperature.
+
+        Columns: bin, speed_rpm, body, heat_w, bulk_c.
+        """
         return self.content["bodies"].copy()
 
     @fit_for_paper

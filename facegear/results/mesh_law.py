@@ -14,7 +14,11 @@ class MeshLawResult(Result):
     STAGE: ClassVar = "mesh_law"
 
     def table(self) -> pd.DataFrame:
-        """Mean force and slope at every level, with the error of the table against contact between levels."""
+        """Mean force and slope at every level, with the error of the table against contact between levels.
+
+        Columns: gear, flank, deflection_um, torque_n_m, force_n, slope_n_per_m, table_rms_percent,
+        table_largest_percent.
+        """
         return self.content["levels"].copy()
 
     def arrays(self) -> dict[str, AnyArray]:

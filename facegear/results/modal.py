@@ -17,15 +17,24 @@ class ModesResult(Result):
     STAGE: ClassVar = "modal"
 
     def table(self) -> pd.DataFrame:
-        """One row a mode: order, frequency_hz, what moves (symbols), class."""
+        """One row a mode: order, frequency_hz, what moves (symbols), class.
+
+        Columns: order, frequency_hz, multiplicity, symbols, class, pinion_energy_fraction, decided.
+        """
         return self.content["frequencies"].copy()
 
     def shapes(self) -> pd.DataFrame:
-        """One row a mode, body and degree of freedom."""
+        """One row a mode, body and degree of freedom.
+
+        Columns: order, body, dof, amplitude_m_or_rad, relative.
+        """
         return self.content["shapes"].copy()
 
     def contacts(self) -> pd.DataFrame:
-        """One row a mesh and a bearing with clearance: state under load, force, stiffness and its kind."""
+        """One row a mesh and a bearing with clearance: state under load, force, stiffness and its kind.
+
+        Columns: contact, state, force_n, stiffness_n_per_m, definition.
+        """
         return self.content["contacts"].copy()
 
     @fit_for_paper

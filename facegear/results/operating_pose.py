@@ -16,17 +16,30 @@ class OperatingPoseResult(Result):
         """One row a mesh: force, pose, unloaded and loaded path, distance to the ends of the face.
 
         And what the pose alone changes of stiffness, transmission error, pressure and root stress, percent.
+
+        Columns, among others: force_n, force_as_assembled_n, torque_n_m, tangential_force_n, axial_force_n,
+        overturning_moment_n_m, offset_um, axial_shift_um, shaft_angle_error_deg, outward_um, closing_um,
+        unloaded_path_mm, to_inner_end_mm, to_outer_end_mm, stiffness_factor, mesh, flank.
         """
         return self.content["meshes"].copy()
 
     def loads(self) -> pd.DataFrame:
-        """One row a mesh and fraction of the torques: force, paths, stiffness over the machine's own."""
+        """One row a mesh and fraction of the torques: force, paths, stiffness over the machine's own.
+
+        Columns, among others: load_fraction, unloaded_path_mm, mesh, flank.
+        """
         return self.content["loads"].copy()
 
     def leaving(self) -> pd.DataFrame:
-        """One row a contact that leaves the face: mesh, fraction of the torques, end of the face, mm."""
+        """One row a contact that leaves the face: mesh, fraction of the torques, end of the face, mm.
+
+        Columns, among others: load_fraction, mesh, end.
+        """
         return self.content["leaving"].copy()
 
     def check(self) -> pd.DataFrame:
-        """The surface beside the contact solved directly, for the mesh that its pose changes most."""
+        """The surface beside the contact solved directly, for the mesh that its pose changes most.
+
+        Columns, among others: surface, direct, quantity.
+        """
         return self.content["check"].copy()

@@ -18,15 +18,29 @@ class RatingResult(Result):
     STAGE: ClassVar = "rating"
 
     def table(self) -> pd.DataFrame:
-        """A row a flank, failure and method: stress, safety, verdict and life (docs/strength.md)."""
+        """A row a flank, failure and method: stress, safety, verdict and life (docs/strength.md).
+
+        Columns: body, gear, flank, failure, method, stress_mpa, stress_error_mpa, allowed_mpa, cycles,
+        safety, required, verdict, reason, caveat, damage, life_hours, within_torques_solved.
+        """
         return self.content["rating"].copy()
 
     def safety(self) -> pd.DataFrame:
-        """A row a flank: safety against each failure, life, reliability, verdict."""
+        """A row a flank: safety against each failure, life, reliability, verdict.
+
+        Columns: body, flank, verdict, bending_safety, standard_bending_safety, pitting_safety,
+        standard_pitting_safety, edge_line_load_n_per_mm, edge_length_mm, life_hours, nearest_limit, reason,
+        caveat, within_torques_solved, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
+        micropitting_safety.
+        """
         return self.content["safety"].copy()
 
     def damage(self) -> pd.DataFrame:
-        """Stress, cycles and damage of each bin of the duty cycle."""
+        """Stress, cycles and damage of each bin of the duty cycle.
+
+        Columns: body, gear, flank, failure, method, bin, torque_n_m, speed_rpm, hours, stress_mpa, cycles,
+        damage, within_torques_solved.
+        """
         return self.content["damage"].copy()
 
     @fit_for_paper

@@ -17,15 +17,24 @@ class ResponseResult(Result):
     STAGE: ClassVar = "dynamics_response"
 
     def table(self) -> pd.DataFrame:
-        """The numbers that a sweep keeps: quantity (unit at its end), body_or_mesh, value, class."""
+        """The numbers that a sweep keeps: quantity (unit at its end), body_or_mesh, value, class.
+
+        Columns: speed_rpm, quantity, body_or_mesh, value, class, periodic, symmetry_broken.
+        """
         return self.content["summary"].copy()
 
     def history(self) -> pd.DataFrame:
-        """Deflection (um) and elastic force (N) of every mesh over at most 32 mesh periods."""
+        """Deflection (um) and elastic force (N) of every mesh over at most 32 mesh periods.
+
+        Columns: mesh_cycle, time_s, mesh, deflection_um, elastic_force_n.
+        """
         return self.content["response"].copy()
 
     def bearings(self) -> pd.DataFrame:
-        """Force of every body on its bearing (N) along x, y, z and radially: at rest, mean, RMS, peak."""
+        """Force of every body on its bearing (N) along x, y, z and radially: at rest, mean, RMS, peak.
+
+        Columns: body, direction, static_n, mean_n, rms_n, ac_rms_n, ac_rms_interval_n, peak_n, class.
+        """
         return self.content["bearings"].copy()
 
     @fit_for_paper

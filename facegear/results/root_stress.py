@@ -20,13 +20,20 @@ class RootStressResult(Result):
     STAGE: ClassVar = "root_stress"
 
     def table(self) -> pd.DataFrame:
-        """Peak of each fillet with its place, a row a torque, body and fillet (docs/strength.md)."""
+        """Peak of each fillet with its place, a row a torque, body and fillet (docs/strength.md).
+
+        Columns: torque_n_m, body, fillet, largest_mpa, largest_error_mpa, passage, radius_mm, tangent_deg,
+        at_30_deg_mpa, smallest_mpa.
+        """
         return self.content["summary"].copy()
 
     def by_flank(self) -> pd.DataFrame:
         """`table` for the drive and the back flank of the upper and the lower gear.
 
         They differ where `tooth_pair.assembly` gives errors, which hold for the upper gear's drive flank.
+
+        Columns: gear, flank, torque_n_m, body, fillet, largest_mpa, largest_error_mpa, passage, radius_mm,
+        tangent_deg, at_30_deg_mpa, smallest_mpa.
         """
         return self.content["by_flank"].copy()
 

@@ -32,7 +32,10 @@ class SearchResult(Result):
         return self.content["designs"].copy()
 
     def hypervolume(self) -> pd.DataFrame:
-        """Share of the box of all fronts that each seed has covered, by generation."""
+        """Share of the box of all fronts that each seed has covered, by generation.
+
+        Columns, among others: hypervolume.
+        """
         return self.content["hypervolume"].copy()
 
     @fit_for_paper

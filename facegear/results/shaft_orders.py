@@ -18,11 +18,17 @@ class ShaftOrdersResult(Result):
     STAGE: ClassVar = "shaft_orders"
 
     def table(self) -> pd.DataFrame:
-        """One row an order of a gear's turns and mesh: frequency, error, force running and turned slowly."""
+        """One row an order of a gear's turns and mesh: frequency, error, force running and turned slowly.
+
+        Columns: turning, order, of_mesh, frequency_hz, mesh, error_um, force_n, force_at_rest_n.
+        """
         return self.content["orders"].copy()
 
     def over_speed(self) -> pd.DataFrame:
-        """One row a speed and one of the largest orders: the mesh with the largest force."""
+        """One row a speed and one of the largest orders: the mesh with the largest force.
+
+        Columns: speed_rpm, turning, order, of_mesh, frequency_hz, mesh, force_n.
+        """
         return self.content["over_speed"].copy()
 
     @fit_for_paper

@@ -18,23 +18,40 @@ class ShaftsResult(Result):
     STAGE: ClassVar = "shafts"
 
     def table(self) -> pd.DataFrame:
-        """One row a pinion with a shaft: stiffness without moments, displacement and slope under load."""
+        """One row a pinion with a shaft: stiffness without moments, displacement and slope under load.
+
+        Columns: pinion, stiffness_x_n_per_m, stiffness_y_n_per_m, stiffness_z_n_per_m, x_um, y_um, z_um,
+        tilt_x_urad, tilt_y_urad.
+        """
         return self.content["seats"].copy()
 
     def stiffness(self) -> pd.DataFrame:
-        """Five rows a pinion with a shaft: its stiffness in x, y, z, tilt_x, tilt_y."""
+        """Five rows a pinion with a shaft: its stiffness in x, y, z, tilt_x, tilt_y.
+
+        Columns: pinion, motion, x, y, z, tilt_x, tilt_y.
+        """
         return self.content["stiffness"].copy()
 
     def bearings(self) -> pd.DataFrame:
-        """One row a bearing of a shaft: its forces and moments."""
+        """One row a bearing of a shaft: its forces and moments.
+
+        Columns: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
+        """
         return self.content["bearings"].copy()
 
     def torsion(self) -> pd.DataFrame:
-        """One row a turning mass: its spring, twist under load, natural frequencies of its chain."""
+        """One row a turning mass: its spring, twist under load, natural frequencies of its chain.
+
+        Columns: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m, twist_deg, windup_deg,
+        frequency_hz.
+        """
         return self.content["torsion"].copy()
 
     def deflections(self) -> pd.DataFrame:
-        """Rows along each shaft: at_mm from its inner end, displacements x_um and y_um under load."""
+        """Rows along each shaft: at_mm from its inner end, displacements x_um and y_um under load.
+
+        Columns: pinion, at_mm, x_um, y_um.
+        """
         return self.content["deflections"].copy()
 
     @fit_for_paper

@@ -13,13 +13,22 @@ class StaticsResult(Result):
     STAGE: ClassVar = "ratings"
 
     def table(self) -> pd.DataFrame:
-        """One row a mesh: flank, force_n (negative on the back flank), pinion_torque_n_m, power_kw."""
+        """One row a mesh: flank, force_n (negative on the back flank), pinion_torque_n_m, power_kw.
+
+        Columns: mesh, flank, force_n, pinion_torque_n_m, power_kw.
+        """
         return self.content["meshes"].copy()
 
     def bodies(self) -> pd.DataFrame:
-        """One row a body: role, torque_n_m, speed_rpm, power_kw (positive: brought in)."""
+        """One row a body: role, torque_n_m, speed_rpm, power_kw (positive: brought in).
+
+        Columns: body, role, torque_n_m, speed_rpm, power_kw, share_of_input_percent.
+        """
         return self.content["bodies"].copy()
 
     def numbers(self) -> pd.DataFrame:
-        """Gear ratio, speeds, mesh frequency, power in and out, and by how much they differ."""
+        """Gear ratio, speeds, mesh frequency, power in and out, and by how much they differ.
+
+        Columns: quantity, value.
+        """
         return self.content["ratings"].copy()

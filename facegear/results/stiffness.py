@@ -22,11 +22,18 @@ class StiffnessResult(Result):
     def table(self) -> pd.DataFrame:
         """Orders kept of k = sum of sin_n_per_m sin(j w t) + cos_n_per_m cos(j w t), with the errors of
         cutting and sampling.
+
+        Columns: order, sin_n_per_m, cos_n_per_m, amplitude_n_per_m, truncation_error_n_per_m,
+        sampling_error_n_per_m, e_sin_um, e_cos_um, e_peak_to_peak_um, e_truncation_error_um,
+        mean_average_n_per_m, mean_local_n_per_m.
         """
         return self.content["harmonics"].copy()
 
     def curve(self) -> pd.DataFrame:
-        """k over a pitch and the series kept of it, N/m."""
+        """k over a pitch and the series kept of it, N/m.
+
+        Columns: position, k_n_per_m, k_series_n_per_m.
+        """
         return self.content["tvms"].copy()
 
     def over_angle(self, points: int = 64) -> pd.DataFrame:

@@ -9,13 +9,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from facegear.errors import CorruptFile, extras_named
+from facegear.errors import CorruptFile, FacegearError, extras_named
 from facegear.pipeline.needs import stage_needs, stages_before
 from facegear.pipeline.stage import Wildcards
 from facegear.pipeline.table import STAGES
 from facegear.results.base import StageOutput
 
 if TYPE_CHECKING:
+    from facegear.results.partial import PartialResults
     from facegear.stages.outcome import Outcome
 
 Value = TypeVar("Value")
@@ -28,13 +29,16 @@ class Store:
     """Results by the part of the config that they depend on; `values` are those of a whole config.
 
     `folder` is that of the case in the workflow's results, None to read nothing; `others` are folders of
-    cases of the same config, with which this case may share files. Changed copies of a machine share a store:
-    what a change does not touch is found again.
+    cases of the same config, with which this case may share files. `partial` keeps what is computed for a
+    report, None to keep nothing; `failures` keeps errors, so that no stage fails twice. Changed copies of a
+    machine share a store: what a change does not touch is found again.
     """
 
     folder: Path | None = None
     known: dict[str, Any] = field(default_factory=dict)
     others: tuple[Path, ...] = ()
+    partial: "PartialResults | None" = None
+    failures: dict[str, FacegearError] | None = None
 
     @property
     def folders(self) -> tuple[Path, ...]:
@@ -49,6 +53,10 @@ class Store:
                 stored = self._stored(name, values, folder)
                 if stored is not None:
                     return stored
+            if self.partial is not None:
+                stages, key = stages_before(name, values), self._key(name, (), values)
+                content, summary, is_kept = self.partial.output(stages, key, compute)
+                return StageOutput(content, summary, "stored" if is_kept else "computed")
             outcome = compute()
             return StageOutput(outcome.content, outcome.summary, "computed")
 
@@ -66,18 +74,32 @@ class Store:
                     stored = _unless_corrupt(partial(kept.read, path))
                     if stored is not None:
                         return stored
+            if self.partial is not None:
+                key = self._key(name, (file, *wildcards.values()), values)
+                return self.partial.part(stages_before(name, values), key, kept, compute)
             return compute()
 
         return self._once(name, (file, *wildcards.values()), values, find)
 
     def _once(self, name: str, part: tuple[str, ...], values: Values, find: Callable[[], Value]) -> Value:
         """What `find` gives, kept under the part of the config that it depends on."""
-        needs = [stage_needs(stage, values) for stage in stages_before(name, values)]
-        key = json.dumps([name, part, needs])
+        key = self._key(name, part, values)
+        if self.failures is not None and key in self.failures:
+            raise self.failures[key]
         if key not in self.known:
-            with extras_named():
-                self.known[key] = find()
+            try:
+                with extras_named():
+                    self.known[key] = find()
+            except FacegearError as error:
+                if self.failures is not None:
+                    self.failures[key] = error
+                raise
         return self.known[key]
+
+    def _key(self, name: str, part: tuple[str, ...], values: Values) -> str:
+        """Everything of the config that a part of a stage depends on, as text."""
+        needs = [stage_needs(stage, values) for stage in stages_before(name, values)]
+        return json.dumps([name, part, needs])
 
     def _stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
         summary, files = "", STAGES[name].readable

@@ -2,15 +2,17 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from inspect import signature
 from itertools import combinations as pairs
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
 from facegear.config.load import plain
 from facegear.config.studies import common_key
-from facegear.errors import FacegearError
+from facegear.errors import FacegearError, extras_named
 from facegear.report.units import value_in_words
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
@@ -40,13 +42,14 @@ class Study:
 
         Raises FacegearError for an answer that there is not, and what the answer raises.
         """
-        asked = {label: getattr(machine, answer, None) for label, machine in self.machines.items()}
         results = {}
-        for label, ask in asked.items():
-            given = ask(**arguments) if callable(ask) and not answer.startswith("_") else None
-            if not isinstance(given, Result):
+        for label, machine in self.machines.items():
+            method = getattr(machine, answer, None) if isinstance(answer, str) else None
+            is_method = callable(method) and not answer.startswith("_")
+            result = _answer(method, answer, arguments) if is_method else None
+            if not isinstance(result, Result):
                 raise FacegearError(f"answer = {answer!r}: must be a method of a gearbox that gives a result")
-            results[label] = given
+            results[label] = result
         return results
 
     def table(self, answer: str, **arguments: Any) -> pd.DataFrame:
@@ -54,14 +57,22 @@ class Study:
         parts = []
         for label, result in self.results(answer, **arguments).items():
             part = result.table()  # type: ignore[attr-defined]
-            if not isinstance(part, pd.DataFrame):
-                part = part.to_dataframe().reset_index()
             values = {
                 key: str(value) if isinstance(value, list | dict) else value
                 for key, value in self.changes[label].items()
             }
             parts.append(pd.concat([pd.DataFrame(values, index=part.index), part], axis=1))
         return pd.concat(parts, ignore_index=True)
+
+    def to_excel(self, path: str | Path, answer: str, **arguments: Any) -> Path:
+        """Write the table of an answer, with the changed keys in front, as a sheet of a workbook (.xlsx).
+
+        Returns the path. Raises MissingExtra where openpyxl is not installed, and what `table` raises.
+        """
+        from facegear.io.workbook import write
+
+        with extras_named():
+            return write(path, {answer: self.table(answer, **arguments)})
 
     @fit_for_paper
     def plot(self, answer: str, plot: Mapping[str, Any] | None = None, **arguments: Any) -> "Figure":
@@ -100,17 +111,31 @@ def combined_label(changes: Mapping[str, Any]) -> str:
     return ", ".join(f"{key} = {value}" for key, value in changes.items())
 
 
+def _answer(method: Any, answer: str, arguments: Mapping[str, Any]) -> Any:
+    """Call a method of a gearbox. Raises FacegearError for arguments that it does not have."""
+    try:
+        signature(method).bind(**arguments)
+    except TypeError as error:
+        raise FacegearError(f"{answer}: {error}") from None
+    return method(**arguments)
+
+
 def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any]]:
     """Label -> keys and values, in every combination.
 
     Raises FacegearError for a key without values, and for a key that holds another.
     """
-    axes = {key: plain(list(given)) for key, given in values.items()}
-    for key, given in axes.items():
-        if not given:
+    if not isinstance(values, Mapping) or not values:
+        raise FacegearError(f"study = {values!r}: must be a mapping of config keys to lists of values")
+    for key, points in values.items():
+        if isinstance(points, str) or not isinstance(points, Iterable):
+            raise FacegearError(f"study: {key} = {points!r}: must be a list of values")
+    axes = {key: plain(list(points)) for key, points in values.items()}
+    for key, points in axes.items():
+        if not points:
             raise FacegearError(f"study: {key} = []: must hold at least one value")
     for first, second in pairs(axes, 2):
         if common_key([first], [second]):
             raise FacegearError(f"study: {second}: must not be set beside {first}, as one holds the other")
-    points = [dict(zip(axes, point, strict=True)) for point in product(*axes.values())]
-    return {combined_label(point): point for point in points}
+    combined = [dict(zip(axes, point, strict=True)) for point in product(*axes.values())]
+    return {combined_label(point): point for point in combined}

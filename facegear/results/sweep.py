@@ -22,7 +22,15 @@ class SweepResult(Result):
     STAGE: ClassVar = "dynamics_sweep"
     BESIDE: ClassVar = {"frequencies": ("modal", "frequencies")}
 
-    def table(self) -> "xr.Dataset":
+    def table(self) -> pd.DataFrame:
+        """Return every number of the sweep, one row each.
+
+        Columns: direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
+        symmetry_broken.
+        """
+        return self.content["sweep"].copy()
+
+    def dataset(self) -> "xr.Dataset":
         """Every quantity (unit at the end of its name) over direction, speed_rpm and mesh or body.
 
         `class` is the class of motion; a value that does not exist at a speed is NaN.
@@ -38,6 +46,11 @@ class SweepResult(Result):
         it belongs to. `kind` is `jump` where the motion before it ends or loses its stability, and `step`
         where the sweep left a stable motion because its own step was too large. The true speed of a jump lies
         in the bracket or at most `error_rpm` beside it.
+
+        Columns: direction, kind, speed_before_rpm, speed_after_rpm, error_rpm, mesh,
+        deflection_ac_rms_before_um, deflection_ac_rms_after_um, class_before, class_after,
+        leading_multiplier_before, resonance, resonance_rpm, energy_fraction, mode, order, periodic_before,
+        periodic_after, after_irregular, symmetry_broken.
         """
         jumps = self.content["jumps"]
         return jumps[jumps["kind"] != JumpKind.IRREGULAR].reset_index(drop=True)
@@ -51,7 +64,11 @@ class SweepResult(Result):
         return jumps[jumps["kind"] == JumpKind.IRREGULAR].reset_index(drop=True)
 
     def resonances(self) -> pd.DataFrame:
-        """One row a peak of the RMS without mean, with the mode it belongs to."""
+        """One row a peak of the RMS without mean, with the mode it belongs to.
+
+        Columns: direction, speed_rpm, quantity, body_or_mesh, value, class, resonance, resonance_rpm,
+        energy_fraction, mode, order, periodic, after_irregular, symmetry_broken.
+        """
         return self.content["resonances"].copy()
 
     @fit_for_paper

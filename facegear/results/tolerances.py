@@ -20,11 +20,17 @@ class LoadMapResult(Result):
     STAGE: ClassVar = "tolerances_map"
 
     def table(self) -> pd.DataFrame:
-        """One row a torque, speed, quantity and percentile: value, and the interval that holds it."""
+        """One row a torque, speed, quantity and percentile: value, and the interval that holds it.
+
+        Columns: torque_factor, speed_rpm, quantity, percentile, value, low, high, samples, failed.
+        """
         return self.content["load_map"].copy()
 
     def fractions(self) -> pd.DataFrame:
-        """One row a torque, speed and mishap: fraction of the machines that it meets, with its interval."""
+        """One row a torque, speed and mishap: fraction of the machines that it meets, with its interval.
+
+        Columns: torque_factor, speed_rpm, what, fraction, low, high, samples.
+        """
         return self.content["load_fractions"].copy()
 
     @fit_for_paper
@@ -41,7 +47,10 @@ class TolerancesResult(Result):
     STAGE: ClassVar = "tolerances"
 
     def table(self) -> pd.DataFrame:
-        """One row a quantity and percentile: value, and the confidence interval that holds it."""
+        """One row a quantity and percentile: value, and the confidence interval that holds it.
+
+        Columns: quantity, percentile, value, low, high, samples.
+        """
         return self.content["percentiles"].copy()
 
     def samples(self) -> pd.DataFrame:
@@ -49,7 +58,11 @@ class TolerancesResult(Result):
         return self.content["samples"].copy()
 
     def indices(self) -> pd.DataFrame:
-        """First-order and total Sobol index of every quantity and cause, with confidence intervals."""
+        """First-order and total Sobol index of every quantity and cause, with confidence intervals.
+
+        Columns: quantity, cause, first, first_low, first_high, total, total_low, total_high, blocks,
+        blocks_failed.
+        """
         return self.content["indices"].copy()
 
     @fit_for_paper

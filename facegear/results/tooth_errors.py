@@ -17,7 +17,10 @@ class ToothErrorsResult(Result):
     STAGE: ClassVar = "tooth_errors"
 
     def table(self) -> pd.DataFrame:
-        """One row an order of a gear's turns: amplitude (um) of the drive flank's transmission error."""
+        """One row an order of a gear's turns: amplitude (um) of the drive flank's transmission error.
+
+        Columns, among others: order, unloaded_um, loaded_um.
+        """
         return self.content["orders"].copy()
 
     @fit_for_paper

@@ -18,7 +18,10 @@ class TopographyResult(Result):
     STAGE: ClassVar = "topography"
 
     def table(self) -> pd.DataFrame:
-        """One row a place: face_mm and profile_mm, deviation (um), nominal point (mm) and normal."""
+        """One row a place: face_mm and profile_mm, deviation (um), nominal point (mm) and normal.
+
+        Columns: body, tooth, flank, face_mm, profile_mm, deviation_um, x_mm, y_mm, z_mm, nx, ny, nz.
+        """
         return self.content["points"].copy()
 
     @fit_for_paper

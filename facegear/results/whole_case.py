@@ -2,16 +2,17 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from facegear.config.arguments import typed_arguments
 from facegear.config.notes import notes
-from facegear.errors import FacegearError, extras_named
+from facegear.errors import FacegearError, MissingExtra, chosen, extras_named, file_path
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.pipeline.asked import machine_loads
+from facegear.pipeline.estimated_time import outlook_in_words
 from facegear.pipeline.needs import resolved_needs
 from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair, table_name
 from facegear.pipeline.run import write_stage
@@ -19,35 +20,65 @@ from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
 from facegear.plots.style import save
 from facegear.provenance.manifest import versions
+from facegear.report.missing import with_missing
 from facegear.results.base import StageOutput
 from facegear.results.chain import Chain
+from facegear.results.partial import PartialResults
 
 OnStage = Callable[[str, str], None]
 """Is called with the name of each stage and its summary as soon as it is known."""
+PICTURE_ENDINGS = (".eps", ".jpg", ".pdf", ".png", ".svg", ".tif", ".webp")
+"""Endings of the formats in which figures are written."""
 NOT_REPORTED = ("mesh", "mesh_law", "machine_code")
 """Stages whose files only other programs and stages read."""
 
 
 @dataclass(frozen=True, eq=False)
 class WholeCase:
-    """A case by its chain, which must know all cases of the config."""
+    """A case by its chain, which must know all cases of the config.
+
+    `failures`: reasons why stages could not be computed, by stage.
+    """
 
     chain: Chain
     on_stage: OnStage = lambda name, summary: None
     records: list[Mapping[str, Any]] = field(default_factory=list)
+    failures: dict[str, str] = field(default_factory=dict)
 
     def write_report(self, path: str | Path) -> Path:
-        """Write the report as one page that needs no other file; returns its path."""
-        path = Path(path)
+        """Write the report as one page that needs no other file; returns its path.
+
+        A stage that fails is named at the head of the page, with the reason. What is computed is kept beside
+        the page until it is complete, so that a report that was stopped goes on from there.
+        """
+        path = file_path(path)
         if path.suffix != ".html":
             raise FacegearError(f"{path}: must end in .html")
         require_writable_file(path)
+        self.on_stage("report", self.outlook())
+        partial = PartialResults(path.with_suffix(".partial"))
+        store = replace(self.chain.store, partial=partial, failures={})
+        resumed = replace(self, chain=replace(self.chain, store=store))
         with extras_named(), TemporaryDirectory() as folder:
             stages = [stage for stage in self._asked() if _is_reported(stage)]
-            text = self._page(Path(folder), stages)
+            text = resumed._page(Path(folder), resumed._computable(stages))
+        text = with_missing(text, [f"{titles}: {reason}" for titles, reason in self.missing()])
         with atomic_path(path) as temporary:
             temporary.write_text(text, encoding="utf-8")
+        if not self.failures:
+            partial.remove()
         return path
+
+    def missing(self) -> list[tuple[str, str]]:
+        """Titles of the stages that could not be computed, joined by commas, and the reason of each group."""
+        by_reason: dict[str, list[str]] = {}
+        for name, reason in self.failures.items():
+            by_reason.setdefault(reason, []).append(STAGES[name].title)
+        return [(", ".join(titles), reason) for reason, titles in by_reason.items()]
+
+    def outlook(self) -> str:
+        """Number of stages that a report computes, and about how long they will take."""
+        return outlook_in_words(self.chain.case, [stage for stage in self._asked() if _is_reported(stage)])
 
     def write(self, folder: str | Path) -> Path:
         """Write the files of every stage, its figures and the report below `folder`.
@@ -55,7 +86,7 @@ class WholeCase:
         They have the names and contents that the workflow gives them, without records of what made them.
         Returns the path of the report.
         """
-        folder = Path(folder)
+        folder = file_path(folder, "folder")
         require_writable(folder)
         for stage in self._asked():
             content = self._output(stage).content
@@ -96,6 +127,10 @@ class WholeCase:
         FacegearError
             If the case has no figure of such a name.
         """
+        folder, names = file_path(folder, "folder"), [names] if isinstance(names, str) else names
+        chosen(suffix, PICTURE_ENDINGS, "suffix")
+        if not isinstance(names, Sequence):
+            raise FacegearError(f"names = {names!r}: must be a list of names of figures")
         known = {name: stage for stage in self._asked() for name in self._figure_names(stage)}
         for name in names:
             if name not in known:
@@ -107,13 +142,30 @@ class WholeCase:
                 self._output(stage)
                 for name, figure in self._figures(stage):
                     if name in wanted:
-                        path = Path(folder) / f"{name}{suffix}"
+                        path = folder / f"{name}{suffix}"
                         save(figure, path)
                         paths.append(path)
         return paths
 
     def _asked(self) -> list[Stage]:
         return [stage for name, stage in STAGES.items() if asked_for(name, self.chain.case)]
+
+    def _computable(self, stages: list[Stage]) -> list[Stage]:
+        """Stages that could be computed; the others are noted in `failures`."""
+        for stage in stages:
+            try:
+                self._output(stage)
+            except MissingExtra:
+                raise  # nothing is wrong with the machine: the user installs it
+            except FacegearError as error:
+                self._note_failure(stage.name, " ".join(str(error).splitlines()))
+            except MemoryError:
+                self._note_failure(stage.name, "not enough memory; a coarser mesh.resolution takes less")
+        return [stage for stage in stages if stage.name not in self.failures]
+
+    def _note_failure(self, name: str, reason: str) -> None:
+        self.failures[name] = reason
+        self.on_stage(name, f"not computed: {reason}")
 
     def _output(self, stage: Stage) -> StageOutput:
         """What a stage gives; recorded the first time."""
@@ -134,6 +186,7 @@ class WholeCase:
         wanted = reported_tables(self.chain.case)
         if machine_loads(self.chain.case):
             wanted.append(("duty_loads", "duty_loads"))
+        wanted = [(name, file) for name, file in wanted if name not in self.failures]
         tables = {
             table_name(STAGES[name].files[file].path): self.chain.part(name, file) for name, file in wanted
         }
@@ -166,13 +219,18 @@ class WholeCase:
 
     def _drawn(self, stage: Stage, folder: Path) -> Iterator[tuple[str, Path]]:
         """Write the figures of a stage, as svg and interactive; yield the name and svg of each."""
-        for name, figure in self._figures(stage):
-            path = folder / f"{name}.svg"
-            save(figure, path, path.with_suffix(".json"))
-            yield name, path
+        try:
+            for name, figure in self._figures(stage):
+                path = folder / f"{name}.svg"
+                save(figure, path, path.with_suffix(".json"))
+                yield name, path
+        except FacegearError:
+            if not self.failures:  # otherwise they show a stage that is named there
+                raise
 
     def _part(self, stage: str, file: str) -> Any:
-        return self.chain.part(stage, file) if asked_for(stage, self.chain.case) else None
+        wanted = asked_for(stage, self.chain.case) and stage not in self.failures
+        return self.chain.part(stage, file) if wanted else None
 
     def _view(self) -> Any:
         if (loads := self._part("contact", "pressure")) is None:

@@ -44,6 +44,9 @@ def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair
     path = Path(path)
     ending = chosen(path.suffix.lower(), (".step", ".stp", ".stl"), "ending of the path")
     gear = next(name for name in BODIES if name == chosen(body, BODIES, "body"))
+    is_whole = teeth is None or (isinstance(teeth, int) and not isinstance(teeth, bool))
+    if not is_whole:
+        raise FacegearError(f"teeth = {teeth!r}: must be a whole number")
     design = pair(tooth_pair).design
     if teeth is not None and not 1 <= teeth <= teeth_of(design, gear):
         raise FacegearError(f"teeth = {teeth}: must be from 1 to {teeth_of(design, gear)}")

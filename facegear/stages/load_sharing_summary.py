@@ -26,5 +26,6 @@ def load_sharing_summary(
         for name in dict.fromkeys(study for study, _ in keys)
     ]
     irregular = summary.loc[~summary["periodic"].astype(bool), ["study", "point"]].drop_duplicates()
-    text = f"{count_noun(len(frames), 'case')}, {len(irregular)} of them not periodic"
+    text = f"{count_noun(len(frames), 'case')}, "
+    text += f"{len(irregular)} of them not periodic" if len(irregular) else "all periodic"
     return Outcome({"summary": summary, "studies": studies}, text)

@@ -155,9 +155,11 @@ def _no_teeth(wishes: ToothWishes, refusals: _Refusals) -> FacegearError:
 
 
 def _require_numbers(wishes: ToothWishes) -> None:
-    if not 5 <= wishes.pinion_teeth < wishes.face_gear_teeth:
-        allowed = f"from 5 to less than the gear's {wishes.face_gear_teeth}"
-        raise ConfigError("pinion_teeth", wishes.pinion_teeth, allowed)
+    if not 5 <= wishes.pinion_teeth <= 500:
+        raise ConfigError("pinion_teeth", wishes.pinion_teeth, "from 5 to 500")
+    if not wishes.pinion_teeth < wishes.face_gear_teeth <= 2000:
+        allowed = f"more than the pinion's {wishes.pinion_teeth}, at most 2000"
+        raise ConfigError("face_gear_teeth", wishes.face_gear_teeth, allowed)
     if not 0.1 <= wishes.module_mm <= 100.0:
         raise ConfigError("module_mm", wishes.module_mm, "from 0.1 to 100")
     if not 10.0 <= wishes.pressure_angle_deg <= 40.0:

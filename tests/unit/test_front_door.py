@@ -105,7 +105,7 @@ def test_the_dataset_of_pressures_says_what_the_table_says(gearbox):
 
 def test_the_dataset_of_a_sweep_holds_every_row_of_its_table(gearbox):
     found = gearbox.sweep(1000, 1200, points=3)
-    data = found.table()
+    data = found.dataset()
     assert data.sizes == {"direction": 2, "speed_rpm": 3, "mesh": 10, "body": 7}
     for row in found.content["sweep"].iloc[::37].itertuples():
         at = data[row.quantity].sel(direction=row.direction, speed_rpm=row.speed_rpm)
@@ -155,7 +155,7 @@ def test_exact_teeth_are_exported_in_the_format_that_the_ending_names(gearbox, n
 @pytest.mark.parametrize(
     ("asked", "line"),
     [
-        ({"path": "teeth.iges"}, "ending of the path = '.iges': must be one of .step, .stp, .stl"),
+        ({"path": "teeth.iges"}, "ending of the path = '.iges': must be one of .step, .stp, .stl, .glb, .fmu, .rexs, .csv"),
         ({"path": "teeth.stl", "body": "gear"}, "body = 'gear': must be one of pinion, face_gear"),
         ({"path": "teeth.stl", "teeth": 24}, "teeth = 24: must be from 1 to 23"),
     ],
@@ -328,7 +328,7 @@ def test_sweeps_of_two_machines_stand_in_the_same_axes(gearbox):
     found = gearbox.sweep(1000, 1200, points=3, directions=["up"])
     figure = found.plot(label="one", beside={"other": found})
     assert [text.get_text() for text in figure.legends[0].texts] == ["one, up", "other, up"]
-    curve = found.table()["deflection_ac_rms_um"].sel(direction="up", mesh="tail idler/upper")
+    curve = found.dataset()["deflection_ac_rms_um"].sel(direction="up", mesh="tail idler/upper")
     for line in figure.axes[0].lines:
         np.testing.assert_array_equal(line.get_ydata(), curve)
     with pytest.raises(FacegearError, match="must be one of meshes"):

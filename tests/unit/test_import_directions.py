@@ -49,7 +49,7 @@ MAY_IMPORT = {
     "report": {"geometry", "contact"},
     "compare": {"plots", "report"},
     "scenarios": set(),
-    "strength": {"geometry", "contact", "transmission", "dynamics", "load_sharing", "poses"},
+    "strength": {"geometry", "mesh", "contact", "transmission", "dynamics", "load_sharing", "poses"},
     "lubrication": {"geometry", "contact", "harmonics"},
     "exchange": {"geometry", "dynamics", "transmission", "harmonics", "mesh_law"},
     "variants": {

@@ -53,6 +53,6 @@ def test_mesh_files_agree_with_the_quality_table(results):
         assert (results / "mesh" / f"{body}.inp").read_text().startswith("*HEADING")
 
 
-def test_drawing_of_the_pair_is_written_and_no_picture(results):
+def test_picture_of_the_pair_is_written_as_svg_alone(results):
     assert (results / "figures" / "tooth_pair.svg").read_text().startswith("<?xml")
     assert not list((results / "figures").glob("*.png"))

@@ -16,7 +16,7 @@ def test_random_machines_are_the_same_each_time_and_whole():
     assert [case.speed_rpm for case in first] == [case.speed_rpm for case in second]
     for case in first:
         np.testing.assert_allclose(case.machine.torques, case.torque_factor * make_machine().torques)
-        assert case.machine.error.b[1] == pytest.approx(case.error_factor * 50e-6)
+        assert case.machine.error.cosine[1] == pytest.approx(case.error_factor * 50e-6)
 
 
 def test_mean_coefficients_of_periodic_motions_are_those_of_a_far_finer_run():

@@ -2,7 +2,6 @@
 
 import signal
 from importlib import import_module
-from pathlib import Path
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
 
@@ -25,4 +24,5 @@ with stage(snakemake) as run:
             save(figure, *paths.pop(0))
     if paths:
         raise ValueError(f"not drawn: {paths}")
-    run.summary(", ".join(Path(path).stem for path in snakemake.output.svg))
+    count = len(snakemake.output.svg)
+    run.summary(f"{count} figure{'s' * (count != 1)}")

@@ -176,7 +176,7 @@ def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
 
     References
     ----------
-    Marriott and Pope (1954), bias of the correlation. Lazarus, Lewis, Stock and Watson (2018), variance of a
+    Marriott and Pope 1954, bias of the correlation. Lazarus, Lewis, Stock and Watson (2018), variance of a
     mean from its slowest cosines, with as many degrees of freedom as cosines.
     """
     if len(batches) < 2:

@@ -74,11 +74,11 @@ def full_run(machine, speed, start, end):
     def rates(t, state):
         q, v = np.split(state, 2)
         angle = np.outer(omega * t - shift_k, order_k)
-        k = np.sin(angle) @ machine.stiffness.a + np.cos(angle) @ machine.stiffness.b
+        k = np.sin(angle) @ machine.stiffness.sine + np.cos(angle) @ machine.stiffness.cosine
         angle = np.outer(omega * t - shift_e, order_e)
-        e = np.sin(angle) @ machine.error.a + np.cos(angle) @ machine.error.b
+        e = np.sin(angle) @ machine.error.sine + np.cos(angle) @ machine.error.cosine
         e_rate = omega * (
-            np.cos(angle) @ (order_e * machine.error.a) - np.sin(angle) @ (order_e * machine.error.b)
+            np.cos(angle) @ (order_e * machine.error.sine) - np.sin(angle) @ (order_e * machine.error.cosine)
         )
         d = directions @ q - e
         force = k * (np.maximum(d - b, 0.0) + np.minimum(d + b, 0.0))
@@ -89,7 +89,7 @@ def full_run(machine, speed, start, end):
     solution = solve_ivp(rates, (0.0, end), start, "DOP853", rtol=1e-11, atol=1e-13, max_step=end / 1000)
     assert solution.success
     angle = np.outer(omega * end - shift_e, order_e)
-    error = np.sin(angle) @ machine.error.a + np.cos(angle) @ machine.error.b
+    error = np.sin(angle) @ machine.error.sine + np.cos(angle) @ machine.error.cosine
     return directions @ solution.y[: mass.size, -1] - error
 
 

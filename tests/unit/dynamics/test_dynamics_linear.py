@@ -76,7 +76,7 @@ def fourier(series: Harmonics, phase: float, harmonics: int) -> np.ndarray:
     shifted = series.shifted(phase)
     result = np.zeros(2 * harmonics + 1, dtype=complex)
     for j in range(shifted.order + 1):
-        value = 0.5 * (shifted.b[j] - 1j * shifted.a[j])
+        value = 0.5 * (shifted.cosine[j] - 1j * shifted.sine[j])
         result[harmonics + j] += value
         result[harmonics - j] += value.conjugate()
     return result

@@ -1,0 +1,105 @@
+"""The check of a config file: what would fail later, what is implausible and what has no effect."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from facegear.config.cases import expand_cases
+from facegear.config.early_findings import EarlyFindings, machine_findings, pair_findings
+from facegear.config.model import Config
+from facegear.config.notes import notes
+from facegear.pipeline.idle_keys import idle_keys
+
+MOST_PAIRS = 4
+"""Different tooth pairs of a config whose geometry is analysed, at about 0.3 s each."""
+
+
+@dataclass(frozen=True)
+class CheckedConfig:
+    """A config without mistakes, and what is to be note_lines of it.
+
+    Attributes
+    ----------
+    cases
+        Ids of all cases.
+    failures
+        What would end a stage of a run, one line each.
+    remarks
+        What is worth a look: loads, implausible values, keys without effect.
+    """
+
+    cases: tuple[str, ...]
+    failures: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+
+def check_config(config: Config, file_values: Mapping[str, Any]) -> CheckedConfig:
+    """Check a config without mistakes, computing nothing that takes long.
+
+    Parameters
+    ----------
+    config : Config
+        The whole config.
+    file_values : mapping
+        Values as they stand in its file, without those of a file that it extends.
+
+    Returns
+    -------
+    CheckedConfig
+        Lines for the user.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake in the points of its studies.
+    """
+    cases = expand_cases(config)
+    base = next(iter(cases.values()))
+    parts_by_case = {
+        case: [*_geometry(case, cases), machine_findings(values)] for case, values in cases.items()
+    }
+    by_case = {
+        case: [line for part in parts for line in part.failures] for case, parts in parts_by_case.items()
+    }
+    remarks = {
+        case: [line for part in parts for line in part.remarks] for case, parts in parts_by_case.items()
+    }
+    facts = [f for part in parts_by_case[base["case"]] for f in part.facts]
+    reproduction = {"reproduction": base["reproduction"]}  # studies of a reproduction are part of it
+    note_lines = {case: notes({**values, **reproduction}) for case, values in cases.items()}
+    idle = [f"without effect: {line}" for line in idle_keys(file_values, cases)]
+    pairs = len({_pair(values) for values in cases.values()})
+    left = [f"geometry: {pairs - MOST_PAIRS} more tooth pairs of the studies are not looked at"]
+    lines = (*facts, *_lines(remarks), *_lines(note_lines, "note: "), *idle, *left * (pairs > MOST_PAIRS))
+    return CheckedConfig(tuple(cases), tuple(_lines(by_case)), lines)
+
+
+def _geometry(case: str, cases: Mapping[str, Mapping[str, Any]]) -> Iterator[EarlyFindings]:
+    """Findings about the pair of a case, if it is the first case with one of the first MOST_PAIRS pairs."""
+    pairs = list(dict.fromkeys(_pair(values) for values in cases.values()))[:MOST_PAIRS]
+    pair = _pair(cases[case])
+    first = next(name for name, values in cases.items() if _pair(values) == pair)
+    if first == case and pair in pairs:
+        yield pair_findings(cases[case])
+
+
+def _pair(values: Mapping[str, Any]) -> str:
+    """Return the values that decide the findings about a pair, as text."""
+    return json.dumps([values["tooth_pair"], values["strength"], values["mesh_stiffness"]["source"]])
+
+
+def _lines(by_case: Mapping[str, Sequence[str]], opening: str = "") -> Iterator[str]:
+    """All lines of the config's own case, and of its studies those about a subject that is new."""
+    base = next(iter(by_case))
+    subjects: set[str] = set()
+    for case, lines in by_case.items():
+        new = [line for line in lines if _subject(line) not in subjects]
+        subjects |= {_subject(line) for line in new}
+        suffix = "" if case == base else f" (case {case.removeprefix(f'{base}/')})"
+        yield from (f"{opening}{line}{suffix}" for line in dict.fromkeys(new))
+
+
+def _subject(line: str) -> str:
+    """Key or subject at the beginning of a line, without its value."""
+    return line.partition(":")[0].partition(" = ")[0]

@@ -1,0 +1,192 @@
+"""Early findings about a run, from geometry and from statics with an estimated mesh stiffness.
+
+No contact analysis is made, so that all of it takes about a second.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from facegear.config.lumped_model import machine
+from facegear.config.machine_layout import lumped_sections
+from facegear.config.plausibility import MESH_STIFFNESS, USUAL_FACE_MODULES
+from facegear.config.strength import Strength, rating_request
+from facegear.config.tooth_pair import ToothPair, pair_design
+from facegear.errors import FacegearError
+from facegear.geometry.analysis import PairAnalysis, analyse, section_contact_ratio
+from facegear.geometry.design import PairDesign
+from facegear.geometry.jam import jam
+from facegear.geometry.words import jam_in_words, summary_in_words
+from facegear.harmonics.series import Harmonics
+from facegear.strength.rating import hertz_stress, pinion_form
+
+POSITIONS = 16
+"""Positions of a pitch that are looked at; the smallest gap is refined between them."""
+LIGHTEST = 0.05
+"""Part of the largest mesh load below which the torques of the contact analysis need not reach down."""
+NOTCHES = (1.0, 8.0)
+"""Range of q_s in which ISO 6336-3 gives the stress correction."""
+ROUNDING = 1e-6
+"""Relative difference of torques that is rounding, or that of an estimated stiffness."""
+
+
+@dataclass(frozen=True)
+class EarlyFindings:
+    """Lines about a case.
+
+    Attributes
+    ----------
+    failures
+        What would end a stage of the run.
+    remarks
+        What the run would warn of.
+    facts
+        Key numbers of the geometry.
+    """
+
+    failures: tuple[str, ...]
+    remarks: tuple[str, ...]
+    facts: tuple[str, ...]
+
+
+def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
+    """Interference, clearance and whether the fillets can be rated.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of a validated config with what follows from other keys filled in (`resolved`).
+
+    Returns
+    -------
+    EarlyFindings
+        Without lines for a pair without bodies.
+    """
+    if values["tooth_pair"]["pinion"] is None:
+        return EarlyFindings((), (), ())
+    design = pair_design(ToothPair.of_config(values["tooth_pair"]))
+    try:
+        analysis = analyse(design, POSITIONS)
+        stuck = jam(design, analysis)
+    except FacegearError as error:
+        return EarlyFindings((f"tooth_pair: {error}",), (), ())
+    failures: list[str] = []
+    remarks: list[str] = []
+    if stuck is not None:
+        failures.append(jam_in_words(analysis, stuck))
+    elif analysis.interference is not None:
+        from_contact = values["mesh_stiffness"]["source"] != "harmonics"
+        lines = failures if from_contact else remarks
+        lines.append(_interference(analysis, from_contact))
+    if analysis.contact_ratio < 1.0:
+        remarks.append(
+            f"tooth_pair: contact ratio {analysis.contact_ratio:.3f}, below 1: tooth pairs do not overlap, "
+            "and flanks touch with their edges"
+        )
+    unrated, beyond = _rating(values, design)
+    failures, remarks = failures + unrated, remarks + beyond
+    return EarlyFindings(tuple(failures), tuple(remarks), (f"geometry: {summary_in_words(analysis)}",))
+
+
+def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
+    """Meshes without load at rest, and torques outside those of the contact analysis.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of a validated config with what follows from other keys filled in (`resolved`).
+
+    Returns
+    -------
+    EarlyFindings
+        Without lines for a config without a machine.
+    """
+    if values["transmission"] is None:
+        return EarlyFindings((), (), ())
+    # Imported here: statics need machine code, which a pair without a machine does not.
+    from facegear.transmission.ratings import mesh_table
+
+    section, teeth = lumped_sections(values["transmission"], values["tooth_pair"])
+    stiffness = Harmonics(np.zeros(1), np.array([_stiffness(values)]))
+    no_error = Harmonics(np.zeros(1), np.zeros(1))
+    try:
+        meshes = mesh_table(machine(section, teeth, stiffness, no_error), values["dynamics"]["speed_rpm"])
+    except FacegearError as error:
+        return EarlyFindings((), (f"the machine at rest, with an estimated mesh stiffness: {error}",), ())
+    remarks = []
+    open_ones = meshes.loc[meshes["flank"] == "open", "mesh"]
+    if len(open_ones):
+        remarks.append(f"no load at rest: {', '.join(open_ones)}")
+    if values["mesh_stiffness"]["source"] != "harmonics":
+        loads = meshes.set_index("mesh")["pinion_torque_n_m"].abs()
+        remarks += _unsolved(values, dict(loads[loads > 0.0]))
+    return EarlyFindings((), tuple(remarks), ())
+
+
+def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
+    gap = analysis.interference
+    assert gap is not None
+    consequence = (
+        "no mesh stiffness can be computed" if from_contact else "the given mesh stiffness leaves it out"
+    )
+    return (
+        f"tooth_pair: the teeth interfere: at gear radius {1e3 * gap.radius:.1f} mm the gear's "
+        f"{gap.gear_part} stands {-1e6 * gap.gap:.1f} um deep in the pinion's {gap.pinion_part}; "
+        f"{consequence}"
+    )
+
+
+def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], list[str]]:
+    """Why the pair cannot be rated, and where the rating leaves the range of its standard."""
+    if values["strength"] is None:
+        return [], []
+    ratio = section_contact_ratio(design)
+    try:
+        form = pinion_form(design, ratio)
+        hertz_stress(design, ratio, rating_request(Strength.of_config(values["strength"]), design))
+    except FacegearError as error:
+        text = str(error)
+        return [text if text.startswith("strength") else f"strength: {text}"], []
+    low, high = NOTCHES
+    notch = form.notch_parameter
+    if low <= notch < high:
+        return [], []
+    line = (
+        f"strength: notch parameter q_s = {notch:.3g} of the pinion's fillet, outside the {low:g} to "
+        f"{high:g} of ISO 6336-3; tooth_pair.pinion.rack_tip_radius_modules rounds it"
+    )
+    return [], [line]
+
+
+def _stiffness(values: Mapping[str, Any]) -> float:
+    """Mean mesh stiffness, N/m: as given, or what a steel mesh of this face width has."""
+    mean = values["mesh_stiffness"]["mean_n_per_m"]
+    if mean is not None:
+        return float(mean)
+    gear, module = values["tooth_pair"]["face_gear"], values["tooth_pair"]["module_mm"]
+    face = USUAL_FACE_MODULES * module if gear is None else gear["outer_radius_mm"] - gear["inner_radius_mm"]
+    return MESH_STIFFNESS * 1e-3 * float(face)
+
+
+def _unsolved(values: Mapping[str, Any], loads: Mapping[str, float]) -> Iterator[str]:
+    """Loads of meshes at rest, N m, that lie outside the torques of the contact analysis."""
+    if not loads:
+        return
+    low, high = values["contact"]["torques_n_m"][0], values["contact"]["torques_n_m"][-1]
+    heaviest = max(loads, key=lambda mesh: loads[mesh])
+    if loads[heaviest] > high * (1.0 + ROUNDING):
+        yield (
+            f"contact.torques_n_m ends at {high:g}: {heaviest} carries about {loads[heaviest]:.3g} N m "
+            "at rest, so that its numbers are extrapolated"
+        )
+    if values["mesh_stiffness"]["mesh_law"] != "load_dependent":
+        return
+    light = [mesh for mesh, load in loads.items() if LIGHTEST * loads[heaviest] < load < low]
+    if light:
+        lightest = min(light, key=lambda mesh: loads[mesh])
+        yield (
+            f"contact.torques_n_m begins at {low:g}: {lightest} carries about {loads[lightest]:.3g} N m "
+            "at rest"
+        )

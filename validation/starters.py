@@ -1,0 +1,152 @@
+"""Twenty machines of `facegear new`, from their numbers to their report: `python -m validation.starters`."""
+
+import random
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from math import pi
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pandas as pd
+
+from facegear.errors import FacegearError
+from facegear.gearbox import load
+from facegear.variants.first_machine import Known, first_machine
+
+TABLE = Path(__file__).parents[1] / "docs" / "measured" / "starters.csv"
+COUNT, SEED = 20, 50
+"""Number of machines, and the seed by which they are drawn."""
+TEETH, RATIOS = (12, 40), (3.0, 7.0)
+"""Smallest and largest number of pinion teeth and gear ratio."""
+ANGLES, MODULES = (17.5, 20.0, 22.5, 25.0, 27.5), (1.0, 2.0, 2.5, 3.5, 5.0)
+"""Pressure angles, deg, and modules, mm."""
+KINDS = ((1, 0), (2, 0), (3, 0), (5, 0), (1, 2), (2, 2), (2, 3))
+"""Driving pinions and idlers."""
+UNIT_LOADS = (20.0, 60.0)
+"""Unit load F_t/(b m), MPa, on a face of FACE modules."""
+FACE = 6.4
+PITCH_SPEEDS = (5.0, 40.0)
+"""Speed at the pitch circle of the pinion, m/s."""
+
+
+def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[Known]:
+    """Draw machines by a fixed seed, so that each run makes the same ones.
+
+    Parameters
+    ----------
+    count : int
+        Number of machines.
+    seed : int
+        Seed of the draw.
+
+    Yields
+    ------
+    Known
+        What a user would give, with the coarse resolution.
+    """
+    draw = random.Random(seed)
+    for number in range(1, count + 1):
+        teeth, module = draw.randint(*TEETH), draw.choice(MODULES)
+        pinions, idlers = draw.choice(KINDS)
+        force = draw.uniform(*UNIT_LOADS) * FACE * module**2
+        torque = force * 0.5e-3 * module * teeth * (2 if idlers else 1)
+        speed = draw.uniform(*PITCH_SPEEDS) / (pi * 1e-3 * module * teeth) * 60.0
+        yield Known(
+            case=f"starter_{number}",
+            pinion_teeth=teeth,
+            face_gear_teeth=round(teeth * draw.uniform(*RATIOS)),
+            module_mm=module,
+            torque_n_m=float(f"{torque:.3g}"),
+            speed_rpm=float(f"{speed:.3g}"),
+            pinions=pinions,
+            pressure_angle_deg=draw.choice(ANGLES),
+            idlers=idlers,
+            coarse=True,
+        )
+
+
+def run_machine(known: Known, folder: Path) -> dict[str, object]:
+    """Write the config of a machine and its report.
+
+    Parameters
+    ----------
+    known : Known
+        The machine.
+    folder : Path
+        Where config and page go.
+
+    Returns
+    -------
+    dict
+        A row of the table: the machine's numbers, `outcome` (report, incomplete or refused), `reason` of what
+        is missing, `stages` that were computed, and `processor_s`.
+    """
+    start, stages, missing = time.process_time(), [], []
+
+    def note(stage: str, summary: str) -> None:
+        if summary.startswith("not computed: "):
+            missing.append(f"{stage}: {summary.removeprefix('not computed: ')}")
+        elif stage != "report":
+            stages.append(stage)
+
+    outcome = "refused"
+    try:
+        path = folder / f"{known.case}.yaml"
+        path.write_text(first_machine(known).text, encoding="utf-8")
+        load(path, None).report(folder / f"{known.case}.html", note)
+        outcome = "incomplete" if missing else "report"
+    except FacegearError as error:
+        missing.append(str(error).splitlines()[0])
+    return {
+        "machine": known.case,
+        "pinion_teeth": known.pinion_teeth,
+        "face_gear_teeth": known.face_gear_teeth,
+        "module_mm": known.module_mm,
+        "pressure_angle_deg": known.pressure_angle_deg,
+        "inputs": known.pinions,
+        "idlers": known.idlers,
+        "torque_n_m": known.torque_n_m,
+        "speed_rpm": known.speed_rpm,
+        "outcome": outcome,
+        "reason": "; ".join(missing),
+        "stages": len(stages),
+        "processor_s": round(time.process_time() - start, 1),
+    }
+
+
+def run_all(machines: Sequence[Known]) -> pd.DataFrame:
+    """Run machines to their reports, one after the other.
+
+    Parameters
+    ----------
+    machines : sequence of Known
+        The machines.
+
+    Returns
+    -------
+    DataFrame
+        A row each, as of `run_machine`, with the commit.
+    """
+    command = ["git", "rev-parse", "--short=8", "HEAD"]
+    commit = subprocess.run(
+        command, capture_output=True, text=True, check=True, cwd=TABLE.parent
+    ).stdout.strip()
+    rows = []
+    with TemporaryDirectory() as folder:
+        for known in machines:
+            rows.append(run_machine(known, Path(folder)) | {"commit": commit})
+            print(f"{known.case}: {rows[-1]['outcome']}, {rows[-1]['processor_s']} s", file=sys.stderr)
+    return pd.DataFrame(rows)
+
+
+if __name__ == "__main__":
+    numbers = {int(word) for word in sys.argv[1:]}
+    drawn = [known for number, known in enumerate(draw_machines(), 1) if not numbers or number in numbers]
+    table = run_all(drawn)
+    if numbers:
+        print(table.to_string(index=False))
+    else:
+        table.to_csv(TABLE, index=False)
+        print(TABLE)
