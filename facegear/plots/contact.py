@@ -21,6 +21,8 @@ MARKS = (
     (("end",), "D", "#009e73", "end of the face: the same"),
 )
 """Kinds of edges, marker, colour and legend: where a flank carries load and no pressure is known."""
+LEGEND_HEIGHT = 0.25
+"""Inches of the legend's one line of 9 pt with its gap, which a pattern without marks does not need."""
 
 
 def contact_curves(ltca: pd.DataFrame) -> Figure:
@@ -98,6 +100,8 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]]) -> Figure:
         }
         if marks:
             figure.legend(marks.values(), marks.keys(), loc="outside lower center", ncols=2)
+        else:
+            figure.set_figheight(figure.get_figheight() - LEGEND_HEIGHT)
     return figure
 
 

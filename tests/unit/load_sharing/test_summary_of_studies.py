@@ -129,4 +129,4 @@ def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
 def test_a_machine_without_studies_is_one_case():
     """Its line said: 1 cases."""
     frame = pd.DataFrame({"group": ["idlers"], "kind": "idlers", "periodic": [True]})
-    assert load_sharing_summary([], [frame], []).summary == "1 case, 0 of them not periodic"
+    assert load_sharing_summary([], [frame], []).summary == "1 case, all periodic"
