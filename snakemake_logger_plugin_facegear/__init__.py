@@ -89,9 +89,10 @@ class LogHandler(LogHandlerBase):
     def error(self, record: Any) -> str:
         """Return why a job failed; nothing if the user has stopped the run, which ends all its jobs."""
         job = self.jobs.pop(record.jobid, None)
-        line = last_line(record.log)
-        if line.startswith(EXPLAINED):
-            return "" if job is None or job.local else line
+        # An executor adds its own log of the job, which ends in words of Snakemake.
+        explained = [line for log in record.log if (line := last_line([log])).startswith(EXPLAINED)]
+        if explained:
+            return "" if job is None or job.local else explained[0]
         return "" if self.stopped else f"rule {record.rule_name} failed (log: {', '.join(record.log)})"
 
     @property

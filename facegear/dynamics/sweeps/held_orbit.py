@@ -32,14 +32,15 @@ SAMPLES = 256
 
 @dataclass(frozen=True, eq=False)
 class HeldOrbit:
-    """An orbit of `period` mesh periods at a speed (rpm), its state, and the AC RMS (meshes,), m, of the mesh
-    deflections.
+    """An orbit of `period` mesh periods at a speed (rpm), its state, the AC RMS (meshes,), m, of the mesh
+    deflections, and the size of its leading multiplier.
     """
 
     speed: float
     period: int
     state: State
     ac_rms: Array
+    multiplier: float
 
 
 def machine_follower(model: Model, settings: Settings) -> "OrbitFollower":
@@ -109,7 +110,13 @@ class OrbitFollower:
         samples = integrator.run(orbit.state, period, samples=SAMPLES).samples
         system = integrator.system
         deflections = by_mesh(system, each_deflection(system, samples, SAMPLES))
-        return HeldOrbit(speed, period, integrator.by_time(orbit.state), deflections.std(axis=0))
+        return HeldOrbit(
+            speed,
+            period,
+            integrator.by_time(orbit.state),
+            deflections.std(axis=0),
+            float(abs(orbit.multipliers[0])),
+        )
 
     def _near(self, speed: float, state: State, period: int) -> tuple[Integrator, Orbit | None]:
         """The orbit of a period at a speed to which a state belongs, stable or not, with its integrator."""

@@ -23,6 +23,8 @@ from facegear.ties import first_largest
 
 ABRUPT = 3.0
 """A jump is this many times the change over the speeds around it."""
+NEAR_LOSS = 4.0
+"""Distance, in resolutions, from the last orbit held within which a change found by runs is its end."""
 MAX_CHANGES = 4
 """Smooth changes of the motion, such as period doublings, that are followed on the way to a jump; what comes
 after them is bracketed by bisection."""
@@ -134,19 +136,24 @@ def refine(
     """
     before, end = (_stored_side(piece, i) for i in (position, position + 1))
     step = abs(end.speed - before.speed)
+    last_orbit: JumpSide | None = None
     for _ in range(MAX_CHANGES):
         orbit = follower.orbit(before.speed, before.state, before.period)
         if orbit is None and not thorough:
             return None
         if orbit is None:
             before, after = yield from bracket(before, end, respond, resolution, images)
+            if last_orbit is not None and abs(after.speed - last_orbit.speed) <= NEAR_LOSS * resolution:
+                width = abs(after.speed - last_orbit.speed)
+                return _jump(piece, position, last_orbit, after, images, width, True)
             return _jump(piece, position, before, after, images, step, False)
         last, beyond = follower.until_lost(orbit, end.speed, resolution)
         if beyond is None:
             if image_distance(last.ac_rms, end.ac_rms, images) <= SAME and last.period == end.period:
                 return None
             return _jump(piece, position, before, end, images, step, False)
-        before = yield from _seen(last.speed, last, respond)
+        # Beside a fold a run from the orbit may already leave it: the orbit itself is the motion before.
+        last_orbit = before = _held_side(last, before)
         after = yield from _beyond(last, beyond, follower, respond, KICKS if thorough else KICKS[:1])
         if abrupt(before, after, images):
             width = abs(after.speed - before.speed)
@@ -158,10 +165,17 @@ def refine(
     return _jump(piece, position, before, after, images, step, False)
 
 
-def _seen(speed: float, orbit: HeldOrbit, respond: Respond) -> Course[JumpSide]:
-    """What a run at a speed comes to from an orbit at the same or another speed."""
-    response = yield from respond(speed, orbit.state)
-    return side(speed, response)
+def _held_side(orbit: HeldOrbit, former: JumpSide) -> JumpSide:
+    """Return an orbit that was followed from the motion `former` as a side of a jump."""
+    return replace(
+        former,
+        speed=orbit.speed,
+        ac_rms=orbit.ac_rms,
+        label=f"period-{orbit.period}",
+        period=orbit.period,
+        multiplier=orbit.multiplier,
+        state=orbit.state,
+    )
 
 
 def _beyond(

@@ -80,6 +80,7 @@ def test_what_one_clone_has_parsed_gives_another_the_same_fingerprint_without_pa
 ):
     """The first start of every clone parsed some 700 files, for three seconds, before it could plan."""
     file = tmp_path / "sources.json"
+    monkeypatch.setattr(provenance_fingerprint, "_recalled", set())  # of other tests of this process
     before = fingerprint(package / "script.py", package)
     remember(file)
     moved = shutil.copytree(package, tmp_path / "moved", copy_function=shutil.copyfile)  # with new times

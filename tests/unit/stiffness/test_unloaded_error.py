@@ -54,7 +54,7 @@ def test_a_constant_error_is_exactly_zero_and_the_report_says_so():
     text = machine_chapter(VALUES, {"harmonics": found.harmonics}).text
     assert "Transmission error from contact, unloaded: constant, so e(t) from contact is zero." in text
     moving = machine_chapter(VALUES, {"harmonics": found_for(curve(POSITIONS)).harmonics}).text
-    assert "unloaded: 5.74 um peak to peak, the 4 orders kept" in moving
+    assert "unloaded: 5.74 µm peak to peak, the 4 orders kept" in moving
 
 
 def test_given_harmonics_bring_no_error_of_a_pair():
