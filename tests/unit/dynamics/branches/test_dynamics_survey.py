@@ -1,5 +1,6 @@
 """Random starts, what continues from them, and a machine with ten meshes."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -112,6 +113,10 @@ def test_a_jump_from_a_motion_that_has_not_settled_is_named_by_the_sweeps_last_p
         assert jump_table(jumps, [other], [branch], 1e-3, 1e-3)["note"][0].startswith("the motion before")
 
 
+NEAR = 1e-3
+"""Relative distance of the two grazes of a ripple."""
+
+
 @pytest.fixture(scope="module")
 def machine_branch():
     model = build_model(make_machine(torque=1300.0))
@@ -147,6 +152,23 @@ def listed(branch):
     return [kind for kind, _ in found], [speed for _, speed in found]
 
 
+def without_ripples(kinds, speeds):
+    """The list without pairs of grazes that lie within NEAR of each other.
+
+    A ripple that is born and grazes twice within one step may be missed there: the grazes at 5542.97 and
+    5546.27 rpm are missing at one of these steps on some processors (docs/branches.md).
+    """
+    grazes = [speed for kind, speed in zip(kinds, speeds, strict=True) if kind == Kind.GRAZE.value]
+    paired = {
+        speed
+        for first, second in itertools.pairwise(sorted(grazes))
+        if second - first < NEAR * first
+        for speed in (first, second)
+    }
+    kept = [one for one in zip(kinds, speeds, strict=True) if one[1] not in paired]
+    return [kind for kind, _ in kept], [speed for _, speed in kept]
+
+
 @pytest.mark.parametrize("factor", [4.0, 0.25])
 def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine_branch, factor):
     _, period_map, branch = machine_branch
@@ -154,7 +176,7 @@ def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine
     run = replace(run, first=factor * run.first, ds_max=factor * run.ds_max)
     back = follow(period_map, turned(branch.points[-1]), run, both=False)
     assert (branch.ends, back.ends[1]) == ((BranchEnd.LIMIT, BranchEnd.LIMIT), BranchEnd.LIMIT)
-    first, second = listed(branch), listed(back)
+    first, second = without_ripples(*listed(branch)), without_ripples(*listed(back))
     assert first[0] == second[0]
     assert first[1] == pytest.approx(second[1], rel=1e-7)
     assert branch.of(Kind.FOLD)
