@@ -412,6 +412,8 @@ class Gearbox:
         changes = _given({f"dynamics.sweep.{key}": value for key, value in given.items()})
         if isinstance(points, int) and points < self._values["dynamics"]["sweep"]["chunks"]:
             changes["dynamics.sweep.chunks"] = 1
+        if not isinstance(threads, int) or threads < 1:
+            raise FacegearError(f"sweep: threads = {threads!r}: must be a whole number of at least 1")
         return self._changed("sweep", changes)._chain.result(SweepResult, threads=threads)
 
     def branches(

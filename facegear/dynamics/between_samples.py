@@ -38,12 +38,6 @@ def located_extremes(values: Array, wraps: bool) -> tuple[Array, Array]:
     return -_located_maxima(-values, wraps), _located_maxima(values, wraps)
 
 
-def located_largest(values: Array, wraps: bool) -> Array:
-    """Locate the largest magnitude (columns,) of each column of even samples, as located_extremes() does."""
-    minimum, maximum = located_extremes(values, wraps)
-    return np.maximum(np.abs(minimum), np.abs(maximum))
-
-
 def max_peaks(values: Array, wraps: bool) -> tuple[Integers, Mask]:
     """Find the samples whose neighbours' parabolas rise most.
 

@@ -53,5 +53,6 @@ def following(
     )
     return Outcome(
         {"groups": groups, "meshes": running_mesh_table(moving)},
-        f"K_gamma over {part} of {length} mesh cycles: {said}; two starts differ by {moving.memory:.0e}",
+        f"K_gamma over {part} of {length} mesh cycles: {said or 'no path shares a load'}; "
+        f"two starts differ by {moving.memory:.0e}",
     )

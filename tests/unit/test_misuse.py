@@ -16,6 +16,7 @@ MISTAKES = {
     "key of changes": (lambda g, d: g.with_values({3: 4}), "changes = {3: 4}: must be a mapping"),
     "displacement": (lambda g, d: g.displaced_contact(pinion=3), "pinion = 3: must be a mapping"),
     "points": (lambda g, d: g.sweep(points="a"), 'dynamics.sweep.points = "a": must be a whole number'),
+    "threads": (lambda g, d: g.sweep(threads=0), "threads = 0: must be a whole number of at least 1"),
     "study": (lambda g, d: g.study(3), "study = 3: must be a mapping"),
     "empty study": (lambda g, d: g.study({}), "study = {}: must be a mapping"),
     "lone value": (lambda g, d: g.study({"dynamics.speed_rpm": 3000}), "must be a list of values"),

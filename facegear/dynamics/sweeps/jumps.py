@@ -19,7 +19,6 @@ from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.dynamics.sweeps.rms_distance import FLOOR, MIN_CHANGE, SAME, distance, image_distance
 from facegear.dynamics.sweeps.sweep import Piece
-from facegear.ties import first_largest
 
 ABRUPT = 3.0
 """A jump is this many times the change over the speeds around it."""
@@ -211,7 +210,8 @@ def _jump(
     after = replace(after, ac_rms=after.ac_rms[_preferred(before.ac_rms, after.ac_rms, images)])
     floor = np.full_like(before.ac_rms, 1e-300)
     ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
-    mesh = first_largest(np.abs(ratio))
+    # Twins differ by what their AC RMS err by, which is absolute in a logarithm.
+    mesh = int(np.flatnonzero(np.abs(ratio) >= np.abs(ratio).max() - SAME)[0])
     return Jump(before, after, mesh, position + int(ratio[mesh] > 0.0), error, followed)
 
 
