@@ -6,7 +6,6 @@ import signal
 import subprocess
 import time
 from importlib.util import find_spec
-from itertools import pairwise
 
 import pandas as pd
 import pytest
@@ -55,7 +54,8 @@ def started(folder):
     return all(path.exists() and len(path.read_bytes().splitlines()) > 4 for path in partials)
 
 
-def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothing_stale(tmp_path):
+def test_a_killed_study_on_two_nodes_is_made_again_and_keeps_nothing_stale(tmp_path):
+    """A new job waits for an old one of its chunk inside Slurm (test_tolerance_jobs.py), so both may run."""
     found, target = project(tmp_path / "run", 1600, 800)  # still at work when the second run looks for it
     with cluster(tmp_path / "slurm"):
         running = subprocess.Popen(
@@ -75,9 +75,6 @@ def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothi
         message = found.run(*PROFILE, *target).stderr
         every = jobs()
     assert "tolerances_chunk tolerances samples 800 1599: 800 samples, 0 of them" in message
-    for name in {job[0] for job in every}:
-        times = sorted(job[2:4] for job in every if job[0] == name)
-        assert all(one[1] <= other[0] for one, other in pairwise(times)), name
     completed = [(name, node) for name, node, *_, state in every if state == "COMPLETED"]
     assert {node for _, node in completed} == {"n0", "n1"}
     assert len(completed) == 4, (

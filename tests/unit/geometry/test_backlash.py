@@ -65,5 +65,6 @@ def test_pairs_that_differ_in_modifications_and_assembly_alone_share_the_gear_th
     )
     other = replace(pair(26, tip_relief=Relief(15e-6, length=2e-3), offset=2e-5), face_gear=made)
     assert gear_rays(other)[1] is gear_rays(plain)[1]
+    check.cache_clear()  # a process that has checked many designs may hold one of the two
     assert check(other) is check(plain)
     assert gear_rays(pair(25))[1] is not gear_rays(plain)[1]
