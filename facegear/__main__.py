@@ -2,12 +2,13 @@
 
 import argparse
 import os
+import subprocess
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NoReturn
 
 from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
@@ -161,7 +162,7 @@ def _run(given: argparse.Namespace) -> int:
     return _with_snakemake(given) if (ROOT / "workflow" / "Snakefile").is_file() else _run_here(given)
 
 
-def _with_snakemake(given: argparse.Namespace) -> NoReturn:
+def _with_snakemake(given: argparse.Namespace) -> int:
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "workflow" / "Snakefile")]
@@ -170,7 +171,11 @@ def _with_snakemake(given: argparse.Namespace) -> NoReturn:
     folder = Path(given.directory)
     for inside in () if given.dry_run else ("", ".snakemake", "results"):
         require_writable(folder / inside)
-    os.execve(sys.executable, [*command, "--", *given.targets], _with_cache(folder.resolve()))
+    with subprocess.Popen([*command, "--", *given.targets], env=_with_cache(folder.resolve())) as run:
+        while True:
+            # A terminal sends Ctrl-C to Snakemake, too, which ends its jobs before it ends itself.
+            with suppress(KeyboardInterrupt):
+                return run.wait()
 
 
 def _with_cache(folder: Path) -> dict[str, str]:

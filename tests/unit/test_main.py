@@ -1,6 +1,8 @@
 """The command line: limits before radii are chosen, checks, and mistakes in one line."""
 
+import contextlib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -89,7 +91,12 @@ def test_a_run_has_a_cache_of_its_own_where_the_home_folder_allows_none(monkeypa
     monkeypatch.setenv("XDG_CACHE_HOME", str(home))
     monkeypatch.chdir(tmp_path)
     given = []
-    monkeypatch.setattr("os.execve", lambda *arguments: given.append(arguments[-1]))
+
+    def begin(command, env):
+        given.append(env)
+        return contextlib.nullcontext(SimpleNamespace(wait=lambda: 0))
+
+    monkeypatch.setattr("subprocess.Popen", begin)
     main(("run", str(ROOT / "config" / "harmonics_only.yaml")))
     wanted = home if usable else tmp_path / ".snakemake" / "cache"
     assert given[0]["XDG_CACHE_HOME"] == str(wanted)

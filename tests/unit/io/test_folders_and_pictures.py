@@ -86,7 +86,7 @@ def test_a_folder_that_may_not_be_written_is_named(shut):
 def test_every_command_names_a_file_in_place_of_its_folder(stray, arguments, monkeypatch, capsys):
     """They ended in FileExistsError or NotADirectoryError, some after minutes."""
     monkeypatch.chdir(stray.parent)
-    monkeypatch.setattr(os, "execve", lambda *_: pytest.fail("no run begins"))
+    monkeypatch.setattr("subprocess.Popen", lambda *_, **__: pytest.fail("no run begins"))
     assert main(arguments) == 1
     said = capsys.readouterr()
     assert said.err == "results: is a file, not a folder; move it, or choose another folder\n"
