@@ -75,18 +75,14 @@ RESONANCES = 3
 """Number of resonances that are named."""
 
 
-@dataclass(frozen=True)
-class Known:
-    """What is known of a machine: equal pinions that drive it, and one face gear or two with idlers.
+@dataclass(frozen=True, kw_only=True)
+class Known(ToothWishes):
+    """Known values of a machine: its teeth, equal pinions that drive it, one face gear or two with idlers.
 
     Parameters
     ----------
     case : str
         Name of the config.
-    pinion_teeth, face_gear_teeth : int
-        Tooth numbers.
-    module_mm, pressure_angle_deg : float
-        Module and pressure angle of both gears.
     torque_n_m : float
         Torque of each driving pinion.
     speed_rpm : float
@@ -100,25 +96,10 @@ class Known:
     """
 
     case: str
-    pinion_teeth: int
-    face_gear_teeth: int
-    module_mm: float
     torque_n_m: float
     speed_rpm: float
     pinions: int = 1
-    pressure_angle_deg: float = 25.0
     idlers: int = 0
-    profile_shift_modules: float | None = None
-    pinion_addendum_modules: float | None = None
-    pinion_dedendum_modules: float | None = None
-    rack_tip_radius_modules: float | None = None
-    gear_addendum_modules: float | None = None
-    shaper_teeth: int | None = None
-    shaper_addendum_modules: float | None = None
-    shaper_tip_rounding_modules: float | None = None
-    thinning_um: float | None = None
-    inner_radius_mm: float | None = None
-    outer_radius_mm: float | None = None
     rim_thickness_mm: float | None = None
     pinion_width_mm: float | None = None
     pinion_bore_radius_mm: float | None = None
@@ -130,6 +111,11 @@ class Known:
     axial_bearing_n_per_m: float | None = None
     mesh_damping_n_s_per_m: float | None = None
     coarse: bool = False
+
+    @property
+    def teeth(self) -> ToothWishes:
+        """The wishes for the teeth alone."""
+        return ToothWishes(**{part.name: getattr(self, part.name) for part in fields(ToothWishes)})
 
 
 @dataclass(frozen=True)
@@ -176,9 +162,7 @@ class Draft:
 
     def __init__(self, known: Known) -> None:
         self.known = known
-        self.teeth = choose_teeth(
-            ToothWishes(**{part.name: getattr(known, part.name) for part in fields(ToothWishes)})
-        )
+        self.teeth = choose_teeth(known.teeth)
         design, module = self.teeth.design, known.module_mm
         root = 1e3 * design.pinion_root_radius
         self.values = chosen_keys(self.teeth)

@@ -49,7 +49,7 @@ TRIED = 40
 
 @dataclass(frozen=True)
 class ToothWishes:
-    """What a user wants of the teeth; None leaves a choice.
+    """Wishes of a user for the teeth; None leaves a choice.
 
     Names with a unit are keys of `tooth_pair`, lengths in modules or mm as these say.
     """
@@ -57,7 +57,7 @@ class ToothWishes:
     pinion_teeth: int
     face_gear_teeth: int
     module_mm: float
-    pressure_angle_deg: float
+    pressure_angle_deg: float = 25.0
     profile_shift_modules: float | None = None
     pinion_addendum_modules: float | None = None
     pinion_dedendum_modules: float | None = None

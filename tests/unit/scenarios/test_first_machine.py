@@ -18,13 +18,28 @@ from facegear.strength.rating import pinion_form
 from facegear.variants.first_machine import Known, first_machine
 from facegear.variants.starting_teeth import ToothWishes, choose_teeth
 
+
+def make_known(case, pinion_teeth, face_gear_teeth, module_mm, torque_n_m, speed_rpm, pinions=1, **others):
+    """A machine by what is always given of it."""
+    return Known(
+        pinion_teeth=pinion_teeth,
+        face_gear_teeth=face_gear_teeth,
+        module_mm=module_mm,
+        case=case,
+        torque_n_m=torque_n_m,
+        speed_rpm=speed_rpm,
+        pinions=pinions,
+        **others,
+    )
+
+
 MACHINES = (
-    Known("small", 19, 57, 2, 50, 10000, pinions=3),
-    Known("paper", 23, 143, 3.75, 1300, 7500, 2),
-    Known("plain", 40, 120, 1, 5, 500, pressure_angle_deg=20),
-    Known("large", 25, 160, 6.35, 800, 5000, coarse=True),
-    Known("split", 23, 143, 3.75, 1300, 7500, pinions=2, idlers=3),
-    Known("odd", 19, 57, 2, 50, 10000, pinions=1, idlers=2),
+    make_known("small", 19, 57, 2, 50, 10000, pinions=3),
+    make_known("paper", 23, 143, 3.75, 1300, 7500, 2),
+    make_known("plain", 40, 120, 1, 5, 500, pressure_angle_deg=20),
+    make_known("large", 25, 160, 6.35, 800, 5000, coarse=True),
+    make_known("split", 23, 143, 3.75, 1300, 7500, pinions=2, idlers=3),
+    make_known("odd", 19, 57, 2, 50, 10000, pinions=1, idlers=2),
 )
 TEETH = (5, 7, 9, 10, 11, 12, 14, 16, 17, 20, 25, 40)
 ANGLES = (17.5, 20.0, 22.5, 25.0, 27.5)
@@ -60,7 +75,9 @@ def test_every_machine_of_a_grid_passes_check_or_has_no_teeth(teeth, tmp_path):
     for pinion, gear, angle in [one for one in pairs_of_teeth() if one[0] == teeth]:
         for pinions, idlers in KINDS:
             torque = torque_for(pinion, draw.uniform(20, 60), idlers)
-            known = Known("own", pinion, gear, MODULE, torque, 3000, pinions, angle, idlers)
+            known = make_known(
+                "own", pinion, gear, MODULE, torque, 3000, pinions, pressure_angle_deg=angle, idlers=idlers
+            )
             try:
                 machine = first_machine(known)
             except FacegearError as error:
@@ -117,8 +134,8 @@ def test_idlers_lead_what_the_lower_gear_takes_to_the_upper_one(tmp_path):
 @pytest.mark.parametrize(
     "known",
     [
-        Known("split", 23, 143, 3.75, 1328, 7500, pinions=2, idlers=3),
-        Known("light", 22, 101, 3.5, 300, 3000, pinions=2, idlers=2),
+        make_known("split", 23, 143, 3.75, 1328, 7500, pinions=2, idlers=3),
+        make_known("light", 22, 101, 3.5, 300, 3000, pinions=2, idlers=2),
     ],
     ids=lambda known: known.case,
 )
@@ -144,14 +161,14 @@ def test_every_mesh_at_rest_lies_inside_the_torques_of_the_contact_analysis(tmp_
 
 
 def test_a_load_too_small_to_share_says_what_is_nearest():
-    known = Known("light", 23, 143, 3.75, 20, 7500, pinions=2, idlers=5)
+    known = make_known("light", 23, 143, 3.75, 20, 7500, pinions=2, idlers=5)
     (line,) = [line for line in first_machine(known).expected if "worse than" in line]
     assert re.search(r"F_t/\(b m\) = 2\.06 MPa; nearest: at least", line)
 
 
 def test_a_load_too_light_for_the_contact_analysis_names_the_nearest():
     with pytest.raises(FacegearError, match=r"^torque_n_m = 0\.01: the contact analysis .* nearest: 2\.02$"):
-        first_machine(Known("own", 23, 143, 3.75, 0.01, 7500))
+        first_machine(make_known("own", 23, 143, 3.75, 0.01, 7500))
 
 
 def test_the_chosen_bodies_are_those_of_a_steel_ring(tmp_path):
@@ -177,7 +194,9 @@ def test_the_chosen_bodies_are_those_of_a_steel_ring(tmp_path):
     ],
 )
 def test_a_given_value_stands_in_the_config(key, value, place, tmp_path):
-    found = values_of(first_machine(Known("own", 23, 143, 3.75, 600, 7500, **{key: value})).text, tmp_path)
+    found = values_of(
+        first_machine(make_known("own", 23, 143, 3.75, 600, 7500, **{key: value})).text, tmp_path
+    )
     for name in place:
         found = found[name]
     assert found == value
@@ -185,7 +204,7 @@ def test_a_given_value_stands_in_the_config(key, value, place, tmp_path):
 
 def test_a_machine_without_load_is_refused_in_one_line():
     with pytest.raises(ConfigError, match=r"^torque_n_m = 0: must be from 1e-05 to 1e\+06$"):
-        first_machine(Known("own", 23, 143, 3.75, 0, 7500))
+        first_machine(make_known("own", 23, 143, 3.75, 0, 7500))
 
 
 def test_too_few_teeth_are_refused_by_the_geometric_reason():
