@@ -125,8 +125,9 @@ def installed_version() -> str:
 
 def _new(given: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
-    from facegear.variants.first_machine import Known, first_machine
+    from facegear.variants.first_machine import first_machine
     from facegear.variants.gear_unit import RexsPinions, known_of_rexs
+    from facegear.variants.starting_wishes import MachineWishes
 
     if given.config.exists():
         raise FacegearError(f"{given.config}: exists already; choose another name")
@@ -138,7 +139,7 @@ def _new(given: argparse.Namespace) -> int:
         read["pinions"] = max(read["pinions"] - given.idlers, 0)
     own = {name: value for name, value in vars(given).items() if value is not None}
     given_values = {name: own[name] for name in OPTIONS if name in own}
-    known = Known(
+    known = MachineWishes(
         case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own}) | given_values)
     )
     machine = first_machine(known)

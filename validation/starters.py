@@ -13,7 +13,8 @@ import pandas as pd
 
 from facegear.errors import FacegearError
 from facegear.gearbox import load
-from facegear.variants.first_machine import Known, first_machine
+from facegear.variants.first_machine import first_machine
+from facegear.variants.starting_wishes import MachineWishes
 
 TABLE = Path(__file__).parents[1] / "docs" / "measured" / "starters.csv"
 COUNT, SEED = 20, 50
@@ -31,7 +32,7 @@ PITCH_SPEEDS = (5.0, 40.0)
 """Speed at the pitch circle of the pinion, m/s."""
 
 
-def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[Known]:
+def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[MachineWishes]:
     """Draw machines by a fixed seed, so that each run makes the same ones.
 
     Parameters
@@ -43,7 +44,7 @@ def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[Known]:
 
     Yields
     ------
-    Known
+    MachineWishes
         What a user would give, with the coarse resolution.
     """
     draw = random.Random(seed)
@@ -53,7 +54,7 @@ def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[Known]:
         force = draw.uniform(*UNIT_LOADS) * FACE * module**2
         torque = force * 0.5e-3 * module * teeth * (2 if idlers else 1)
         speed = draw.uniform(*PITCH_SPEEDS) / (pi * 1e-3 * module * teeth) * 60.0
-        yield Known(
+        yield MachineWishes(
             case=f"starter_{number}",
             pinion_teeth=teeth,
             face_gear_teeth=round(teeth * draw.uniform(*RATIOS)),
@@ -67,12 +68,12 @@ def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[Known]:
         )
 
 
-def run_machine(machine: Known, folder: Path) -> dict[str, object]:
+def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
     """Write the config of a machine and its report.
 
     Parameters
     ----------
-    machine : Known
+    machine : MachineWishes
         The machine.
     folder : Path
         Where config and page go.
@@ -118,12 +119,12 @@ def run_machine(machine: Known, folder: Path) -> dict[str, object]:
     }
 
 
-def run_all(machines: Sequence[Known]) -> pd.DataFrame:
+def run_all(machines: Sequence[MachineWishes]) -> pd.DataFrame:
     """Run machines to their reports, one after the other.
 
     Parameters
     ----------
-    machines : sequence of Known
+    machines : sequence of MachineWishes
         The machines.
 
     Returns

@@ -52,7 +52,7 @@ class RexsPinions:
     Attributes
     ----------
     values : dict
-        By the fields of `facegear.variants.first_machine.Known`; only what the file gives.
+        By the fields of `facegear.variants.starting_wishes.MachineWishes`; only what the file gives.
     notes : tuple of str
         What was changed on the way, a line each.
     """

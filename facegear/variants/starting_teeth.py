@@ -12,6 +12,7 @@ from facegear.geometry.analysis import PairAnalysis, analyse, section_contact_ra
 from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.validate import check, check_shaper
+from facegear.variants.starting_wishes import ToothWishes
 
 HEIGHTS = tuple(1.0 - 0.05 * step for step in range(11))
 """Addendum of the pinion in modules, tried from the full height of a standard tooth down to half of it."""
@@ -45,30 +46,6 @@ POSITIONS = 16
 """Positions in a pitch at which gaps are looked for."""
 TRIED = 40
 """Largest number of teeth whose gaps are computed, 0.2 s each."""
-
-
-@dataclass(frozen=True)
-class ToothWishes:
-    """Wishes of a user for the teeth; None leaves a choice.
-
-    Names with a unit are keys of `tooth_pair`, lengths in modules or mm as these say.
-    """
-
-    pinion_teeth: int
-    face_gear_teeth: int
-    module_mm: float
-    pressure_angle_deg: float = 25.0
-    profile_shift_modules: float | None = None
-    pinion_addendum_modules: float | None = None
-    pinion_dedendum_modules: float | None = None
-    rack_tip_radius_modules: float | None = None
-    gear_addendum_modules: float | None = None
-    shaper_teeth: int | None = None
-    shaper_addendum_modules: float | None = None
-    shaper_tip_rounding_modules: float | None = None
-    thinning_um: float | None = None
-    inner_radius_mm: float | None = None
-    outer_radius_mm: float | None = None
 
 
 @dataclass(frozen=True)

@@ -15,13 +15,14 @@ from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigError, FacegearError
 from facegear.geometry.analysis import analyse
 from facegear.strength.rating import pinion_form
-from facegear.variants.first_machine import Known, first_machine
-from facegear.variants.starting_teeth import ToothWishes, choose_teeth
+from facegear.variants.first_machine import first_machine
+from facegear.variants.starting_teeth import choose_teeth
+from facegear.variants.starting_wishes import MachineWishes, ToothWishes
 
 
 def make_known(case, pinion_teeth, face_gear_teeth, module_mm, torque_n_m, speed_rpm, pinions=1, **others):
     """A machine by what is always given of it."""
-    return Known(
+    return MachineWishes(
         pinion_teeth=pinion_teeth,
         face_gear_teeth=face_gear_teeth,
         module_mm=module_mm,

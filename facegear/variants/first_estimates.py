@@ -1,0 +1,106 @@
+"""Quick estimates of what a machine to start from will do."""
+
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+
+from facegear.config.base import parse
+from facegear.config.strength import Strength, rating_request
+from facegear.number_format import count_noun
+from facegear.strength.rating import hertz_stress, permissible_bending, pinion_form, standard_bending
+from facegear.transmission.loaded_modes import vibrating_machine
+from facegear.variants.split_bearings import (
+    LARGEST_K_GAMMA,
+    Bearings,
+    Split,
+    smallest_torque,
+)
+from facegear.variants.starting_draft import SPEEDS, Draft
+
+RESONANCES = 3
+"""Number of resonances that are speeds_text."""
+
+
+def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: float) -> Iterator[str]:
+    """Estimate ratio, power, load sharing, safety and resonances.
+
+    Parameters
+    ----------
+    draft : Draft
+        The machine.
+    bearings : Bearings
+        Radial stiffness, N/m.
+    split : Split
+        How it shares its load.
+    mesh_torque : float
+        Torque on a pinion of the hardest loaded mesh, N m.
+
+    Returns
+    -------
+    iterator of str
+        A line each, with units.
+    """
+    wishes = draft.wishes
+    ratio = wishes.face_gear_teeth / wishes.pinion_teeth
+    power = wishes.pinions * wishes.torque_n_m * wishes.speed_rpm * pi / 30e3
+    yield (
+        f"ratio {ratio:.4g}, {power:.4g} kW from {count_noun(wishes.pinions, 'input')}, "
+        f"mesh frequency {wishes.pinion_teeth * wishes.speed_rpm / 60:.4g} Hz, "
+        f"contact ratio {draft.teeth.analysis.contact_ratio:.3g}"
+    )
+    if wishes.idlers:
+        low, high = split.idlers
+        yield (
+            f"K_gamma {split.inputs:.3g} of inputs, {low:.3g} to {high:.3g} of idlers; largest load of a "
+            f"path over the mean of its group {split.group_ratio:.3g} (estimated with the errors written)"
+        )
+        if split.excess > 1.0:
+            yield _poor_split(draft, bearings)
+    bending, pitting = _safeties(draft, mesh_torque)
+    yield (
+        f"safety of the pinion against bending {bending:.3g}, against pitting {pitting:.3g} at "
+        f"{mesh_torque:.4g} N m a mesh (cylindrical standard, endurance limit)"
+    )
+    yield _resonances(draft, bearings)
+
+
+def _poor_split(draft: Draft, bearings: Bearings) -> str:
+    least = smallest_torque(draft.closed_form(), bearings, draft.wishes.torque_n_m)
+    width = 1e-3 * (draft.outer - draft.inner)
+    radius = 0.5e-3 * draft.wishes.module_mm * draft.wishes.pinion_teeth
+    unit = 0.5e-6 * draft.wishes.torque_n_m / radius / (width * 1e-3 * draft.wishes.module_mm)
+    better = (
+        "more torque or less backlash"
+        if least <= draft.wishes.torque_n_m
+        else (f"at least {least:.4g} N m an input" if np.isfinite(least) else "less backlash")
+    )
+    return (
+        f"load sharing is worse than K_gamma {LARGEST_K_GAMMA:g} at this load, "
+        f"F_t/(b m) = {unit:.3g} MPa; nearest: {better}"
+    )
+
+
+def _safeties(draft: Draft, mesh_torque: float) -> tuple[float, float]:
+    design, ratio = draft.teeth.design, draft.teeth.analysis.contact_ratio
+    values = draft.values_of_config["strength"]
+    request = rating_request(parse(Strength, values), design)
+    form = pinion_form(design, ratio)
+    permissible = permissible_bending(design, request.bodies["pinion"], form.notch_parameter, 0.0)
+    pitting, _ = request.bodies["pinion"].limits()
+    stress = hertz_stress(design, ratio, request)["pinion"](mesh_torque)
+    return permissible / standard_bending(design, form)(mesh_torque), pitting.limit / stress
+
+
+def _resonances(draft: Draft, bearings: Bearings) -> str:
+    wishes = draft.wishes
+    slow, fast = (factor * wishes.speed_rpm for factor in SPEEDS)
+    frequencies = np.unique(
+        np.round(vibrating_machine(draft.machine(bearings)).modes.frequencies / (2.0 * pi), 1)
+    )
+    speeds = 60.0 * frequencies / wishes.pinion_teeth
+    within = speeds[(speeds >= slow) & (speeds <= fast)]
+    if not within.size:
+        return f"no resonance of the mesh frequency between {slow:.4g} and {fast:.4g} rpm"
+    speeds_text = ", ".join(f"{speed:.4g}" for speed in within[:RESONANCES])
+    return f"first resonances of the mesh frequency near {speeds_text} rpm"
