@@ -100,7 +100,7 @@ def _range(values: pd.Series) -> list[tuple[str, float]]:
 
 
 def stored_tables(folder: Path) -> dict[str, pd.DataFrame]:
-    """What the report of a case reads, by name; of a sweep SWEPT and VIBRATION."""
+    """Tables that the report of a case reads, by name; of a sweep SWEPT and VIBRATION."""
     wanted = [(name, file) for name, files in REPORTED.items() for file in files]
     paths = [folder / STAGES[name].files[file].path for name, file in (*wanted, ("duty_loads", "duty_loads"))]
     read = {table_name(path): tables.read(path, allow_empty=True) for path in paths if path.exists()}

@@ -43,7 +43,7 @@ class Conductivity(Section):
 
 
 class OilCard(Section):
-    """What the friction chain needs of an oil."""
+    """Properties of an oil that the friction chain needs."""
 
     name: str = Field(description="of the oil")
     source: str = Field(min_length=1, description="where the numbers are from")

@@ -81,7 +81,7 @@ class SplitMachine:
         return float(1.0 / (2.0 / self.mesh_stiffness + 4.0 * cosine**2 / idler_bearing))
 
     def _loop(self, idler_bearing: float) -> float:
-        """What the idlers add to the misfit of the loop, over the force of an input's lower mesh."""
+        """Misfit that the idlers add to the loop, over the force of an input's lower mesh."""
         bending = 2.0 * self.mesh_stiffness * np.cos(self.pressure_angle) ** 2 / idler_bearing
         return float(self.inputs / self.idlers * (1.0 + bending))
 

@@ -39,7 +39,7 @@ class StageRun:
 
 @dataclass(frozen=True)
 class Part:
-    """What one manifest covers: a whole job, or one case of a job that makes several.
+    """Extent of one manifest: a whole job, or one case of a job that makes several.
 
     - rule: what the manifest calls it
     - wildcards: values of its wildcards, behind its name on the terminal

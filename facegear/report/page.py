@@ -50,7 +50,7 @@ class Picture:
 
     @cached_property
     def interactive(self) -> Any:
-        """What plotly.js draws in its place, from the file beside it; nothing where it has no such form.
+        """Interactive form of the picture, from the file beside it; nothing where it has no such form.
 
         Raises CorruptFile where that file is not whole.
         """

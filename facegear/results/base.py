@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Literal
 
 import pandas as pd
 
-from facegear.errors import extras_named, file_path
+from facegear.errors import FacegearError, extras_named, file_path
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.table import STAGES
 
@@ -69,3 +69,24 @@ class Result:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.source}: {self.summary})"
+
+
+def require_answers(beside: object, kind: type[Result]) -> None:
+    """Refuse what is not answers of one kind by label, as figures of several gearboxes take them.
+
+    Parameters
+    ----------
+    beside : mapping of str to Result
+        Answers of other gearboxes by label.
+    kind : type
+        Class of the answers.
+
+    Raises
+    ------
+    FacegearError
+        For anything else.
+    """
+    if not isinstance(beside, Mapping) or not all(isinstance(answer, kind) for answer in beside.values()):
+        raise FacegearError(
+            f"beside = {beside!r}: must be answers of other gearboxes of the same kind by label"
+        )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import FacegearError, chosen
-from facegear.results.base import Result
+from facegear.results.base import Result, require_answers
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
@@ -52,6 +52,7 @@ class LoadSharingResult(Result):
         from facegear.load_sharing.collect import collected
         from facegear.plots.load_sharing import sharing_figure
 
+        require_answers(beside or {}, LoadSharingResult)
         results = {label: self, **(beside or {})}
         frames = {
             part: collected({(STUDY, name): result.content[part] for name, result in results.items()})

@@ -1,9 +1,12 @@
 """Figures of answers in the size and with the words of a publication."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from inspect import Parameter, signature
+from math import inf
 from typing import TYPE_CHECKING, Any
+
+from facegear.errors import FacegearError
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -37,6 +40,8 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "Figure"]:
         labels: Mapping[str, str] | None = None,
         **keywords: Any,
     ) -> "Figure":
+        if size is not None and not _is_size(size):
+            raise FacegearError(f"size = {size!r}: must be width and height in inches, both above 0")
         figure = plot(self, *arguments, **keywords)
         if size is not None:
             figure.set_size_inches(*size)
@@ -52,3 +57,12 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "Figure"]:
     drawn_to_size.__signature__ = plot_signature.replace(parameters=parameters)  # type: ignore[attr-defined]
     drawn_to_size.__doc__ = (plot.__doc__ or "").rstrip() + KEYWORDS_TEXT
     return drawn_to_size
+
+
+def _is_size(size: object) -> bool:
+    """Whether a value is two numbers above 0."""
+    return (
+        isinstance(size, Sequence)
+        and len(size) == 2
+        and all(isinstance(length, int | float) and 0.0 < length < inf for length in size)
+    )

@@ -7,7 +7,7 @@ import pandas as pd
 
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.errors import FacegearError, chosen
-from facegear.results.base import Result
+from facegear.results.base import Result, require_answers
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
@@ -97,6 +97,7 @@ class SweepResult(Result):
         from facegear.plots.sweeps_beside import mesh_sweeps_beside
 
         chosen(what, ("meshes",), "plot beside other sweeps")
+        require_answers(beside, SweepResult)
         sweeps = {name: result.content["sweep"] for name, result in {label: self, **beside}.items()}
         meshes = [f"{pinion}/{side}" for side in machine.sides for pinion in machine.shown]
         known = [set(sweep["body_or_mesh"]) for sweep in sweeps.values()]

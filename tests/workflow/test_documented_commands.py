@@ -58,7 +58,7 @@ def assert_runs(words):
 
 @pytest.mark.parametrize(("page", "command"), INLINE, ids=[code for _, code in INLINE])
 def test_a_command_inside_a_line_can_work(page, command):
-    """Those in blocks alone were tried, and these had no --cores, or a package index that has no facegear."""
+    """Only commands in blocks were tried; those inside lines had no --cores, or named a package index."""
     words = shlex.split(command.split(" > ")[0])
     if words[:2] == ["pip", "install"] and len(words) > 2:
         assert_installs_from_sources(words[2])

@@ -4,7 +4,7 @@ from enum import StrEnum
 
 
 class JumpKind(StrEnum):
-    """What an abrupt change of the response between two speeds is.
+    """Kind of an abrupt change of the response between two speeds.
 
     JUMP: the periodic motion before it ends or loses its stability there, and another periodic one follows.
     STEP: another periodic motion follows, but no loss of stability was found: the sweep left a motion that is

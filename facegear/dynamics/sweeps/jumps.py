@@ -81,7 +81,7 @@ class Jump:
 
     @property
     def kind(self) -> JumpKind:
-        """What it is."""
+        """Kind of the change, by the classes of motion on both sides."""
         if self.before.period == 0 or self.after.period == 0:
             return JumpKind.IRREGULAR
         return JumpKind.JUMP if self.followed else JumpKind.STEP
@@ -180,7 +180,7 @@ def _held_side(orbit: HeldOrbit, former: JumpSide) -> JumpSide:
 def _beyond(
     last: HeldOrbit, speed: float, follower: OrbitFollower, respond: Respond, kicks: Sequence[float]
 ) -> Course[JumpSide]:
-    """What follows an orbit at a speed at which it is lost.
+    """Find the motion that follows an orbit at a speed at which it is lost.
 
     It may be left, and the next motion approached, so slowly that no run settles: then a run goes on once,
     and larger disturbances are tried. A class that other starts have taken back stays undecided.

@@ -30,7 +30,7 @@ def test_a_drawing_does_not_depend_on_the_formats_written_before_it(tmp_path):
 
 
 def test_every_path_is_written_though_several_have_one_ending(tmp_path):
-    """Of two paths with one ending only the last was written."""
+    """Only the last of two paths with one ending was written."""
     paths = [tmp_path / f"{name}.{ending}" for name in ("first", "last") for ending in ("svg", "png", "json")]
     save(figure(), *paths)
     assert all(path.stat().st_size for path in paths)

@@ -71,7 +71,7 @@ def torque_for(teeth, unit_load, idlers):
 
 @pytest.mark.parametrize("teeth", TEETH)
 def test_every_machine_of_a_grid_passes_check_or_has_no_teeth(teeth, tmp_path):
-    """Of 63 starter machines 19 had interfering teeth and 7 were refused."""
+    """19 of 63 starter machines had interfering teeth and 7 were refused."""
     draw = random.Random(teeth)
     for pinion, gear, angle in [one for one in pairs_of_teeth() if one[0] == teeth]:
         for pinions, idlers in KINDS:
