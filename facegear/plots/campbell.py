@@ -42,7 +42,7 @@ def campbell(
         _mark(axis, resonances, "speed_rpm", teeth, "o", "peaks")
         irregular = jumps["kind"] == JumpKind.IRREGULAR
         _mark(axis, jumps[~irregular], "speed_after_rpm", teeth, "x", "jumps")
-        _mark(axis, jumps[irregular], "speed_after_rpm", teeth, "+", "irregular motion begins or ends")
+        _mark(axis, jumps[irregular], "speed_after_rpm", teeth, "+", "irregular motion")
         axis.set_xlim(0, last_rpm)
         axis.set_ylim(0, top)
         axis.set_xlabel("input rotation speed (rpm)")
@@ -61,7 +61,7 @@ def _mark(axis: Axes, rows: pd.DataFrame, speed: str, teeth: int, symbol: str, l
     """Marks where the strongest mode's response frequency lies at each row's speed; grey off all lines."""
     unique = rows.drop_duplicates([speed, "resonance"])
     on = _on_line(unique["order"].astype(float))
-    for chosen, colour, text in ((on, "black", label), (~on, "0.6", f"{label} at no multiple")):
+    for chosen, colour, text in ((on, "black", label), (~on, "0.6", f"{label}, off lines")):
         if chosen.any():
             frequency = unique["order"][chosen] * teeth * unique[speed][chosen] / 60.0
             axis.plot(unique[speed][chosen], frequency, symbol, color=colour, ms=4, label=text)

@@ -50,7 +50,8 @@ CAPTIONS = {
     "with mesh harmonics, larger where the phases of the meshes add up.",
     "body_campbell": "Waves of a face gear over speed, hub held; marks: crossings with mesh harmonics, "
     "larger where the phases of the meshes add up.",
-    "campbell": "Campbell diagram: natural frequencies against multiples of the mesh frequency.",
+    "campbell": "Campbell diagram: natural frequencies against multiples of the mesh frequency. Crosses mark "
+    "where irregular motion begins or ends; grey marks lie off the lines, at no multiple.",
     "mesh_deflections": "Mesh deflections at the nominal speed and their spectra.",
     "pinion_sweep": "RMS of the pinions' translations over speed.",
     "gear_sweep": "RMS of the face gears' translations over speed.",

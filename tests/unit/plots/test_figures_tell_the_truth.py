@@ -8,6 +8,7 @@ from contact_patterns import line_arrays
 from matplotlib.text import Text
 
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
+from facegear.plots.campbell import campbell
 from facegear.plots.compare import curves_compared
 from facegear.plots.contact import closed, contact_pattern
 from facegear.plots.dynamics import drawn_machine
@@ -192,3 +193,23 @@ def test_every_pinion_has_a_panel_where_parts_or_torques_differ(singled, torque,
     singles = {"single_pinions": singled, "single_meshes": {}, "single_gears": {}}
     drawn = drawn_machine({"pinions": pinions, "face_gears": ["lower", "upper"], **singles}, 23)
     assert drawn.shown == shown
+
+
+def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():
+    """The longest label was cut off at the right, and the first column at the left."""
+    frequencies = pd.DataFrame(
+        {
+            "frequency_hz": [700.0, 2200.0, 5600.0],
+            "class": ["pinion", "face gear", "pinion coupled face gear"],
+        }
+    )
+    marks = pd.DataFrame({"order": [1.0, 0.3], "resonance": [1, 2], "speed_rpm": [2000.0, 9000.0]})
+    jumps = pd.concat([marks, marks]).assign(kind=["jump", "jump", "irregular", "irregular"])
+    jumps = jumps.rename(columns={"speed_rpm": "speed_after_rpm"})
+    figure = campbell(frequencies, marks, jumps, 23, 20000.0)
+    figure.canvas.draw()
+    (legend,) = figure.legends
+    box = legend.get_window_extent()
+    assert len(legend.texts) == 9
+    assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
+    plt.close(figure)
