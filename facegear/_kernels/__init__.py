@@ -4,28 +4,39 @@ import hashlib
 from pathlib import Path
 
 _SOURCES = Path(__file__).with_name("src")
-_BUILD = "rebuild them by `make kernels`"
+_BUILD = "rebuild them by `make kernels`, or by `pip install -e .` where pip installed this folder"
 
 try:
     from facegear._kernels import _baseline
 except ImportError as error:
     raise ImportError(f"the compiled kernels of facegear cannot be loaded ({error}): {_BUILD}") from error
 
-_compiled = _baseline
+_module = _baseline
 if _baseline.has_x86_64_v3():
     from facegear._kernels import _x86_64_v3
 
-    _compiled = _x86_64_v3
+    _module = _x86_64_v3
 
 
 def sources_hash() -> str:
-    """Return the hash of all C++ sources, as CMakeLists.txt computes it."""
+    """Compute the hash of the C++ sources, as CMakeLists.txt does.
+
+    Returns
+    -------
+    str
+        SHA-256 in hexadecimal digits.
+    """
     files = [*_SOURCES.rglob("*.cpp"), *_SOURCES.rglob("*.hpp")]
     hashes = sorted(hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
     return hashlib.sha256("".join(hashes).encode()).hexdigest()
 
 
-if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() != _compiled.SOURCES_HASH:
+if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() != _module.SOURCES_HASH:
     raise ImportError(f"the compiled kernels of facegear are older than their sources: {_BUILD}")
 
-arithmetic = _compiled.arithmetic
+COMPILER: str = _module.COMPILER
+"""Name and version of the compiler that built the kernels."""
+LEVEL: str = _module.__name__.rpartition(".")[2].strip("_")
+"""Level of instructions that is used here: `x86_64_v3`, or `baseline` on other processors."""
+
+arithmetic = _module.arithmetic
