@@ -5,7 +5,7 @@ import json
 import os
 import subprocess
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,6 +24,8 @@ TURNS = 3
 SAME = 1e-9
 """Change of a number, over the largest of its array, up to which it is the same."""
 WORKER = Path(__file__).with_name("worker.py")
+MOTION = ("motion", "class")
+"""Ends of the names of arrays that hold classes of motion."""
 DIFFERENCES = {"k_gamma_missed": 1e-12}
 """Relative differences of two like numbers up to which these count as equal."""
 COLUMNS = (
@@ -135,7 +137,7 @@ def changes(before: dict[str, np.ndarray], now: dict[str, np.ndarray]) -> tuple[
 
 
 def relative_change(
-    before: dict[str, np.ndarray], now: dict[str, np.ndarray], name: str, texts: Collection[str]
+    before: Mapping[str, np.ndarray], now: Mapping[str, np.ndarray], name: str, texts: Collection[str]
 ) -> np.ndarray:
     """Return the change of each number of an array over its largest one, those of regular motions alone.
 
@@ -155,8 +157,8 @@ def relative_change(
     """
     old, new = (_counted(name, side[name]) for side in (before, now))
     for label in texts:
-        if label.endswith("motion") and name.startswith(label.removesuffix("motion")):
-            regular = _regular(before, now, label)
+        if label.endswith(MOTION) and name.startswith(label.removesuffix("motion").removesuffix("class")):
+            regular = is_regular(before, now, label)
             if len(regular) == len(old):
                 old, new = old[regular], new[regular]
     scale = np.abs(old[np.isfinite(old)]).max(initial=0.0)
@@ -165,10 +167,23 @@ def relative_change(
     return gap / scale if scale > 0.0 else gap
 
 
-def _regular(before: dict[str, np.ndarray], now: dict[str, np.ndarray], name: str) -> np.ndarray:
-    """Rows that are periodic with the same period on both sides."""
-    kind, period = before[name], name.removesuffix("motion") + "period"
-    rows = np.char.startswith(kind, "period") & (kind == now[name])
+def is_regular(before: Mapping[str, np.ndarray], now: Mapping[str, np.ndarray], label: str) -> np.ndarray:
+    """Return which rows are periodic with the same period on both sides.
+
+    Parameters
+    ----------
+    before, now : mapping
+        Arrays of numbers and texts, of any shape and unit.
+    label : str
+        Name of the array of the classes of motion.
+
+    Returns
+    -------
+    ndarray
+        Whether each row is, (rows,).
+    """
+    kind, period = before[label], label.removesuffix("motion") + "period"
+    rows = np.char.startswith(kind, "period") & (kind == now[label])
     return rows & (before[period] == now[period]) if period in before else rows
 
 

@@ -3,11 +3,13 @@
     python worker.py JOB ANSWERS INPUTS
 
 JOB is a file of JSON: `config` (path of a config file), `changes` by dotted keys, and either `stage` and
-`wildcards` of the workflow or `calls`, methods of a gearbox. Each line that is read from the standard input
-starts one call: `warm` for its own time, `whole` for that since the process began. It is answered by a line
-of JSON: `seconds` of a processor, `wall` seconds and `memory_mb`, the largest memory of the process. ANSWERS
-is the npz file that the numbers of the first call are written to; INPUTS is a folder in which this code keeps
-what other stages give to the stage. Only the standard library is imported before the clock is read.
+`wildcards` of the workflow or `calls`: methods of a gearbox, `mesh_period` (one period of the motion from
+given starts) or `oscillators` (classes of as many random ones as `count` says, made by the code in the folder
+`sources`). Each line that is read from the standard input starts one call: `warm` for its own time, `whole`
+for that since the process began. It is answered by a line of JSON: `seconds` of a processor, `wall` seconds
+and `memory_mb`, the largest memory of the process. ANSWERS is the npz file that the numbers of the first call
+are written to; INPUTS is a folder in which this code keeps what other stages give to the stage. Only the
+standard library is imported before the clock is read.
 """
 
 import json
@@ -16,6 +18,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+SECOND_LOOKS = 3
+"""Other starts that a class must come out from again, as in a sweep."""
 
 
 def main(job: str, answers: str, inputs: str) -> None:
@@ -63,9 +68,70 @@ def _calls(asked: dict[str, Any]) -> Callable[[], Any]:
         if not asked["calls"]:
             return {"door": facegear.Gearbox.__name__}
         gearbox = facegear.load(asked["config"], results=None).with_values(asked["changes"])
-        return {name: getattr(gearbox, name)().content for name in asked["calls"]}
+        return {name: _called(gearbox, name, asked) for name in asked["calls"]}
 
     return answer
+
+
+def _called(gearbox: Any, name: str, asked: dict[str, Any]) -> Any:
+    if name == "mesh_period":
+        return _mesh_period(gearbox)
+    if name == "oscillators":
+        return _oscillators(asked["count"], asked["sources"])
+    return getattr(gearbox, name)().content
+
+
+def _mesh_period(gearbox: Any) -> dict[str, Any]:
+    """State, disturbances, samples and contact after one mesh period, from rest and from two starts aside.
+
+    All are displacements of the bodies, as reduced coordinates may come in another order.
+    """
+    import numpy as np
+
+    from facegear.dynamics.integrator.integrator import Integrator
+    from facegear.dynamics.steady_state.simulate import build_model, static_start
+    from facegear.transmission.machine import mesh_frequency
+
+    model = build_model(gearbox._machine())
+    speed = gearbox.values["dynamics"]["speed_rpm"]
+    integrator = Integrator(model.system, 2.0 * np.pi * mesh_frequency(model.machine.layout, speed))
+    random, basis, linear = np.random.default_rng(1), model.reduced.basis, model.machine.linear
+
+    def aside(size: float) -> Any:
+        """A random state (2, n) by phase whose largest mesh deflection is `size` length scales."""
+        bodies = random.normal(size=(2, len(basis)))
+        state = np.array([basis.T @ linear.momentum(row) for row in bodies])
+        return state * (size * model.system.scale / np.abs(state @ model.system.mesh_jacobian.T).max())
+
+    start, ends = integrator.by_phase(static_start(model)), {}
+    for size in (0.0, 0.3, 1.0):
+        tangents = np.array([aside(1.0) for _ in range(2)])
+        run = integrator.run(start + aside(size), 1, tangents, samples=16)
+        ends[f"{size:g}"] = {
+            "state": run.ends[0] @ basis.T,
+            "tangents": run.tangents @ basis.T,
+            "samples": run.samples @ basis.T,
+            "fractions": run.fractions[:, : integrator.contacts],
+            "steps": run.steps,
+        }
+    return ends
+
+
+def _oscillators(count: int, sources: str) -> dict[str, Any]:
+    """Classes of random oscillators from their starts alone, and where they hold under second looks."""
+    from dataclasses import replace
+
+    sys.path.append(sources)
+    from facegear.dynamics.motion import Settings
+    from facegear.dynamics.steady_state.simulate import steady_state
+    from validation.dynamics.oscillators import random_oscillators
+
+    looks = {"label": Settings(), "second_look": replace(Settings(), second_looks=SECOND_LOOKS)}
+    oscillators = list(random_oscillators(count))
+    return {
+        name: [steady_state(each.system, each.speed, settings, each.start).label for each in oscillators]
+        for name, settings in looks.items()
+    }
 
 
 def _largest_memory() -> float:
@@ -102,7 +168,7 @@ def flat(content: Any, name: str = "") -> dict[str, Any]:
     if isinstance(content, dict):
         parts = [flat(value, f"{name}{key}/") for key, value in content.items()]
         return {key: value for part in parts for key, value in part.items()}
-    if isinstance(content, list | tuple):
+    if isinstance(content, list | tuple) and not all(isinstance(each, str) for each in content):
         return flat(dict(enumerate(content)), name)
     return {name.rstrip("/"): _plain(content)}
 
