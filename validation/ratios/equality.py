@@ -18,10 +18,10 @@ import numpy as np
 import pandas as pd
 
 from validation.ratios.points import EXAMPLE, ROOT
-from validation.ratios.run import BASELINE, Job, is_regular, relative_change, stored
+from validation.ratios.run import BASELINE, Job, is_regular, read_answers, relative_change
 from validation.ratios.trees import Tree, checked_out, present
 
-MEASURED = ROOT / "docs" / "measured" / "equality.csv"
+TABLE = ROOT / "docs" / "measured" / "equality.csv"
 ROUNDING, MAGNIFIED = 1e-12, 1e-9
 """Largest relative change of numbers that are solved directly, and of those that many periods lie before."""
 LIMITS = {
@@ -36,7 +36,7 @@ LIMITS = {
 """Largest relative change of the numbers of each answer, over the largest of the same quantity."""
 OSCILLATORS, MAY_DIFFER = 500, 5
 """Random oscillators, and of how many the class may differ if second looks leave each undecided in both."""
-UNDECIDED = "not settled"
+NOT_SETTLED = "not settled"
 """Class of a motion that second looks do not confirm."""
 ASIDE = 1e-11
 """Relative change of the mean mesh stiffness that shows how far an irregular sweep moves by itself."""
@@ -78,7 +78,18 @@ class Case:
     oscillators: int = OSCILLATORS
 
     def job(self, tree: Tree) -> dict[str, Any]:
-        """Return what a process is told, in plain values."""
+        """Return the request to a process.
+
+        Parameters
+        ----------
+        tree : Tree
+            The code that the process runs.
+
+        Returns
+        -------
+        dict
+            Plain values, as the module `worker` says.
+        """
         return {
             "config": str(ROOT / self.config),
             "changes": dict(self.changes),
@@ -171,11 +182,11 @@ def answer(tree: Tree, folder: Path, cases: Mapping[str, Case], ending: str = ""
             if path.exists():
                 continue
             job.write_text(json.dumps(case.job(tree)), encoding="utf-8")
-            written = Path(scratch) / "answers.npz"
-            process = Job(tree, job, written, Path(scratch) / "inputs", whole_process=False)
+            answers = Path(scratch) / "answers.npz"
+            process = Job(tree, job, answers, Path(scratch) / "inputs", whole_process=False)
             seconds = process.call()["seconds"]
             process.close()
-            written.replace(path)
+            answers.replace(path)
             print(f"{name}{ending}: {seconds:.1f} CPU s", file=sys.stderr, flush=True)
 
 
@@ -198,21 +209,22 @@ def compare(before: Path, now: Path, cases: Mapping[str, Case] = CASES) -> pd.Da
     """
     rows = []
     for name in cases:
-        old, new = (stored(folder / f"{name}.npz") for folder in (before, now))
+        old, new = (read_answers(folder / f"{name}.npz") for folder in (before, now))
         rows += list(_rows(name, old, new))
         if name in SPREAD:
-            rows += list(_rows(name, old, stored(before / f"{name}_spread.npz"), "spread"))
+            rows += list(_rows(name, old, read_answers(before / f"{name}_spread.npz"), "spread"))
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def _rows(name: str, old: Answers, new: Answers, called: str = "") -> Iterator[tuple[object, ...]]:
+def _rows(name: str, old: Answers, new: Answers, title: str = "") -> Iterator[tuple[object, ...]]:
     """Rows of a case, one an answer."""
     if "own_motion" in old:
-        yield name, called or "sweep", *_sweep_row(old, new)
+        yield name, title or "sweep", *_sweep_row(old, new)
         return
     for call in dict.fromkeys(key.partition("/")[0] for key in old):
-        part = [{key: side[key] for key in side if key.startswith(f"{call}/")} for side in (old, new)]
-        yield name, call, *(_labels_row(*part) if call == "oscillators" else _numbers_row(*part, call))
+        before, now = ({key: side[key] for key in side if key.startswith(f"{call}/")} for side in (old, new))
+        labels = call == "oscillators"
+        yield name, call, *(_labels_row(before, now) if labels else _numbers_row(before, now, call))
 
 
 def _numbers_row(old: Answers, new: Answers, call: str) -> tuple[object, ...]:
@@ -228,14 +240,14 @@ def _sweep_row(old: Answers, new: Answers) -> tuple[object, ...]:
     of the sweep comes before, as rounding decides where the sweep comes out of one.
     """
     limit = LIMITS["sweep"]
-    own = [{key: side[key] for key in side if key.startswith("own_")} for side in (old, new)]
+    before, now = ({key: side[key] for key in side if key.startswith("own_")} for side in (old, new))
     class_of = "own_motion"
-    labels = _changed_labels(*own)
-    regular = is_regular(*own, class_of)
+    labels = _changed_labels(before, now)
+    regular = is_regular(before, now, class_of)
     gaps = np.zeros(regular.size)
-    for name, values in own[0].items():
-        if values.dtype.kind != "U" and len(values) == regular.size and values.shape == own[1][name].shape:
-            change = relative_change(*own, name, ["own_motion"])
+    for name, values in before.items():
+        if values.dtype.kind != "U" and len(values) == regular.size and values.shape == now[name].shape:
+            change = relative_change(before, now, name, [class_of])
             gaps[regular] = np.maximum(
                 gaps[regular], change.reshape(regular.sum(), -1).max(axis=1, initial=0.0)
             )
@@ -248,8 +260,8 @@ def _sweep_row(old: Answers, new: Answers) -> tuple[object, ...]:
 def _labels_row(old: Answers, new: Answers) -> tuple[object, ...]:
     """Columns of the oscillators: classes may differ where second looks leave them undecided in both."""
     differ = old["oscillators/label"] != new["oscillators/label"]
-    undecided = [side["oscillators/second_look"] == UNDECIDED for side in (old, new)]
-    holds = differ.sum() <= MAY_DIFFER and not (differ & ~(undecided[0] & undecided[1])).any()
+    open_class = [side["oscillators/second_look"] == NOT_SETTLED for side in (old, new)]
+    holds = differ.sum() <= MAY_DIFFER and not (differ & ~(open_class[0] & open_class[1])).any()
     return 0, 0.0, 0.0, 0, differ.size, int(differ.sum()), bool(holds)
 
 
@@ -270,8 +282,8 @@ def _gaps(old: Answers, new: Answers) -> Iterator[np.ndarray]:
     """Relative changes of all numbers; one infinite where an array is missing or has another shape."""
     texts = [name for name, values in old.items() if values.dtype.kind == "U"]
     for name in old.keys() - set(texts):
-        alike = name in new and old[name].shape == new[name].shape
-        yield relative_change(old, new, name, texts) if alike else np.full(1, np.inf)
+        comparable = name in new and old[name].shape == new[name].shape
+        yield relative_change(old, new, name, texts) if comparable else np.full(1, np.inf)
 
 
 def _changed_labels(old: Answers, new: Answers) -> tuple[int, int]:
@@ -286,6 +298,11 @@ def _changed_labels(old: Answers, new: Answers) -> tuple[int, int]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Compute what is missing, print the table, and write it where it is asked for.
 
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Of the command line, by default those of this process.
+
     Returns
     -------
     int
@@ -297,28 +314,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--before", type=Path, help="folder that keeps the answers of the earlier commit")
     parser.add_argument("--now", type=Path, help="folder that keeps the answers of this code")
     parser.add_argument("--tree", type=Path, help="root of another checkout with its .venv")
-    parser.add_argument("--table", type=Path, help=f"csv to be written, for the page {MEASURED}")
-    asked = parser.parse_args(arguments)
-    unknown = [name for name in asked.cases if name not in CASES]
-    if unknown:
-        parser.error(f"unknown cases {', '.join(unknown)}; allowed: {', '.join(CASES)}")
-    cases = {name: CASES[name] for name in asked.cases}
+    parser.add_argument(
+        "--table", type=Path, help=f"csv that is written; pages show {TABLE.relative_to(ROOT)}"
+    )
+    options = parser.parse_args(arguments)
+    invalid = [name for name in options.cases if name not in CASES]
+    if invalid:
+        parser.error(f"unknown cases {', '.join(invalid)}; allowed: {', '.join(CASES)}")
+    cases = {name: CASES[name] for name in options.cases}
     spread = {name: case for name, case in SPREAD.items() if name in cases}
-    tree = present() if asked.tree is None else Tree(asked.tree, asked.tree, asked.tree / ".venv/bin/python")
+    root = options.tree
+    tree = present() if root is None else Tree(root, root, root / ".venv" / "bin" / "python")
     with TemporaryDirectory() as scratch:
-        before, now = (
-            folder or Path(scratch) / name for folder, name in ((asked.before, "a"), (asked.now, "b"))
-        )
-        wanted = [f"{name}.npz" for name in cases] + [f"{name}_spread.npz" for name in spread]
-        if not all((before / name).exists() for name in wanted):
-            with checked_out(asked.since) as earlier:
+        before, now = options.before or Path(scratch, "before"), options.now or Path(scratch, "now")
+        files = [f"{name}.npz" for name in cases] + [f"{name}_spread.npz" for name in spread]
+        if not all((before / name).exists() for name in files):
+            with checked_out(options.since) as earlier:
                 answer(earlier, before, cases)
                 answer(earlier, before, spread, "_spread")
         answer(tree, now, cases)
         table = compare(before, now, cases)
     print(table.to_string(index=False))
-    if asked.table:
-        table.to_csv(asked.table, index=False, float_format="%.3g", lineterminator="\n")
+    if options.table:
+        table.to_csv(options.table, index=False, float_format="%.3g", lineterminator="\n")
     return int(not table["holds"][table["answer"] != "spread"].all())
 
 

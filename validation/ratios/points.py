@@ -1,4 +1,4 @@
-"""What is measured: jobs of the workflow and calls of a fresh process, and how the time of each is stated."""
+"""Points of measurement: jobs of the workflow and calls of a fresh process, with the unit of each time."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -50,7 +50,7 @@ class Point:
 
     @property
     def job(self) -> dict[str, Any]:
-        """What a process is told, in plain values."""
+        """Request to a process, in plain values."""
         return {
             "config": str(ROOT / self.config),
             "changes": dict(self.changes),

@@ -104,14 +104,25 @@ def ratio(
         for clock in ("seconds", "wall")
         for side in range(2)
     )
-    change = changes(*(stored(path) for path in answers))
-    measured = (before, now, now / before, *wall, *memory, *change)
-    values = (name, point.unit, *measured, point.error, os.getloadavg()[0])
+    change = changes(*(read_answers(path) for path in answers))
+    times = (before, now, now / before, *wall, *memory, *change)
+    values = (name, point.unit, *times, point.error, os.getloadavg()[0])
     return dict(zip(COLUMNS, values, strict=True))
 
 
-def stored(path: Path) -> dict[str, np.ndarray]:
-    """Read the answers of a job: arrays of numbers and texts by their names."""
+def read_answers(path: Path) -> dict[str, np.ndarray]:
+    """Read the answers of a job.
+
+    Parameters
+    ----------
+    path : Path
+        File in NumPy's format npz.
+
+    Returns
+    -------
+    dict
+        Arrays of numbers and texts by their names, of any shape and unit.
+    """
     with np.load(path, allow_pickle=False) as arrays:
         return dict(arrays)
 
@@ -162,8 +173,8 @@ def relative_change(
             if len(regular) == len(old):
                 old, new = old[regular], new[regular]
     scale = np.abs(old[np.isfinite(old)]).max(initial=0.0)
-    same = (old == new) | np.isnan(old) & np.isnan(new)
-    gap = np.where(same, 0.0, np.nan_to_num(np.abs(new - old), nan=np.inf)).ravel()
+    equal = (old == new) | np.isnan(old) & np.isnan(new)
+    gap = np.where(equal, 0.0, np.nan_to_num(np.abs(new - old), nan=np.inf)).ravel()
     return gap / scale if scale > 0.0 else gap
 
 
@@ -202,9 +213,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--turns", type=int, default=TURNS)
     parser.add_argument("--table", type=Path, help="csv to be written")
     asked = parser.parse_args(arguments)
-    unknown = [name for name in asked.points if name not in POINTS]
-    if unknown:
-        parser.error(f"unknown points {', '.join(unknown)}; allowed: {', '.join(POINTS)}")
+    invalid = [name for name in asked.points if name not in POINTS]
+    if invalid:
+        parser.error(f"unknown points {', '.join(invalid)}; allowed: {', '.join(POINTS)}")
     rows = []
     with ExitStack() as stack:
         before = stack.enter_context(checked_out(asked.since))

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from validation.growth.measure import ONE_THREAD
 
 ROOT = Path(__file__).parents[2]
-KEPT = ROOT / "results" / "ratios"
+CACHE = ROOT / "results" / "ratios"
 """Folder of environments and built packages of earlier commits; they are used again until it is removed."""
 LOCK = "requirements-run.lock"
 """Libraries that a run needs, with their hashes; the environment of a commit is made from its own."""
@@ -99,19 +99,19 @@ def checked_out(commit: str) -> Iterator[Tree]:
         subprocess.run([*git, "add", "--quiet", "--detach", str(sources), commit], check=True)
         try:
             python = environment(sources)
-            yield Tree(sources, built(sources, python), python)
+            yield Tree(sources, build_package(sources, python), python)
         finally:
             subprocess.run([*git, "remove", "--force", str(sources)], check=True)
 
 
-def environment(sources: Path, kept: Path = KEPT) -> Path:
+def environment(sources: Path, cache: Path = CACHE) -> Path:
     """Make the environment that a commit's own lock file names, unless it is there already.
 
     Parameters
     ----------
     sources : Path
         Folder of the commit's files.
-    kept : Path
+    cache : Path
         Folder of all environments.
 
     Returns
@@ -121,7 +121,7 @@ def environment(sources: Path, kept: Path = KEPT) -> Path:
     """
     version = sys.version.encode()
     texts = [(sources / name).read_bytes() for name in (LOCK, "pyproject.toml")]
-    folder = kept / "environments" / _digest(version, *texts)
+    folder = cache / "environments" / _digest(version, *texts)
     python = folder / "bin" / "python"
     if not (folder / READY).exists():
         print(f"installing {LOCK} of the commit into {folder}", file=sys.stderr, flush=True)
@@ -132,7 +132,7 @@ def environment(sources: Path, kept: Path = KEPT) -> Path:
     return python
 
 
-def built(sources: Path, python: Path, kept: Path = KEPT) -> Path:
+def build_package(sources: Path, python: Path, cache: Path = CACHE) -> Path:
     """Build the package of a commit that has a compiled extension, unless it is there already.
 
     Parameters
@@ -141,7 +141,7 @@ def built(sources: Path, python: Path, kept: Path = KEPT) -> Path:
         Folder of the commit's files, checked out by git.
     python : Path
         Interpreter that the package is for.
-    kept : Path
+    cache : Path
         Folder of all packages.
 
     Returns
@@ -152,7 +152,7 @@ def built(sources: Path, python: Path, kept: Path = KEPT) -> Path:
     if not (sources / EXTENSION).exists():
         return sources
     commit = subprocess.check_output(["git", "-C", str(sources), "rev-parse", "HEAD"])
-    folder = kept / "packages" / _digest(commit, str(python).encode())
+    folder = cache / "packages" / _digest(commit, str(python).encode())
     if not (folder / READY).exists():
         print(f"building the extension of the commit into {folder}", file=sys.stderr, flush=True)
         _uv("pip", "install", "--python", str(python), "--no-deps", "--target", str(folder), str(sources))

@@ -31,11 +31,11 @@ def main(job: str, answers: str, inputs: str) -> None:
     job, answers, inputs : str
         Paths, as the module says.
     """
-    asked = json.loads(Path(job).read_text(encoding="utf-8"))
+    request = json.loads(Path(job).read_text(encoding="utf-8"))
     call: Callable[[], Any] | None = None
     for line in sys.stdin:
         whole = line.strip() == "whole"
-        call = call or (_stage(asked, inputs) if asked["stage"] else _calls(asked))
+        call = call or (_stage(request, inputs) if request["stage"] else _calls(request))
         begin, clock = 0.0 if whole else time.process_time(), time.perf_counter()
         content = call()
         seconds, wall = time.process_time() - begin, time.perf_counter() - clock
@@ -44,7 +44,7 @@ def main(job: str, answers: str, inputs: str) -> None:
             _write(Path(answers), content)
 
 
-def _stage(asked: dict[str, Any], inputs: str) -> Callable[[], Any]:
+def _stage(request: dict[str, Any], inputs: str) -> Callable[[], Any]:
     """Call of a stage whose inputs are computed now, or read where this code has kept them."""
     import facegear
     from facegear.pipeline.run import call
@@ -53,31 +53,31 @@ def _stage(asked: dict[str, Any], inputs: str) -> Callable[[], Any]:
     from facegear.results.partial import PartialResults
     from facegear.results.store import Store
 
-    gearbox = facegear.load(asked["config"], results=None).with_values(asked["changes"])
-    stage = STAGES[asked["stage"]]
+    gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
+    stage = STAGES[request["stage"]]
     arguments = Chain(gearbox.values, Store(partial=PartialResults(Path(inputs)))).arguments(stage.name)
-    return lambda: call(stage, arguments, **stage.typed(asked["wildcards"])).content
+    return lambda: call(stage, arguments, **stage.typed(request["wildcards"])).content
 
 
-def _calls(asked: dict[str, Any]) -> Callable[[], Any]:
+def _calls(request: dict[str, Any]) -> Callable[[], Any]:
     """Calls that a user makes through the Python door, its import among them."""
 
     def answer() -> Any:
         import facegear
 
-        if not asked["calls"]:
+        if not request["calls"]:
             return {"door": facegear.Gearbox.__name__}
-        gearbox = facegear.load(asked["config"], results=None).with_values(asked["changes"])
-        return {name: _called(gearbox, name, asked) for name in asked["calls"]}
+        gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
+        return {name: _answer(gearbox, name, request) for name in request["calls"]}
 
     return answer
 
 
-def _called(gearbox: Any, name: str, asked: dict[str, Any]) -> Any:
+def _answer(gearbox: Any, name: str, request: dict[str, Any]) -> Any:
     if name == "mesh_period":
         return _mesh_period(gearbox)
     if name == "oscillators":
-        return _oscillators(asked["count"], asked["sources"])
+        return _oscillators(request["count"], request["sources"])
     return getattr(gearbox, name)().content
 
 
@@ -129,7 +129,7 @@ def _oscillators(count: int, sources: str) -> dict[str, Any]:
     looks = {"label": Settings(), "second_look": replace(Settings(), second_looks=SECOND_LOOKS)}
     oscillators = list(random_oscillators(count))
     return {
-        name: [steady_state(each.system, each.speed, settings, each.start).label for each in oscillators]
+        name: [steady_state(body.system, body.speed, settings, body.start).label for body in oscillators]
         for name, settings in looks.items()
     }
 
@@ -145,7 +145,7 @@ def _write(path: Path, content: Any) -> None:
     import numpy as np
 
     with path.open("wb") as file:
-        np.savez(file, **flat(content))  # type: ignore[arg-type]
+        np.savez(file, **flat(content))
 
 
 def flat(content: Any, name: str = "") -> dict[str, Any]:
@@ -168,7 +168,7 @@ def flat(content: Any, name: str = "") -> dict[str, Any]:
     if isinstance(content, dict):
         parts = [flat(value, f"{name}{key}/") for key, value in content.items()]
         return {key: value for part in parts for key, value in part.items()}
-    if isinstance(content, list | tuple) and not all(isinstance(each, str) for each in content):
+    if isinstance(content, list | tuple) and not all(isinstance(item, str) for item in content):
         return flat(dict(enumerate(content)), name)
     return {name.rstrip("/"): _plain(content)}
 

@@ -1,4 +1,4 @@
-"""What counts as the same answer of two commits."""
+"""Rules for what counts as the same answer of two commits."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import facegear
-from validation.ratios.equality import CASES, LIMITS, SPREAD, UNDECIDED, Case, answer, compare, main
-from validation.ratios.run import stored
+from validation.ratios.equality import CASES, LIMITS, NOT_SETTLED, SPREAD, Case, answer, compare, main
+from validation.ratios.run import read_answers
 from validation.ratios.trees import present
 
 
@@ -75,19 +75,19 @@ def classes(label, second_look):
 
 
 def test_classes_may_differ_only_where_both_leave_them_undecided(tmp_path):
-    old = classes(["period-1", "chaotic"], ["period-1", UNDECIDED])
-    open_in_both = classes(["period-1", "period-3"], ["period-1", UNDECIDED])
+    old = classes(["period-1", "chaotic"], ["period-1", NOT_SETTLED])
+    open_in_both = classes(["period-1", "period-3"], ["period-1", NOT_SETTLED])
     open_in_one = classes(["period-1", "period-3"], ["period-1", "period-3"])
     assert rows(tmp_path, "case", old, open_in_both)["oscillators"].holds
     assert not rows(tmp_path, "case", old, open_in_one)["oscillators"].holds
-    many = classes(["chaotic"] * 6, [UNDECIDED] * 6), classes(["period-3"] * 6, [UNDECIDED] * 6)
+    many = classes(["chaotic"] * 6, [NOT_SETTLED] * 6), classes(["period-3"] * 6, [NOT_SETTLED] * 6)
     assert not rows(tmp_path, "case", *many)["oscillators"].holds
 
 
 def test_a_process_gives_statics_a_mesh_period_and_classes(tmp_path):
     calls = ("statics", "mesh_period", "oscillators")
     answer(present(), tmp_path, {"case": replace(CASES["geometric_kinematics"], calls=calls, oscillators=2)})
-    found = stored(tmp_path / "case.npz")
+    found = read_answers(tmp_path / "case.npz")
     assert found["oscillators/label"].shape == found["oscillators/second_look"].shape == (2,)
     assert found["mesh_period/1/state"].shape == (2, 4 * found["statics/bodies/body"].size)
     assert found["mesh_period/1/fractions"].sum(axis=0) == pytest.approx(1.0)

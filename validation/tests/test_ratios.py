@@ -12,8 +12,8 @@ import facegear
 from facegear.pipeline.table import STAGES
 from validation.ratios import trees
 from validation.ratios.points import POINTS, Point
-from validation.ratios.run import BASELINE, COLUMNS, changes, main, ratio, stored
-from validation.ratios.trees import LOCK, Tree, built, environment, present
+from validation.ratios.run import BASELINE, COLUMNS, changes, main, ratio, read_answers
+from validation.ratios.trees import LOCK, Tree, build_package, environment, present
 from validation.ratios.worker import flat
 
 MOTIONS = np.array(["period-1", "chaotic", "period-2", "period-1"])
@@ -27,7 +27,7 @@ def test_code_is_measured_beside_itself_with_the_same_answers(tmp_path):
     assert tuple(row) == COLUMNS
     assert row["change"] == 0.0 and row["labels_changed"] == 0
     assert row["before"] > 0.0 and row["ratio"] == pytest.approx(row["now"] / row["before"])
-    frequencies = stored(tmp_path / "modal_now.npz")["frequencies/frequency_hz"]
+    frequencies = read_answers(tmp_path / "modal_now.npz")["frequencies/frequency_hz"]
     computed = facegear.load(point.config, results=None).modes().table()["frequency_hz"]
     assert frequencies == pytest.approx(computed, rel=1e-12, abs=1e-6)
 
@@ -35,7 +35,7 @@ def test_code_is_measured_beside_itself_with_the_same_answers(tmp_path):
 def test_a_fresh_process_is_measured_from_its_start(tmp_path):
     row = ratio("import", POINTS["fresh_import"], (present(), present()), tmp_path, turns=1)
     assert row["before"] > 0.1 and row["now"] > 0.1  # a start of Python with pydantic, not a second call
-    assert stored(tmp_path / "import_now.npz")["door"] == "Gearbox"
+    assert read_answers(tmp_path / "import_now.npz")["door"] == "Gearbox"
 
 
 def test_answers_hold_no_python_objects():
@@ -94,9 +94,9 @@ def test_only_a_commit_with_an_extension_is_built(tmp_path, commands, monkeypatc
     monkeypatch.setattr(trees.subprocess, "check_output", lambda *_: b"94c3f7f7")
     python = tmp_path / "python"
     plain, compiled = make_sources(tmp_path / "a"), make_sources(tmp_path / "b", extension=True)
-    assert built(plain, python, tmp_path) == plain and not commands
-    package = built(compiled, python, tmp_path)
-    assert built(compiled, python, tmp_path) == package != compiled
+    assert build_package(plain, python, tmp_path) == plain and not commands
+    package = build_package(compiled, python, tmp_path)
+    assert build_package(compiled, python, tmp_path) == package != compiled
     assert len(commands) == 1 and commands[0][-1] == str(compiled)
 
 
