@@ -98,7 +98,8 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
         elif stage != "report":
             stages.append(stage)
 
-    outcome, sharing = "refused", {}
+    outcome = "refused"
+    sharing: dict[str, float] = {}
     try:
         path = folder / f"{machine.case}.yaml"
         first = first_machine(machine)

@@ -91,16 +91,18 @@ def _with_likely_units(lines: list[str], values: Mapping[str, Any]) -> list[str]
     """
     notes = {note.partition(" = ")[0].partition("[")[0]: note for note in plausibility_notes(values)}
     for key, note in notes.items():
-        if any(line.startswith(key) and "; is it in " in line for line in lines):
-            continue
-        section = ".".join(key.split(".")[:2]) + "."
+        sections = key.split(".")
+        starts = (key, ".".join(sections[:2]) + ".", f"{sections[0]}.")
         about = [number for number, line in enumerate(lines) if key in line]
-        about += [number for number, line in enumerate(lines) if line.startswith(section)]
+        about += [number for start in starts for number, line in enumerate(lines) if line.startswith(start)]
         if not about:
             continue
         caused = about[0]
-        reason = note.partition(": ")[2] if lines[caused].startswith(key) else note
-        lines[caused] = f"{lines[caused]}; {reason}"
+        if lines[caused].startswith(key):
+            # A bound of the schema is wider than what these teeth suggest, and fits more units.
+            lines[caused] = lines[caused].partition("; is it in ")[0] + f"; {note.partition(': ')[2]}"
+        else:
+            lines[caused] += f"; {note}"
     return lines
 
 
