@@ -13,6 +13,7 @@ from pathlib import Path
 from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
+from facegear.number_format import count_noun
 from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
@@ -235,7 +236,7 @@ def _figures(given: argparse.Namespace) -> int:
         if not given.png:
             raise FacegearError(f"figures: the svg in {folder} are those of the run: add --png or --output")
     paths = gearbox.figures(folder, given.names, suffix, _printed)
-    print(paths[0] if len(paths) == 1 else f"{len(paths)} figures in {folder}")
+    print(paths[0] if len(paths) == 1 else f"{count_noun(len(paths), 'figure')} in {folder}")
     return 0
 
 
@@ -255,8 +256,7 @@ def _check(given: argparse.Namespace) -> int:
         for line in result.failures:
             print(f"{given.config}: would fail later: {line}", file=sys.stderr)
         return 1
-    count = len(result.cases)
-    print(f"{given.config}: no mistakes; {count} case{'s' * (count > 1)}: {', '.join(result.cases)}")
+    print(f"{given.config}: no mistakes; {count_noun(len(result.cases), 'case')}: {', '.join(result.cases)}")
     return 0
 
 

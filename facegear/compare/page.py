@@ -11,6 +11,7 @@ from facegear.compare.judge import CHANGES, Comparison, Verdict
 from facegear.compare.quantities import CURVES, Curve, declared
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
+from facegear.number_format import count_noun
 from facegear.plots.compare import curves_compared
 from facegear.plots.style import save
 from facegear.report.page import Chapter, Picture, Table, render
@@ -64,7 +65,7 @@ def verdict(comparison: Comparison) -> str:
         more += f" {images} are of the mirror image of the same motion." if images else ""
         return f"Both folders say the same.{more}"
     files = comparison.rows.loc[comparison.rows["verdict"].isin(CHANGES), "file"].nunique()
-    return f"The folders differ in {files} table{'s' * (files > 1)}."
+    return f"The folders differ in {count_noun(files, 'table')}."
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:

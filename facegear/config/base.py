@@ -12,6 +12,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from facegear.config.keys import config_error
 from facegear.config.plausibility import plausibility_notes, unit_suggestion
 from facegear.errors import ConfigError, ConfigErrors, InvalidInput
+from facegear.number_format import count_noun
 
 
 class Section(BaseModel):
@@ -174,7 +175,7 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
     if kind in ("too_short", "too_long"):
         words, name = ("at least", "min_length") if kind == "too_short" else ("at most", "max_length")
         count = details["ctx"][name]
-        items = f"{words} {count} item{'s' * (count != 1)}"
+        items = f"{words} {count_noun(count, 'item')}"
         return [f"{key} = {_shown(details['input'])}: must have {items}, not {len(details['input'])}"]
     if kind in RULES:
         rule = RULES[kind]
@@ -183,7 +184,7 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
     elif kind in ("string_too_short", "string_too_long"):
         words, name = ("at least", "min_length") if kind == "string_too_short" else ("at most", "max_length")
         count = details["ctx"][name]
-        rule = f"have {words} {count} character{'s' * (count != 1)}"
+        rule = f"have {words} {count_noun(count, 'character')}"
     else:
         message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
         rule = message.replace("should ", "", 1) if message.startswith("should ") else message
