@@ -108,7 +108,7 @@ def test_shares_past_the_loss_of_contact_are_the_enumerated_ones(upper):
 @against(
     "external source",
     "Singh 2010, percentiles of 4e6 samples",
-    capability="statics",
+    capability="sharing_map",
     module="facegear.load_sharing.closed_form",
 )
 @pytest.mark.parametrize(("paths", "freedom"), list(PERCENTILES))
@@ -126,7 +126,7 @@ def test_percentiles_of_samples_hold_the_printed_ones_in_their_intervals(paths, 
 @against(
     "external source",
     "Singh 2010, X sqrt(N (N - 3)) and X sqrt(N (N - 1))",
-    capability="statics",
+    capability="sharing_map",
     module="facegear.load_sharing.closed_form",
 )
 @pytest.mark.parametrize(("paths", "freedom"), [(3, 0.0), (3, 1.0), (5, 0.0), (5, 1.0), (6, 0.4)])
