@@ -119,3 +119,13 @@ def test_kernels_that_were_never_built_say_how_to_build_them(copied):
         module.unlink()
     line = load().splitlines()[-1]
     assert "cannot be loaded" in line and "make kernels" in line
+
+
+def test_types_of_the_kernels_are_those_of_the_bindings():
+    """The build writes them; `make lint` and users' type checkers read them (facegear/py.typed)."""
+    from facegear._kernels import arithmetic
+
+    stub = (KERNELS / "arithmetic.pyi").read_text()
+    assert arithmetic.__name__.endswith(".arithmetic")
+    for name in vars(arithmetic):
+        assert name.startswith("__") or f"def {name}(" in stub
