@@ -29,3 +29,7 @@ if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() !=
     raise ImportError(f"the compiled kernels of facegear are older than their sources: {_BUILD}")
 
 arithmetic = _compiled.arithmetic
+flanks = _compiled.flanks
+samples = _compiled.samples
+statics = _compiled.statics
+strength = _compiled.strength

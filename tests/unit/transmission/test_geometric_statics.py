@@ -14,8 +14,7 @@ from references import against, agrees
 from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.linear import linear_law
-from facegear.transmission.contact_energy import Springs
-from facegear.transmission.contact_kernel import settle_all
+from facegear.transmission.block_statics import Springs, settle_all
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import Runout, perfect
 from facegear.transmission.layout import Body, Role, Side, Tilt

@@ -22,4 +22,8 @@ NB_MODULE(KERNELS_MODULE, module) {
     module.attr("SOURCES_HASH") = KERNELS_SOURCES_HASH;
     module.def("has_x86_64_v3", &has_x86_64_v3);
     facegear::bind_arithmetic(module.def_submodule("arithmetic"));
+    facegear::bind_flanks(module.def_submodule("flanks"));
+    facegear::bind_samples(module.def_submodule("samples"));
+    facegear::bind_statics(module.def_submodule("statics"));
+    facegear::bind_strength(module.def_submodule("strength"));
 }
