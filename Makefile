@@ -44,8 +44,8 @@ notebooks: tools
 	$(BIN)/jupyter execute --inplace examples/*.ipynb
 benchmarks peers: check tools
 	$(BIN)/snakemake --cores $(CORES) $@
-ratios: check tools # processor time of the dear jobs against an earlier commit: make ratios SINCE=COMMIT
-	$(BIN)/python -m validation.ratios.run $(SINCE)
+ratios: check tools # processor time of the dear jobs against an earlier commit: make ratios SINCE=COMMIT POINTS="contact"
+	$(BIN)/python -m validation.ratios.run $(POINTS) $(SINCE:%=--since %)
 verification: check tools # the table of what was checked against which reference
 	$(PYTEST) -m reference --references=validation/references.csv
 platforms starters: check tools # what moves on two threads and with lower levels of instructions; 20 machines of `facegear new`

@@ -121,7 +121,7 @@ def _rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Arr
 
 
 def _rays(motion: RigidMotion, points: SurfacePoints, at: Integers, number: Integers) -> tuple[Array, Array]:
-    """Points and directions (n, 3): those of `points` (m, 3) that `number` says, in motions `at`, (n,) both."""
+    """Rays (n, 3) from those of `points` (m, 3) that `number` (n,) says, each in motion `at` (n,)."""
     starts, ways = np.empty((2, at.size, 3))
     flanks.place(motion.matrix, motion.shift, at, number, points.position, points.normal, starts, ways)
     return starts, ways

@@ -192,8 +192,9 @@ def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> st
     if "e_peak_to_peak_um" not in table:
         return ""
     size, cut = (float(table[name].iloc[0]) for name in ("e_peak_to_peak_um", "e_truncation_error_um"))
+    orders = count_noun(len(table) - 1, "order")
     words = (
-        f"{size:.3g} µm peak to peak, the {len(table) - 1} orders kept within {cut:.2g} µm of it"
+        f"{size:.3g} µm peak to peak, the {orders} kept within {cut:.2g} µm of it"
         if size > 0.0
         else "constant, so e(t) from contact is zero"
     )

@@ -7,7 +7,7 @@ import numpy as np
 
 from facegear.config.base import parse
 from facegear.config.strength import Strength, rating_request
-from facegear.number_format import count_noun
+from facegear.number_format import count_noun, format_number
 from facegear.strength.rating import hertz_stress, permissible_bending, pinion_form, standard_bending
 from facegear.transmission.loaded_modes import vibrating_machine
 from facegear.variants.split_bearings import (
@@ -19,7 +19,7 @@ from facegear.variants.split_bearings import (
 from facegear.variants.starting_draft import SPEEDS, Draft
 
 RESONANCES = 3
-"""Number of resonances that are speeds_text."""
+"""Number of resonances that are printed."""
 
 
 def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: float) -> Iterator[str]:
@@ -45,8 +45,8 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
     ratio = wishes.face_gear_teeth / wishes.pinion_teeth
     power = wishes.pinions * wishes.torque_n_m * wishes.speed_rpm * pi / 30e3
     yield (
-        f"ratio {ratio:.4g}, {power:.4g} kW from {count_noun(wishes.pinions, 'input')}, "
-        f"mesh frequency {wishes.pinion_teeth * wishes.speed_rpm / 60:.4g} Hz, "
+        f"ratio {_text(ratio)}, {_text(power)} kW from {count_noun(wishes.pinions, 'input')}, "
+        f"mesh frequency {_text(wishes.pinion_teeth * wishes.speed_rpm / 60)} Hz, "
         f"contact ratio {draft.teeth.analysis.contact_ratio:.3g}"
     )
     if wishes.idlers:
@@ -60,7 +60,7 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
     bending, pitting = _safeties(draft, mesh_torque)
     yield (
         f"safety of the pinion against bending {bending:.3g}, against pitting {pitting:.3g} at "
-        f"{mesh_torque:.4g} N m a mesh (cylindrical standard, endurance limit)"
+        f"{_text(mesh_torque)} N m a mesh (cylindrical standard, endurance limit)"
     )
     yield _resonances(draft, bearings)
 
@@ -73,7 +73,7 @@ def _poor_split(draft: Draft, bearings: Bearings) -> str:
     better = (
         "more torque or less backlash"
         if least <= draft.wishes.torque_n_m
-        else (f"at least {least:.4g} N m an input" if np.isfinite(least) else "less backlash")
+        else (f"at least {_text(least)} N m an input" if np.isfinite(least) else "less backlash")
     )
     return (
         f"load sharing is worse than K_gamma {LARGEST_K_GAMMA:g} at this load, "
@@ -95,12 +95,18 @@ def _safeties(draft: Draft, mesh_torque: float) -> tuple[float, float]:
 def _resonances(draft: Draft, bearings: Bearings) -> str:
     wishes = draft.wishes
     slow, fast = (factor * wishes.speed_rpm for factor in SPEEDS)
-    frequencies = np.unique(
-        np.round(vibrating_machine(draft.machine(bearings)).modes.frequencies / (2.0 * pi), 1)
-    )
+    frequencies = np.unique(np.round(vibrating_machine(draft.machine(bearings)).modes.frequencies, 1))
     speeds = 60.0 * frequencies / wishes.pinion_teeth
     within = speeds[(speeds >= slow) & (speeds <= fast)]
     if not within.size:
-        return f"no resonance of the mesh frequency between {slow:.4g} and {fast:.4g} rpm"
-    speeds_text = ", ".join(f"{speed:.4g}" for speed in within[:RESONANCES])
-    return f"first resonances of the mesh frequency near {speeds_text} rpm"
+        lowest = _text(speeds[speeds > 0.0].min())
+        return (
+            f"no resonance of the mesh frequency between {_text(slow)} and {_text(fast)} rpm; "
+            f"the lowest of all is near {lowest} rpm"
+        )
+    near = ", ".join(_text(speed) for speed in within[:RESONANCES])
+    return f"first {'resonance' if within.size == 1 else 'resonances'} of the mesh frequency near {near} rpm"
+
+
+def _text(number: float) -> str:
+    return format_number(number, 4, group_digits=False)

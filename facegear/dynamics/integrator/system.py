@@ -133,7 +133,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         error=error,
         error_kind=error_kind,
         load=load,
-        damping_when_open=machine.damping.open_flanks is OpenFlanks.ALWAYS,
+        damping_when_open=machine.damping.open_flanks.is_damped_when_open,
         scale=length_scale(machine),
         two_flanks=machine.layout.kinematics.flanks_apart,
         push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,

@@ -154,6 +154,18 @@ def test_a_split_torque_machine_splits_its_torque_as_it_says(known, tmp_path):
     assert groups["group_ratio"].max() <= 1.3 * 1.02
 
 
+@pytest.mark.parametrize("known", [MACHINES[1], MACHINES[4]], ids=lambda known: known.case)
+def test_printed_resonances_are_natural_frequencies_in_the_speed_range(known, tmp_path):
+    """They were frequencies in Hz divided by 2 pi."""
+    values, gearbox = with_constant_stiffness(known, tmp_path)
+    sweep = values["dynamics"]["sweep"]
+    frequencies = gearbox.modes().table()["frequency_hz"].round(1).unique()
+    speeds = 60.0 * frequencies / known.pinion_teeth
+    within = sorted(speed for speed in speeds if sweep["from_rpm"] <= speed <= sweep["to_rpm"])
+    said = [float(number) for number in re.findall(r"[\d.]+", first_machine(known).expected[-1])]
+    assert said == pytest.approx(within[: len(said)], rel=2e-3) and len(said) > 1
+
+
 def test_every_mesh_at_rest_lies_inside_the_torques_of_the_contact_analysis(tmp_path):
     values, gearbox = with_constant_stiffness(MACHINES[4], tmp_path)
     at_rest = gearbox.statics().table()["pinion_torque_n_m"].abs()
