@@ -1,4 +1,4 @@
-"""What contacts and bearings do at the instants of a motion, in one pass over arrays of them."""
+"""Forces and penetrations of contacts and bearings at the instants of a motion, in one pass over arrays."""
 
 from facegear._kernels import samples
 from facegear.arrays import Array, Integers

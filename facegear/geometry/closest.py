@@ -129,8 +129,8 @@ def _walked(pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int) -
         best = np.argmin(gaps, axis=1)
         new = gaps[rows, best]
         # a width grows where a lesser gap lies on the grid's border
-        gained = (new < gap[active] - _GAIN) & (new < np.inf)
-        border = gained[:, None] & _ON_BORDER[best]
+        gains = (new < gap[active] - _GAIN) & (new < np.inf)
+        border = gains[:, None] & _ON_BORDER[best]
         gap[active], roll[active], y[active] = new, rolls[rows, best], ys[rows, best]
         width[active] *= np.where(border, _GROWTH, _SHRINK)
         active = active[(width[active] > size * _SHRINK**levels).any(axis=1)]

@@ -36,7 +36,7 @@ def cut(
         Number of rays close to a surface that could not be cut with it.
     """
     count = len(starts)
-    found, part = np.empty((5, count)), np.empty(count, np.int8)
-    lost = flanks.cut_rays(blank, sample, starts, ways, search_radius, found, part)
-    gap, u, v, continued, radius = found
+    numbers, part = np.empty((5, count)), np.empty(count, np.int8)
+    lost = flanks.cut_rays(blank, sample, starts, ways, search_radius, numbers, part)
+    gap, u, v, continued, radius = numbers
     return [gap, part, u, v, continued, radius], lost

@@ -1,4 +1,4 @@
-"""What is counted of the loads of all flanks over a motion, in one pass over its instants."""
+"""Counts and means of the loads of all flanks over a motion, in one pass over its instants."""
 
 from typing import NamedTuple
 
@@ -40,6 +40,6 @@ def tally(flank_forces: Array, per_cycle: int, groups: tuple[LoadGroup, ...]) ->
     flanks, count = flank_forces.shape
     mean, largest = np.zeros(flanks), np.zeros(flanks)
     largest_mean, coefficients = np.zeros(flanks // 2), np.zeros(len(groups))
-    counted = Tally(mean, largest, largest_mean, coefficients, open=0.0, reversed=0.0)
-    open_samples, reversed_samples = samples.tally(flank_forces, per_cycle, starts, members, counted)
-    return counted._replace(open=open_samples / count, reversed=reversed_samples / count)
+    result = Tally(mean, largest, largest_mean, coefficients, open=0.0, reversed=0.0)
+    open_samples, reversed_samples = samples.tally(flank_forces, per_cycle, starts, members, result)
+    return result._replace(open=open_samples / count, reversed=reversed_samples / count)

@@ -66,8 +66,8 @@ class MeshLaw(Protocol):
         """The law at one phase, whatever the phase."""
 
     def held(self, cycles: Array) -> Held:
-        """The law at K phases for statics. Those of `facegear.mesh_law.held` have a kernel; with any other,
-        statics asks the law itself, position by position.
+        """The law at K phases for statics. Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any
+        other, statics asks the law itself, position by position.
         """
 
     def terms(self, frequency: float, width: int) -> NamedTuple:

@@ -10,7 +10,7 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.harmonics.series import Harmonics, stacked, stacked_values
 from facegear.machine_code.memory import aligned, divided, whole_lanes
-from facegear.mesh_law.held import LinearHeld
+from facegear.mesh_law.laws_at_phases import LinearHeld
 
 
 @dataclass(frozen=True, eq=False)

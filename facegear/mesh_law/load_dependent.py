@@ -10,7 +10,7 @@ import numpy as np
 from facegear.arrays import Array, Integers
 from facegear.machine_code.memory import LANES, aligned, aligned_together, divided
 from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
-from facegear.mesh_law.held import LoadDependentHeld
+from facegear.mesh_law.laws_at_phases import LoadDependentHeld
 from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
 
 

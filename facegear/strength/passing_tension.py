@@ -120,12 +120,12 @@ def _bounded(force: sp.csr_matrix, teeth: Integers, bounds: Array) -> Array:
     """Bounds (t, positions, 2 b) of the stress of all teeth from the one before the first of the loaded
     `teeth` to the one after the last, by forces (teeth positions, c) N.
     """
-    reach, each = bounds.shape[1] // 2, force.toarray().reshape(teeth.size, -1, force.shape[1])
-    pressing, pulling = np.maximum(each, 0.0), np.maximum(-each, 0.0)
-    limits = np.zeros((teeth[-1] - teeth[0] + 3, each.shape[1], bounds.shape[3]))
+    reach, forces = bounds.shape[1] // 2, force.toarray().reshape(teeth.size, -1, force.shape[1])
+    pushes, pulls = np.maximum(forces, 0.0), np.maximum(-forces, 0.0)
+    limits = np.zeros((teeth[-1] - teeth[0] + 3, forces.shape[1], bounds.shape[3]))
     for read, limit in enumerate(limits, teeth[0] - 1):
-        for tooth, presses, pulls in zip(teeth, pressing, pulling, strict=True):
+        for tooth, push, pull in zip(teeth, pushes, pulls, strict=True):
             if abs(read - tooth) <= reach:
                 apart = read - tooth + reach
-                limit += presses @ bounds[0, apart] + pulls @ bounds[1, apart]
+                limit += push @ bounds[0, apart] + pull @ bounds[1, apart]
     return limits

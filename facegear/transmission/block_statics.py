@@ -11,8 +11,8 @@ import numpy as np
 
 from facegear._kernels import statics
 from facegear.arrays import Array, Integers
-from facegear.mesh_law.held import LinearHeld, LoadDependentHeld
 from facegear.mesh_law.law import Held
+from facegear.mesh_law.laws_at_phases import LinearHeld, LoadDependentHeld
 
 KERNELS: Mapping[type, Callable[..., Any]] = {
     LinearHeld: statics.settle_linear,
@@ -39,8 +39,8 @@ class Springs(NamedTuple):
     core_row, core_column, core_value : (E,)
         Entries, row <= column, of the symmetric stiffness among the other n - 3 P unknowns, counted from the
         first of them, N/m.
-    applied : (n,)
-        Forces, N.
+    loads : (n,)
+        Forces on the unknowns, N.
     """
 
     jacobian: Array
@@ -51,7 +51,7 @@ class Springs(NamedTuple):
     core_row: Integers
     core_column: Integers
     core_value: Array
-    applied: Array
+    loads: Array
 
 
 def has_kernel(law: Held) -> bool:

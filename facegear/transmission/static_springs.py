@@ -34,8 +34,8 @@ def has_blocks(machine: Machine) -> bool:
 def static_springs(machine: Machine) -> Springs:
     """The compiled problem in the unknowns of `unknowns`."""
     frame, linear = _frame_of(machine), machine.linear
-    applied = linear.loads[frame.kept] * frame.scale
-    return frame.springs._replace(clearance=machine.imperfections.bearing_clearance, applied=applied)
+    loads = linear.loads[frame.kept] * frame.scale
+    return frame.springs._replace(clearance=machine.imperfections.bearing_clearance, loads=loads)
 
 
 def unknowns(machine: Machine) -> tuple[Integers, Array]:
@@ -92,7 +92,7 @@ def _springs(layout: Layout, kept: Integers, scale: Array, bearing: Array, rows:
         core_row=row.copy(),  # np.nonzero gives them with strides, and every call would copy them
         core_column=column.copy(),
         core_value=core[row, column],
-        applied=np.zeros(kept.size),
+        loads=np.zeros(kept.size),
     )
 
 

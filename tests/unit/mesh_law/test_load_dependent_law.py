@@ -48,8 +48,8 @@ def pressed(held, forces, amounts):
     lines[:, 0] = 1.0
     settled = []
     for phase, own in enumerate(forces):
-        applied = np.zeros(3 * count)
-        applied[::3] = own + bearing * amounts
+        loads = np.zeros(3 * count)
+        loads[::3] = own + bearing * amounts
         springs = Springs(
             jacobian=lines,
             pinion=3 * np.arange(count),
@@ -59,7 +59,7 @@ def pressed(held, forces, amounts):
             core_row=np.zeros(0, int),
             core_column=np.zeros(0, int),
             core_value=np.zeros(0),
-            applied=applied,
+            loads=loads,
         )
         at_phase = held._replace(
             **{name: getattr(held, name)[[phase]] for name in ("stiffness", "cosine", "sine")}

@@ -57,14 +57,19 @@ public:
         return get<Given<Value, Dimensions>>(field, "an array of another type or number of dimensions");
     }
 
+    template <class Value, int Dimensions>
+    Written<Value, Dimensions> output(const char* field) const {
+        return get<Written<Value, Dimensions>>(field, "an array that can be written in place", false);
+    }
+
 private:
     nb::handle object;
 
     template <class Type>
-    Type get(const char* field, const char* wanted) const {
+    Type get(const char* field, const char* wanted, bool convert = true) const {
         Type value;
         const nb::object given = object.attr(field);
-        if (!nb::try_cast<Type>(given, value)) {
+        if (!nb::try_cast<Type>(given, value, convert)) {
             throw nb::type_error((std::string("the field ") + field + " must be " + wanted).c_str());
         }
         return value;

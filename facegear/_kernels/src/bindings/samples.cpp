@@ -66,9 +66,10 @@ void bound_evaluate(Given<double, 2> levels, Given<Index, 1> kind, Given<double,
 std::pair<Index, Index> bound_tally(Given<double, 2> forces, Index per_cycle, Given<Index, 1> starts,
                                     Given<Index, 1> members, nb::handle counted) {
     const Index flanks = extent(forces, 0), count = extent(forces, 1), meshes = flanks / 2;
-    const auto field = [&](const char* name) { return nb::cast<Written<double, 1>>(counted.attr(name), false); };
-    const auto mean = field("mean"), largest = field("largest"), largest_mean = field("largest_mean");
-    const auto coefficients = field("coefficients");
+    const Record results(counted);
+    const auto mean = results.output<double, 1>("mean"), largest = results.output<double, 1>("largest");
+    const auto largest_mean = results.output<double, 1>("largest_mean");
+    const auto coefficients = results.output<double, 1>("coefficients");
     require(flanks % 2 == 0, "every mesh must have two flanks");
     require(per_cycle > 0 && count > 0 && count % per_cycle == 0, "samples must make whole mesh cycles");
     require(extent(mean, 0) == flanks && extent(largest, 0) == flanks && extent(largest_mean, 0) == meshes,

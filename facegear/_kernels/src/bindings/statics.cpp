@@ -17,7 +17,7 @@ public:
     explicit GivenSprings(const Record& given)
         : jacobian(given.array<double, 2>("jacobian")), pinion_bearing(given.array<double, 2>("pinion_bearing")),
           clearance(given.array<double, 1>("clearance")), core_value(given.array<double, 1>("core_value")),
-          applied(given.array<double, 1>("applied")), pinion(given.array<Index, 1>("pinion")),
+          loads(given.array<double, 1>("loads")), pinion(given.array<Index, 1>("pinion")),
           gear(given.array<Index, 1>("gear")), core_row(given.array<Index, 1>("core_row")),
           core_column(given.array<Index, 1>("core_column")) {
         check();
@@ -25,17 +25,17 @@ public:
 
     Springs springs() const {
         return {table_of(jacobian), list_of(pinion),      list_of(gear),       table_of(pinion_bearing), list_of(clearance),
-                list_of(core_row),  list_of(core_column), list_of(core_value), list_of(applied)};
+                list_of(core_row),  list_of(core_column), list_of(core_value), list_of(loads)};
     }
 
 private:
     Given<double, 2> jacobian, pinion_bearing;
-    Given<double, 1> clearance, core_value, applied;
+    Given<double, 1> clearance, core_value, loads;
     Given<Index, 1> pinion, gear, core_row, core_column;
 
     void check() const {
         const Index flanks = extent(jacobian, 0), width = extent(jacobian, 1) - 3;
-        const Index first = 3 * extent(pinion_bearing, 0), size = extent(applied, 0), entries = extent(core_value, 0);
+        const Index first = 3 * extent(pinion_bearing, 0), size = extent(loads, 0), entries = extent(core_value, 0);
         require(width >= 0, "the Jacobian must be (F, 3 + w)");
         require(extent(pinion, 0) == flanks && extent(gear, 0) == flanks, "every flank must have a pinion and a gear");
         require(pinion_bearing.shape(1) == 3 && extent(clearance, 0) == extent(pinion_bearing, 0),

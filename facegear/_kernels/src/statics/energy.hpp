@@ -52,8 +52,8 @@ inline double balance(const Position<Law>& at, const Values& over, const Values&
     const Springs& springs = at.springs;
     double largest = 0.0;
     for (Index j = 0; j < springs.unknowns(); ++j) {
-        gradient[j] = -springs.applied[j];
-        largest = std::max(largest, std::fabs(springs.applied[j]));
+        gradient[j] = -springs.loads[j];
+        largest = std::max(largest, std::fabs(springs.loads[j]));
     }
     for (Index i = 0; i < springs.pinions(); ++i) {
         const Force force = bearing_force(springs, i, displacement[3 * i], displacement[3 * i + 1]);
@@ -133,7 +133,7 @@ inline Rise rise_along(const Position<Law>& at, const Values& over, const Values
     const Springs& springs = at.springs;
     double slope = 0.0, curvature = 0.0;
     const auto there = [&](Index unknown) { return displacement[unknown] + fraction * step[unknown]; };
-    for (Index j = 0; j < springs.unknowns(); ++j) slope -= springs.applied[j] * step[j];
+    for (Index j = 0; j < springs.unknowns(); ++j) slope -= springs.loads[j] * step[j];
     for (Index i = 0; i < springs.pinions(); ++i) {
         const double dx = step[3 * i], dy = step[3 * i + 1], x = there(3 * i), y = there(3 * i + 1);
         const Force force = bearing_force(springs, i, x, y);

@@ -18,11 +18,11 @@ struct Springs {
     List<const Index> core_row;         // (E,), upper entries of the stiffness among the other unknowns, counted
     List<const Index> core_column;      // (E,)  from the first of them
     List<const double> core_value;      // (E,)
-    List<const double> applied;         // (n,), forces
+    List<const double> loads;         // (n,), forces
 
     Index flanks() const { return jacobian.rows; }
     Index pinions() const { return pinion_bearing.rows; }
-    Index unknowns() const { return applied.size; }
+    Index unknowns() const { return loads.size; }
     Index first() const { return 3 * pinions(); }
     Index core_size() const { return unknowns() - first(); }
 };
