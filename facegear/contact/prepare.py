@@ -14,13 +14,9 @@ from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
 from facegear.contact.spreading import Faces
 from facegear.contact.strip_of_hats import Strip
 from facegear.contact.touching import Cover, Facing, touching
-from facegear.geometry.opposite import by_tip_edge, nearest_of
-from facegear.geometry.ray_blank import Blank
-from facegear.geometry.rays import cut
-from facegear.geometry.separation import placed_rays
 
 NONE, NUMBERS, MARKS, BEGIN = np.zeros(0), np.zeros(0, np.int64), np.zeros(0, bool), np.zeros(1, np.int64)
-PLACES, RAYS, CUBICS = np.zeros((0, 2)), np.zeros((0, 3)), np.zeros((4, 0))
+PLACES, RAYS = np.zeros((0, 2)), np.zeros((0, 3))
 FOUR = np.zeros((0, 4), np.int64), np.zeros((0, 4))
 
 
@@ -31,14 +27,9 @@ def prepare() -> None:
     Nothing is set against nothing: the types are those of any pair.
     """
     _touch()
-    blank = Blank(*[0.0] * len(Blank._fields))
-    cut(blank, RAYS, RAYS, 0.0, RAYS, RAYS, NONE, NONE, MARKS, 0.0, NONE)
-    placed_rays(np.zeros((0, 3, 3)), RAYS, NUMBERS, NUMBERS, RAYS, RAYS)
-    by_tip_edge(np.zeros(0, np.int8), NONE, NONE, 1.0, 1.0, 1.0, NONE, CUBICS, CUBICS)
     _gather()
     face_functions(PLACES, (3, 3))
     areas_at(RAYS, np.zeros((0, 9), np.int64), np.zeros((0, 9, 2)), NONE)
-    nearest_of(RAYS, np.asfortranarray(np.zeros((2, 2))))
     kept_hats(NUMBERS, NUMBERS, MARKS, NONE, 0.0)
 
 

@@ -1,4 +1,4 @@
-"""Compiled: the linear law in the steps of a motion and in statics."""
+"""Compiled: the linear law in the steps of a motion."""
 
 from typing import NamedTuple
 
@@ -12,12 +12,6 @@ from facegear.machine_code.records import Record
 from facegear.mesh_law import terms
 
 inlined = for_callers(**FAST)
-
-
-class LinearHeld(NamedTuple):
-    """Stiffness (K, M) of the contacts at K phases."""
-
-    stiffness: Array
 
 
 @Record.register
@@ -150,10 +144,3 @@ def piece_of(law: LinearTerms, m: int, amount: float) -> int:
 def piece_ends(law: LinearTerms, m: int, piece: int) -> tuple[float, float]:
     """From the edge on."""
     return 0.0, np.inf
-
-
-@terms.held_force.of(LinearHeld)
-def held_force(held: LinearHeld, k: int, m: int, amount: float) -> tuple[float, float]:
-    """k times the amount, and k."""
-    stiffness = held.stiffness[k, m]
-    return stiffness * amount, stiffness

@@ -69,8 +69,3 @@ def piece_of(law: Any, m: int, amount: float) -> int:
 @by_type(**FAST)
 def piece_ends(law: Any, m: int, piece: int) -> tuple[float, float]:
     """The amounts at which a piece of contact m begins and ends; the last one ends at infinity."""
-
-
-@by_type(nogil=True, fastmath={"contract"})
-def held_force(held: Any, k: int, m: int, amount: float) -> tuple[float, float]:
-    """Force and slope of contact m at an amount > 0 and phase number k of `MeshLaw.held`."""

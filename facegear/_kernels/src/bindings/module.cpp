@@ -9,4 +9,8 @@ NB_MODULE(KERNELS_MODULE, module) {
     module.attr("COMPILER") = KERNELS_COMPILER;
     module.def("has_x86_64_v3", &facegear::has_x86_64_v3);
     facegear::bind_arithmetic(module.def_submodule("arithmetic"));
+    facegear::bind_flanks(module.def_submodule("flanks"));
+    facegear::bind_samples(module.def_submodule("samples"));
+    facegear::bind_statics(module.def_submodule("statics"));
+    facegear::bind_strength(module.def_submodule("strength"));
 }
