@@ -35,3 +35,4 @@ if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() !=
     raise ImportError(f"the compiled kernels of facegear are older than their sources: {_BUILD}")
 
 arithmetic = _module.arithmetic
+contact = _module.contact
