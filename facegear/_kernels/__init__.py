@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 
 _SOURCES = Path(__file__).with_name("src")
-_BUILD = "rebuild them by `make kernels`"
+_BUILD = "rebuild them by `make kernels`, or by `pip install -e .` where pip installed this folder"
 
 try:
     from facegear._kernels import _baseline
@@ -33,6 +33,11 @@ def sources_hash() -> str:
 
 if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() != _module.SOURCES_HASH:
     raise ImportError(f"the compiled kernels of facegear are older than their sources: {_BUILD}")
+
+COMPILER: str = _module.COMPILER
+"""Name and version of the compiler that built the kernels."""
+LEVEL: str = _module.__name__.rpartition(".")[2].strip("_")
+"""Level of instructions that is used here: `x86_64_v3`, or `baseline` on other processors."""
 
 arithmetic = _module.arithmetic
 contact = _module.contact

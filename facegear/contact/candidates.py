@@ -31,7 +31,10 @@ class Candidates:
     _made: dict[tuple[int, bool], sp.csr_matrix] = field(default_factory=dict, init=False)
 
     def loads(self, side: int, refined: bool) -> sp.csr_matrix:
-        """Nodal forces (m, nodes) on the nodes of the pinion's (0) or the gear's (1) lattice, before refinement unless `refined`."""
+        """Nodal forces (m, nodes) on the pinion's (0) or the gear's (1) lattice.
+
+        Its nodes are those before refinement unless `refined`.
+        """
         if (side, refined) not in self._made:
             self._made[side, refined] = self.lattices[side].loads(self.averages, self.at[side], refined)
         return self._made[side, refined]

@@ -59,7 +59,7 @@ class Lattice:
         return _interpolated(self)
 
     def loads(self, rows: Rows, at: Array, refined: bool = True) -> sp.csr_matrix:
-        """Nodal forces (m, nodes) of m unit forces, spread by `rows` over points at refined coordinates (q, 2).
+        """Nodal forces (m, nodes) of unit forces, spread by `rows` over points at refined coordinates (q, 2).
 
         The nodes are the refined ones, or those before refinement.
         """

@@ -160,14 +160,14 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
 def results_of(
     pair: PairAtPosition, contact: PositionContact, torques: Sequence[float]
 ) -> list[LoadedPosition]:
-    """What a contact is at a position, in the order of the torques (N m)."""
+    """Return the result at each torque (N m), in the order of the torques."""
     order = np.argsort(torques)[::-1]
     results = _results(pair, contact, np.array([float(torques[index]) for index in order]))
     return [results[row] for row in np.argsort(order)]
 
 
 def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> list[LoadedPosition]:
-    """Those of all torques (t,) N m of what was found."""
+    """Return the result at each torque (t,), in N m, in the order of the contact."""
     base, teeth = pair.base_radius, contact.teeth
     approach, overlap = base * contact.rotation, base * contact.overlap
     average = np.where(overlap <= UNKNOWN_REFERENCE * approach, torques / base / approach, np.nan)

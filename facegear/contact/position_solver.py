@@ -125,5 +125,5 @@ def _surface(lattice: Lattice, body: FlankCompliance) -> kernels.Surface:
 
 
 def _by_rows(symmetric: Array) -> Array:
-    """Return a symmetric matrix in the order of its rows, without a copy where it is in that of its columns."""
+    """Return a symmetric matrix row by row, without a copy where it is stored column by column."""
     return symmetric.T if symmetric.flags.f_contiguous else symmetric

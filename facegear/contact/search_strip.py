@@ -1,4 +1,4 @@
-"""The strip of basis functions that contact is sought in at first, by the rotation that closes each one's gap."""
+"""The strip of basis functions that contact is sought in at first, by the rotations that close their gaps."""
 
 from typing import NamedTuple
 
@@ -6,14 +6,14 @@ from facegear.arrays import Mask
 
 GAP, WIDTH = 0.8, 0.23
 """Where contact is sought: the least gap of a column of functions as a part of the rigid approach (the bodies
-give way by the rest), and by how much the gap of the others in it exceeds that, as a part of what it is below.
-No result depends on them: functions that are missed join the strip."""
+give way by the rest), and by how much the gap of others in it exceeds that, as a part of what it is below.
+Found by trial. No result depends on them: functions that are missed join the strip."""
 
 WIDER = 1.6
 """Factor on the second part where contact is missed beside the strip."""
 
 KNOWN_WIDTH = 0.08
-"""In place of WIDTH where the contact of a pair that differs little is known, whose functions are sought among,
+"""In place of WIDTH where the contact of a pair that differs little is known: its functions are in the strip,
 too."""
 
 START_GAP, START_WIDTH = 0.6, 0.14

@@ -24,6 +24,9 @@ LOADING = (
 )
 """Keys of section contact that say how the bodies are loaded, and nothing of how they give way."""
 
+DUTY_POINTS = 12
+"""Torques of a duty cycle that are marked on the load-sharing map: as many as are told apart."""
+
 TILTS = ("tilt", "hub_tilt", "body")
 """Keys of a gear whose teeth lean."""
 
@@ -231,6 +234,42 @@ def tolerances(case: Case) -> bool:
 def load_map(case: Case) -> bool:
     """Whether `tolerances.load_map` is given."""
     return tolerances(case) and case.values["tolerances"]["load_map"] is not None
+
+
+def sharing_map(case: Case) -> bool:
+    """Whether section sharing_map is given.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True where its map is drawn.
+    """
+    return machine(case) and case.values["sharing_map"] is not None
+
+
+def duty_torques(case: Case) -> list[float]:
+    """Return the torques of the duty cycle at which the machine stands on the load-sharing map.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list of float
+        N m in each mesh of an input, rising, each once: DUTY_POINTS of them where there are more.
+    """
+    section = case.values["strength"]
+    torques = sorted({load["torque_n_m"] for load in section["duty"] if load["hours"] > 0}) if section else []
+    if len(torques) <= DUTY_POINTS:
+        return torques
+    return [torques[i * (len(torques) - 1) // (DUTY_POINTS - 1)] for i in range(DUTY_POINTS)]
 
 
 def search(case: Case) -> bool:

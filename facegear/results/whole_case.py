@@ -57,8 +57,9 @@ class WholeCase:
         if path.suffix != ".html":
             raise FacegearError(f"{path}: must end in .html")
         require_writable_file(path)
-        self.on_stage("report", self.outlook())
         partial = PartialResults(path.with_suffix(".partial"))
+        partial.require_usable()
+        self.on_stage("report", self.outlook())
         store = replace(self.chain.store, partial=partial, failures={})
         going_on = replace(self, chain=replace(self.chain, store=store))
         with extras_named(), TemporaryDirectory() as folder:

@@ -13,6 +13,7 @@ from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.law import MeshLaw
+from facegear.number_format import count_noun
 from facegear.transmission.drive_line import DriveLine
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import Layout, Role
@@ -137,7 +138,9 @@ class Machine:
             ("softening of the meshes", self.softening),
         ):
             if given is not None and len(given) != meshes:
-                raise InvalidInput(quantity, f"{len(given)} meshes", f"one for each of {meshes}")
+                raise InvalidInput(
+                    quantity, count_noun(len(given), "mesh", "meshes"), f"one for each of {meshes}"
+                )
         minimum = self.stiffness.minimum
         if minimum <= 0.0:
             raise InvalidInput(

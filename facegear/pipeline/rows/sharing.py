@@ -135,6 +135,51 @@ ROWS = (
         asked=asked.hunting,
     ),
     Stage(
+        name="sharing_map",
+        title="Map of load sharing, and what to change",
+        needs={
+            **MACHINE,
+            "sharing_map": "sharing_map",
+            "torques": Computed(asked.duty_torques, ("strength",)),
+        },
+        section="sharing_map",
+        upstream={**HARMONICS, **BODIES},
+        files={
+            "curves": File(
+                "load_sharing/sharing_map_curves.csv",
+                ("number", "k_gamma_p95"),
+                may_be_empty=True,
+                text=("group", "floating"),
+            ),
+            "inputs": File(
+                "load_sharing/sharing_map_inputs.csv",
+                ("number", "k_gamma"),
+                may_be_empty=True,
+                text=("group",),
+            ),
+            "points": File(
+                "load_sharing/sharing_map_points.csv",
+                ("number", "k_gamma_p95"),
+                may_be_empty=True,
+                text=("group", "kind"),
+            ),
+            "advice": File(
+                "load_sharing/sharing_map_advice.csv",
+                ("k_gamma", "found", "gain"),
+                may_be_empty=True,
+                text=("group", "kind", "change", "from_to"),
+            ),
+            "reasons": File("load_sharing/sharing_map_reasons.csv", (), may_be_empty=True, text=("reason",)),
+        },
+        figures=Figures(
+            draw="facegear.plots.sharing_map:figures",
+            names=("sharing_map",),
+            chapter="load_sharing",
+            upstream=from_stage("sharing_map", "curves", "inputs", "points"),
+        ),
+        asked=asked.sharing_map,
+    ),
+    Stage(
         name="following",
         title="Load sharing of the running machine while its runouts turn",
         needs={

@@ -168,7 +168,7 @@ def test_contact_that_fillets_turn_back_is_none_to_go_by(model_of):
 
 @pytest.mark.parametrize("coupled", [True, False])
 def test_solver_has_the_influence_of_sparse_products(model_of, coupled):
-    """The approach without the matrix, too: of all functions at a position, and of some in some load cases."""
+    """The approach without the matrix, too: of all functions at a position, and of some in some cases."""
     model, options, limit = model_of(), ContactOptions(), 4e-4
     flanks, angles = model.flanks, placed(model, 0.3)
     facing = facing_points(flanks, [angles], [PAIRS], limit, options)[0]

@@ -72,7 +72,7 @@ def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
 
 
 @against(
-    "other program",
+    "second implementation",
     "enumeration of all active sets",
     capability="contact",
     module="facegear.contact.solver",
@@ -104,7 +104,7 @@ def test_solution_is_the_best_of_all_active_sets(seed):
 
 
 @against(
-    "other program",
+    "second implementation",
     "difference of two solutions",
     capability="contact",
     module="facegear.contact.solver",

@@ -265,7 +265,7 @@ print(*run.state.ravel().tolist(), *run.tangents.ravel().tolist(), run.steps)
 
 
 @against(
-    "other program",
+    "second implementation",
     "the same functions run by Python itself",
     capability="machine_code dynamics_response",
     module="facegear.dynamics.integrator.integrator",

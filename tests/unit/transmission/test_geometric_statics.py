@@ -219,7 +219,7 @@ def random_machine(draw, most_pinions):
 
 
 @against(
-    "other program",
+    "second implementation",
     "enumeration of all states of contact, numpy.linalg.lstsq",
     capability="hunting load_sharing_reference",
     module="facegear.transmission.statics",
