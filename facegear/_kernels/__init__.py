@@ -29,3 +29,4 @@ if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() !=
     raise ImportError(f"the compiled kernels of facegear are older than their sources: {_BUILD}")
 
 arithmetic = _compiled.arithmetic
+motion = _compiled.motion

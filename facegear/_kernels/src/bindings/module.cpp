@@ -22,4 +22,5 @@ NB_MODULE(KERNELS_MODULE, module) {
     module.attr("SOURCES_HASH") = KERNELS_SOURCES_HASH;
     module.def("has_x86_64_v3", &has_x86_64_v3);
     facegear::bind_arithmetic(module.def_submodule("arithmetic"));
+    facegear::bind_motion(module.def_submodule("motion"));
 }

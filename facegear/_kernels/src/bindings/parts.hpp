@@ -6,5 +6,6 @@
 namespace facegear {
 
 void bind_arithmetic(nanobind::module_ module);
+void bind_motion(nanobind::module_ module);
 
 } // namespace facegear
