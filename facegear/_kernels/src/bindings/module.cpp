@@ -5,7 +5,7 @@
 #include "processor.hpp"
 
 NB_MODULE(KERNELS_MODULE, module) {
-    nb::set_leak_warnings(false); // what lives to the end lives in caches of Python functions
+    nanobind::set_leak_warnings(false); // what lives to the end lives in caches of Python functions
     module.attr("SOURCES_HASH") = KERNELS_SOURCES_HASH;
     module.attr("COMPILER") = KERNELS_COMPILER;
     module.def("has_x86_64_v3", &facegear::has_x86_64_v3);
