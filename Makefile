@@ -36,6 +36,7 @@ lint: kernels tools
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check workflow/Snakefile workflow paper validation
 	$(BIN)/mypy
+	$(BIN)/python building/lint.py
 docs: tools
 	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
 ci: lint docs release .venv/cluster

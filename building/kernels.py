@@ -49,19 +49,24 @@ def write_zig_scripts(folder: Path) -> Path:
 def choose_compiler(folder: Path) -> None:
     """Set CXX to zig's script in a folder, where this machine has no compiler."""
     if not compiler_is_installed():
-        print(f"There is no g++ or clang++: the kernels are compiled by zig ({ADVICE}).", flush=True)
         os.environ["CXX"] = str(write_zig_scripts(folder))
         os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(folder / "cache"))
 
 
+def build_folder() -> Path:
+    """Return the folder in which the kernels are compiled for this Python, by a compiler or by zig."""
+    return ROOT / "build" / f"{sys.implementation.cache_tag}-{'cxx' if compiler_is_installed() else 'zig'}"
+
+
 def build_in_place() -> None:
-    """Compile what has changed, and put the modules and their stubs beside their sources."""
-    tag = f"{sys.implementation.cache_tag}-{'cxx' if compiler_is_installed() else 'zig'}"
-    choose_compiler(ROOT / "build" / "zig")
-    folder = ROOT / "build" / tag
+    """Compile what has changed, and put the modules and their types beside their sources."""
     cmake, ninja = find_program("cmake"), find_program("ninja")
     if cmake is None:
         raise SystemExit("The kernels need CMake: `make kernels` installs it, and `pip install -e .`")
+    folder = build_folder()
+    if not folder.exists() and not compiler_is_installed():
+        print(f"There is no g++ or clang++: the kernels are compiled by zig ({ADVICE}).", flush=True)
+    choose_compiler(ROOT / "build" / "zig")
     options = [f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release"]
     if ninja:
         options += ["-G", "Ninja", f"-DCMAKE_MAKE_PROGRAM={ninja}"]

@@ -1,7 +1,7 @@
 """Compiled kernels (C++, `src/`): the modules for the instructions that this processor has.
 
-Each part that `src/bindings` binds is a module of this package, such as `facegear._kernels.arithmetic`. The build
-writes its types beside this file (`arithmetic.pyi`).
+Each part that `src/bindings` binds is a module of this package, such as `facegear._kernels.arithmetic`. The
+build writes its types beside this file (`arithmetic.pyi`).
 """
 
 import hashlib

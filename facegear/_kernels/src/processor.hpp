@@ -7,7 +7,8 @@
 
 namespace facegear {
 
-// Whether processor and operating system offer the level x86-64-v3 (System V ABI, x86-64 supplement, table 3.1).
+// Whether processor and operating system offer the level x86-64-v3 (System V ABI, x86-64 supplement,
+// table 3.1).
 // __builtin_cpu_supports would ask less, and says no to everything where zig 0.17 compiled it.
 inline bool has_x86_64_v3() {
 #if defined(__x86_64__) && defined(__GNUC__)
