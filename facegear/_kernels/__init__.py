@@ -11,22 +11,28 @@ try:
 except ImportError as error:
     raise ImportError(f"the compiled kernels of facegear cannot be loaded ({error}): {_BUILD}") from error
 
-_compiled = _baseline
+_module = _baseline
 if _baseline.has_x86_64_v3():
     from facegear._kernels import _x86_64_v3
 
-    _compiled = _x86_64_v3
+    _module = _x86_64_v3
 
 
 def sources_hash() -> str:
-    """Return the hash of all C++ sources, as CMakeLists.txt computes it."""
+    """Compute the hash of the C++ sources, as CMakeLists.txt does.
+
+    Returns
+    -------
+    str
+        SHA-256 in hexadecimal digits.
+    """
     files = [*_SOURCES.rglob("*.cpp"), *_SOURCES.rglob("*.hpp")]
     hashes = sorted(hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
     return hashlib.sha256("".join(hashes).encode()).hexdigest()
 
 
-if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() != _compiled.SOURCES_HASH:
+if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() != _module.SOURCES_HASH:
     raise ImportError(f"the compiled kernels of facegear are older than their sources: {_BUILD}")
 
-arithmetic = _compiled.arithmetic
-motion = _compiled.motion
+arithmetic = _module.arithmetic
+motion = _module.motion

@@ -28,12 +28,20 @@ class OpenFlanks(StrEnum):
     """Mesh damping where flanks are apart: `always` acting as in equation (20), or `contact_only`.
 
     In contact the damper may pull flanks together that are about to part. `push_only` cuts the force of a
-    contact, spring and damper together, at zero.
+    contact, spring and damper together, at zero. `mesh_deflection` is the classical definition: one damper
+    for each mesh acts on the deflection of its drive flank at all times (Kahraman and Singh 1990), where
+    `always` gives half of the damper to each of the two flanks.
     """
 
     ALWAYS = "always"
     CONTACT_ONLY = "contact_only"
     PUSH_ONLY = "push_only"
+    MESH_DEFLECTION = "mesh_deflection"
+
+    @property
+    def is_damped_when_open(self) -> bool:
+        """Whether dampers act on open flanks, too."""
+        return self in (OpenFlanks.ALWAYS, OpenFlanks.MESH_DEFLECTION)
 
 
 @dataclass(frozen=True)

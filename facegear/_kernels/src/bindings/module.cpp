@@ -19,6 +19,7 @@ bool has_x86_64_v3() {
 } // namespace
 
 NB_MODULE(KERNELS_MODULE, module) {
+    nb::set_leak_warnings(false); // what lives to the end lives in caches of Python functions
     module.attr("SOURCES_HASH") = KERNELS_SOURCES_HASH;
     module.def("has_x86_64_v3", &has_x86_64_v3);
     facegear::bind_arithmetic(module.def_submodule("arithmetic"));

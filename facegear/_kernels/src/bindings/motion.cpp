@@ -221,6 +221,7 @@ void bind_log(nb::module_& module) {
     using motion::Log;
     using Lengths = std::vector<std::size_t>;
     nb::class_<Log> type(module, "Log");
+    type.def_ro("periods", &Log::longest);
     const auto counts = [](auto... numbers) { return Lengths{static_cast<std::size_t>(numbers)...}; };
     const auto summed = [](const Log& log) { return log.asked.batches > 0 ? log.machines : 0; };
     bind_array(type, "ends", &Log::ends, [=](const Log& l) { return counts(l.machines, l.asked.kept, 2, l.n); });
