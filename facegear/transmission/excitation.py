@@ -49,8 +49,8 @@ class Excitation:
         nearest = round(self.of_mesh)
         if nearest < 1 or abs(self.of_mesh - nearest) > WHOLE * nearest:
             multiples = (
-                f"a multiple of {self.teeth}, the teeth of its body, for motion in time, which repeats with "
-                "the mesh; vibration at the orders of turns (shaft_orders) takes every order"
+                f"an order that is a multiple of {self.teeth}, the teeth of its body, for motion in time, "
+                "which repeats with the mesh; vibration at the orders of turns (shaft_orders) takes every one"
             )
             raise InvalidInput("order of an excitation", self.order, multiples)
         return nearest
