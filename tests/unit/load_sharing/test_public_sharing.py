@@ -97,7 +97,7 @@ PLANETS = {
     5: [0.4, -0.32361, 0.12361, 0.12361, -0.32361],
     6: [1 / 2, -1 / 3, 0.0, 1 / 6, 0.0, -1 / 3],
 }
-"""What a first planet late by e = W / k_e takes off the share of each planet around a floating sun."""
+"""Share that a first planet late by e = W / k_e takes off the share of each planet around a floating sun."""
 
 
 @against(
