@@ -1,8 +1,8 @@
 """Predictions that are sealed before a measurement is opened, and their comparison with it.
 
 A folder holds `machine.yaml` (a config), `protocol.yaml` (what is predicted, and which inputs nobody knows)
-and what `python -m validation.blind predict FOLDER` makes of them: `prediction.csv` and `seal.txt`. Publish all
-four. Then put the measurement into `measurement.csv`; `python -m validation.blind compare FOLDER` checks the
+and what `python -m validation.blind predict FOLDER` makes of them: `prediction.csv` and `seal.txt`. Publish
+all four. Then write `measurement.csv`; `python -m validation.blind compare FOLDER` checks the
 seal and writes `verdict.csv`. docs/blind.md says it step by step.
 """
 
