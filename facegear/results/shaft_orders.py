@@ -31,6 +31,18 @@ class ShaftOrdersResult(Result):
         """
         return self.content["over_speed"].copy()
 
+    def excited(self) -> pd.DataFrame:
+        """Return what each periodic torque of `transmission.excitations` does, linearised.
+
+        Returns
+        -------
+        pd.DataFrame
+            One row a speed (the nominal one first), torque and part: amplitude of the force of a mesh (N) or
+            of the torque of the spring before a turning mass (N m). Columns: speed_rpm, body, order, of_mesh,
+            frequency_hz, part, force_n, torque_n_m.
+        """
+        return self.content["excited"].copy()
+
     @fit_for_paper
     def plot(self) -> "Figure":
         """Forces at all orders at the nominal speed, and the largest orders over speed.

@@ -65,6 +65,12 @@ ROWS = (
                 may_be_empty=True,
                 text=("turning", "mesh"),
             ),
+            "excited": File(
+                "dynamics/excited.csv",
+                ("speed_rpm", "order", "of_mesh", "frequency_hz"),
+                may_be_empty=True,
+                text=("body", "part"),
+            ),
         },
         figures=Figures(
             draw="facegear.plots.shaft_orders:figures",
