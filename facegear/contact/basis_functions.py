@@ -39,7 +39,10 @@ class FacingPoints(NamedTuple):
 
     def part(self, rows: slice) -> "FacingPoints":
         """Return the points of some rows."""
-        return FacingPoints(*(values[rows] for values in self))
+        gap, lever_arm, pinion, gear, functions, values, area = self
+        return FacingPoints(
+            gap[rows], lever_arm[rows], pinion[rows], gear[rows], functions[rows], values[rows], area[rows]
+        )
 
 
 class Facing:

@@ -48,15 +48,12 @@ def face_functions(
 
 def _interval_functions(x: Array, linear: bool) -> tuple[Array, Array]:
     """Return values and slopes (..., a) of the Lagrange polynomials of an interval at x (...) in 0..1."""
-    if linear:
-        parts = (1.0 - x, x), (np.full_like(x, -1.0), np.ones_like(x))
-    else:
-        parts = (
-            ((1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)),
-            (4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0),
-        )
-    value, slope = (np.stack(part, axis=-1) for part in parts)
-    return value, slope
+    value: tuple[Array, ...] = (1.0 - x, x)
+    slope: tuple[Array, ...] = (np.full_like(x, -1.0), np.ones_like(x))
+    if not linear:
+        value = (1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)
+        slope = 4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0
+    return np.stack(value, axis=-1), np.stack(slope, axis=-1)
 
 
 def interpolation(coordinates: Array, shape: tuple[int, int], linear: bool = False) -> sp.csr_matrix:
