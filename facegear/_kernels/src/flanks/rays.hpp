@@ -17,11 +17,12 @@ inline std::vector<Index> rays_near_the_tooth(const Blank& blank, const Rays& ra
     std::vector<Index> live;
     live.reserve(static_cast<std::size_t>(rays.count()));
     const double beside = std::max(rays.search_radius, blank.aside / 3);
+    const double low = std::max(blank.inner - beside, 0.0), high = blank.outer + beside;
     for (Index i = 0; i < rays.count(); ++i) {
         const auto [start, way] = rays[i];
-        const double rise = rays.search_radius * std::fabs(way.z), radius = radius_of(start);
+        const double rise = rays.search_radius * std::fabs(way.z), square = start.x * start.x + start.y * start.y;
         const bool is_high = start.z - rise < blank.tip_plane + ON_PLANE && start.z + rise > blank.root_plane;
-        const bool is_between = blank.inner - beside < radius && radius < blank.outer + beside;
+        const bool is_between = low * low < square && square < high * high;
         if (is_high && is_between && std::fabs(start.x) < blank.aside) live.push_back(i);
     }
     return live;
