@@ -31,6 +31,8 @@ UNIT_LOADS = (20.0, 60.0)
 FACE = 6.4
 PITCH_SPEEDS = (5.0, 40.0)
 """Speed at the pitch circle of the pinion, m/s."""
+SAFETIES = ("bending_safety", "pitting_safety")
+"""Safeties of the pinions' drive flank that `facegear new` prints, in the order of its line."""
 SHARING = ("k_gamma_inputs", "k_gamma_idlers_least", "k_gamma_idlers_largest", "group_ratio")
 """Numbers of load sharing that `facegear new` prints for a split-torque machine, in the order of its line."""
 
@@ -86,7 +88,8 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
     dict
         A row of the table: the machine's numbers, `outcome` (report, incomplete or refused), `reason` of what
         is missing, `stages` that were computed, load sharing of a split-torque machine by `hunting` with the
-        stiffness of the contact analysis and as `facegear new` printed it, and `processor_s`.
+        stiffness of the contact analysis, safeties of the pinions, both also as `facegear new` printed them,
+        and `processor_s`.
     """
     stages: list[str] = []
     reasons: list[str] = []
@@ -99,7 +102,7 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
             stages.append(stage)
 
     outcome = "refused"
-    sharing: dict[str, float] = {}
+    estimates: dict[str, float] = {}
     try:
         path = folder / f"{machine.case}.yaml"
         first = first_machine(machine)
@@ -108,7 +111,8 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
         gearbox.report(folder / f"{machine.case}.html", note)
         outcome = "incomplete" if reasons else "report"
         if machine.idlers:
-            sharing = computed_sharing(gearbox) | printed_sharing(first.expected[1])
+            estimates = computed_sharing(gearbox) | printed_numbers(first.expected[1], SHARING)
+        estimates |= computed_safety(gearbox) | printed_numbers(first.expected[-2], SAFETIES)
     except FacegearError as error:
         reasons.append(str(error).splitlines()[0])
     return {
@@ -124,7 +128,7 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
         "outcome": outcome,
         "reason": "; ".join(reasons),
         "stages": len(stages),
-        **sharing,
+        **estimates,
         "processor_s": round(time.process_time() - start, 1),
     }
 
@@ -154,21 +158,40 @@ def computed_sharing(gearbox: Gearbox) -> dict[str, float]:
     return {name: round(float(value), 3) for name, value in zip(SHARING, values, strict=True)}
 
 
-def printed_sharing(line: str) -> dict[str, float]:
-    """Read the load sharing from the line that `facegear new` prints.
+def computed_safety(gearbox: Gearbox) -> dict[str, float]:
+    """Compute the safety of the pinions' drive flank by finite elements and contact analysis.
 
     Parameters
     ----------
-    line : str
-        The line, which holds the numbers of SHARING in their order.
+    gearbox : Gearbox
+        The machine.
 
     Returns
     -------
     dict
-        Numbers by the names of SHARING with `printed_` before them, dimensionless.
+        Numbers by the names of SAFETIES, dimensionless.
     """
-    numbers = re.findall(r"\d+\.\d+|\d+", line.partition(" (")[0])
-    return {f"printed_{name}": float(number) for name, number in zip(SHARING, numbers, strict=True)}
+    safety = gearbox.rating().safety().set_index(["body", "flank"]).loc[("pinion", "drive")]
+    return {name: round(float(safety[name]), 3) for name in SAFETIES}
+
+
+def printed_numbers(line: str, names: Sequence[str]) -> dict[str, float]:
+    """Read numbers from a line that `facegear new` prints.
+
+    Parameters
+    ----------
+    line : str
+        The line, which begins with the numbers.
+    names : sequence of str
+        What the numbers are, in their order.
+
+    Returns
+    -------
+    dict
+        Numbers by these names with `printed_` before them, any unit.
+    """
+    numbers = re.findall(r"\d+\.\d+|\d+", line)
+    return {f"printed_{name}": float(number) for name, number in zip(names, numbers, strict=False)}
 
 
 def run_all(machines: Sequence[MachineWishes]) -> pd.DataFrame:

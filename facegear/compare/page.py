@@ -92,9 +92,9 @@ def stored_in_words(name: str, folder: Path) -> str:
     """
     if not (folder / NOT_STORED).is_file():
         return ""
-    held = count_noun(len(answer_tables(folder)), "table")
-    missing = count_noun(len(tables_not_stored(folder)), "larger table")
-    return f"{name} holds {held}. Not stored, and not compared: {missing}."
+    stored_count = count_noun(len(answer_tables(folder)), "table")
+    omitted_count = count_noun(len(tables_not_stored(folder)), "larger table")
+    return f"{name} holds {stored_count}. Not stored, and not compared: {omitted_count}."
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:

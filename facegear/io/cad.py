@@ -57,8 +57,8 @@ def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
         volume = abs(gmsh.model.occ.getMass(3, solid)) * 1e-9
         sides = [len(gmsh.model.getAdjacencies(1, edge)[0]) for _, edge in gmsh.model.getEntities(1)]
         if set(sides) != {2}:
-            tried = f"{count_noun(len(patches), 'patch does', 'patches do')} not close"
-            raise NotConverged("STEP", name, tried)
+            failure = f"{count_noun(len(patches), 'patch does', 'patches do')} not close"
+            raise NotConverged("STEP", name, failure)
         with atomic_path(path) as temporary:
             with _silent():
                 gmsh.write(str(temporary))

@@ -1,6 +1,6 @@
 """What the force of a contact offers to statics, dynamics, tangents and load sharing."""
 
-from typing import NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -70,18 +70,9 @@ class MeshLaw(Protocol):
         other, statics asks the law itself, position by position.
         """
 
-    def terms(self, frequency: float, width: int) -> NamedTuple:
-        """The law for the functions of `terms.py`, with time counted as mesh phase in rad.
-
-        Forces are over the squared mesh frequency (rad/s); arrays are padded to `width` contacts.
-        """
-
-    def series(self, rows: int, width: int) -> NamedTuple:
-        """Scratch space for Taylor series of `rows` coefficients of the contacts, padded to `width`.
-
-        It has a field `slope` (rows, width): the series of the slope along the motion. Laws of one type share
-        it, so that its size depends on `rows` and `width` alone.
-        """
+    @property
+    def compiled(self) -> Any:
+        """What the integrator takes of it, one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
 
 
 def past_levels(law: MeshLaw, beyond: Array) -> Array:

@@ -3,12 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
 
 import numpy as np
 
+from facegear._kernels import motion
 from facegear.arrays import Array, Integers
-from facegear.machine_code.memory import LANES, aligned, aligned_together, divided
 from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
 from facegear.mesh_law.laws_at_phases import LoadDependentHeld
 from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
@@ -121,19 +120,10 @@ class LoadDependentLaw:
             self.kind,
         )
 
-    def terms(self, frequency: float, width: int) -> NamedTuple:
-        """The law over the squared mesh frequency."""
-        from facegear.mesh_law.load_dependent_terms import LoadDependentTerms
-
-        return LoadDependentTerms(divided(_columns(self), frequency**2), self._levels, self.kind)
-
-    def series(self, rows: int, width: int) -> NamedTuple:
-        """Scratch space for the coefficients of the pieces and the powers of the amounts."""
-        from facegear.mesh_law.load_dependent_terms import LoadDependentSeries
-
-        shapes = dict.fromkeys(LoadDependentSeries._fields, (rows, width))
-        shapes |= {"four": (rows, LANES), "filled": (1, width)}
-        return LoadDependentSeries(**aligned_together(shapes))
+    @cached_property
+    def compiled(self) -> motion.LoadDependentLaw:
+        """What the integrator takes of it."""
+        return motion.load_dependent_law(_columns(self), self._levels, np.ascontiguousarray(self.kind, np.int64))
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
@@ -142,8 +132,6 @@ def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
 
 
 @lru_cache(maxsize=16)
-def _columns(law: LoadDependentLaw) -> Any:
+def _columns(law: LoadDependentLaw) -> Array:
     """Coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; shared, only read."""
-    columns = aligned(*np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)).shape)
-    columns[:] = np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2))
-    return columns
+    return np.ascontiguousarray(np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)))

@@ -1,12 +1,15 @@
 """Quick estimates of what a machine to start from will do."""
 
 from collections.abc import Iterator
-from math import pi
+from math import pi, sqrt, tan
 
 import numpy as np
+from scipy.optimize import brentq
 
 from facegear.config.base import parse
 from facegear.config.strength import Strength, rating_request
+from facegear.geometry.analysis import path_curvatures
+from facegear.geometry.design import PairDesign
 from facegear.number_format import count_noun, format_number
 from facegear.strength.rating import hertz_stress, permissible_bending, pinion_form, standard_bending
 from facegear.transmission.loaded_modes import vibrating_machine
@@ -16,7 +19,7 @@ from facegear.variants.split_bearings import (
     Split,
     smallest_torque,
 )
-from facegear.variants.starting_draft import SPEEDS, Draft
+from facegear.variants.starting_draft import SPEEDS, STIFFNESS, Draft
 
 RESONANCES = 3
 """Number of resonances that are printed."""
@@ -60,7 +63,8 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
     bending, pitting = _safeties(draft, mesh_torque)
     yield (
         f"safety of the pinion against bending {bending:.3g}, against pitting {pitting:.3g} at "
-        f"{_text(mesh_torque)} N m a mesh (cylindrical standard, endurance limit)"
+        f"{_text(mesh_torque)} N m a mesh (standard for cylindrical gears, crowning of the flanks, "
+        "endurance limit)"
     )
     yield _resonances(draft, bearings)
 
@@ -89,7 +93,47 @@ def _safeties(draft: Draft, mesh_torque: float) -> tuple[float, float]:
     permissible = permissible_bending(design, request.bodies["pinion"], form.notch_parameter, 0.0)
     pitting, _ = request.bodies["pinion"].limits()
     stress = hertz_stress(design, ratio, request)["pinion"](mesh_torque)
+    stress *= sqrt(load_concentration(design, mesh_torque))
     return permissible / standard_bending(design, form)(mesh_torque), pitting.limit / stress
+
+
+def load_concentration(design: PairDesign, mesh_torque: float) -> float:
+    """Estimate the largest line load of a pair over its mean along the face.
+
+    A shaper with more teeth than the pinion crowns the flanks against each other: beside the path of contact
+    they part by half the smaller relative curvature times the distance squared. The face carries the load as
+    independent strips with the mesh stiffness of the standard.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    mesh_torque : float
+        Torque on the pinion, N m, that one pair of teeth carries.
+
+    Returns
+    -------
+    float
+        Dimensionless; 1 for flanks without crowning.
+    """
+    gear, path = design.face_gear, 0.5 * design.module * design.face_gear.teeth
+    inner, outer = gear.inner_radius - path, gear.outer_radius - path
+    roll, _, curvatures, _ = path_curvatures(design)
+    curvature = float(curvatures[np.abs(roll - tan(design.pressure_angle)).argmin()])
+    if curvature <= 0.0:
+        return 1.0
+    approach_of_force = mesh_torque / design.pinion_base_radius / STIFFNESS
+    nearest = min(max(0.0, inner), outer)
+    first_touch = 0.5 * curvature * nearest**2
+
+    def excess(approach: float) -> float:
+        reach = sqrt(2.0 * approach / curvature)
+        start, end = max(inner, -reach), min(outer, reach)
+        return approach * (end - start) - curvature * (end**3 - start**3) / 6.0 - approach_of_force
+
+    whole_face = approach_of_force / (outer - inner) + 0.5 * curvature * max(inner**2, outer**2)
+    approach = brentq(excess, first_touch, whole_face)
+    return float((approach - first_touch) * (outer - inner) / approach_of_force)
 
 
 def _resonances(draft: Draft, bearings: Bearings) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from facegear.arrays import Array
-from facegear.dynamics.abreast.many import run_many
+from facegear.dynamics.many import run_many
 from facegear.dynamics.abreast.wide import WIDTH
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator

@@ -14,7 +14,7 @@ import pandas as pd
 from numba import njit
 
 from facegear.arrays import Array
-from facegear.dynamics.abreast.many import run_many
+from facegear.dynamics.many import run_many
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State

@@ -1,9 +1,9 @@
 // Vectors of doubles. This file is the only place that knows the processor and the compiler's extensions.
 //
-// With GCC and Clang a vector of four is the compiler's own type: AVX2 where the module is compiled for it, two
-// registers of SSE2 or NEON otherwise. Elsewhere, and where FACEGEAR_SCALAR is defined, it is an array of doubles
-// with the same operators. Eight lanes are two vectors of four: GCC 12 turns vectors of 64 bytes without AVX-512
-// into memory traffic, ten times slower.
+// With GCC and Clang a vector of four is the compiler's own type: AVX2 where the module is compiled for it,
+// two registers of SSE2 or NEON otherwise. Elsewhere, and where FACEGEAR_SCALAR is defined, it is an array of
+// doubles with the same operators. Eight lanes are two vectors of four: GCC 12 turns vectors of 64 bytes
+// without AVX-512 into memory traffic, ten times slower.
 #pragma once
 
 #include <cmath>
@@ -127,6 +127,31 @@ struct Lanes<8> {
     }
 };
 
+#endif
+
+// A number whose bit i says whether lane i is above zero.
+template <int Width>
+inline unsigned positive_lanes(Lanes<Width> value) {
+    unsigned bits = 0;
+    for (int i = 0; i < Width; ++i) bits |= static_cast<unsigned>(value[i] > 0.0) << i;
+    return bits;
+}
+
+// The sums of the lanes of four vectors.
+inline Lanes<4> lane_sums(Lanes<4> a, Lanes<4> b, Lanes<4> c, Lanes<4> d) {
+    Lanes<4> result = Lanes<4>::splat(0.0);
+    const Lanes<4> all[] = {a, b, c, d};
+    for (int i = 0; i < 4; ++i) result.set(i, (all[i][0] + all[i][2]) + (all[i][1] + all[i][3]));
+    return result;
+}
+
+#if defined(FACEGEAR_VECTOR_EXTENSION) && defined(__AVX__)
+inline unsigned positive_lanes(Lanes<4> value) {
+    return static_cast<unsigned>(__builtin_ia32_movmskpd256((FourDoubles)(value.lane > 0.0)));
+}
+#endif
+#ifdef FACEGEAR_VECTOR_EXTENSION
+inline unsigned positive_lanes(Lanes<8> value) { return positive_lanes(value.low) | positive_lanes(value.high) << 4; }
 #endif
 
 // first * second + third, fused where the processor can.
