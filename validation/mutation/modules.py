@@ -48,9 +48,8 @@ MODULES = {
         interpreted=True,
     ),
     "statics": Module(
-        ("facegear/transmission/statics.py", "facegear/transmission/contact_kernel.py"),
+        ("facegear/transmission/statics.py",),
         _tests("transmission", "statics", "statics_by_energy", "geometric_statics"),
-        interpreted=True,
     ),
     "geometry": Module(
         (
