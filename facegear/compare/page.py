@@ -20,7 +20,7 @@ from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.number_format import count_noun
 from facegear.plots.compare import curves_compared
-from facegear.plots.style import save
+from facegear.plots.save import save
 from facegear.report.page import Chapter, Picture, Table, render
 from facegear.report.table import words
 

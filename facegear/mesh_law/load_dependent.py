@@ -123,7 +123,9 @@ class LoadDependentLaw:
     @cached_property
     def compiled(self) -> motion.LoadDependentLaw:
         """What the integrator takes of it."""
-        return motion.load_dependent_law(_columns(self), self._levels, np.ascontiguousarray(self.kind, np.int64))
+        return motion.load_dependent_law(
+            _columns(self), self._levels, np.ascontiguousarray(self.kind, np.int64)
+        )
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:

@@ -216,14 +216,15 @@ def following(case: Case) -> bool:
 
 
 def turning_errors(case: Case) -> bool:
-    """Whether meshes are geometric, and something has a runout or a cumulative pitch deviation, or teeth
-    differ.
+    """Whether meshes are geometric, and something has a runout or a cumulative pitch deviation, teeth differ,
+    or a body has a periodic torque.
     """
     from facegear.config.notes import turns
 
     if not machine(case) or case.values["transmission"]["mesh_kinematics"] != "geometric":
         return False
-    return turns(case.values["transmission"]) or single_teeth(case)
+    section = case.values["transmission"]
+    return turns(section) or single_teeth(case) or bool(section["excitations"])
 
 
 def tolerances(case: Case) -> bool:

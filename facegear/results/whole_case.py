@@ -18,7 +18,7 @@ from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, sho
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
-from facegear.plots.style import save
+from facegear.plots.save import save
 from facegear.provenance.manifest import versions
 from facegear.report.omissions import with_omissions
 from facegear.results.base import StageOutput

@@ -7,7 +7,7 @@ import pandas as pd
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.number_format import count_noun
-from facegear.plots.style import save
+from facegear.plots.save import save
 from facegear.provenance.stage import stage
 from facegear.report.inputs import inputs_in_words
 from paper.figures.claims_of import NUMBERS, claims_of

@@ -9,6 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -36,11 +37,23 @@ COLUMNS = (
 
 
 class Job:
-    """Calls of a point with the code of a tree, in one process or each in its own."""
+    """Calls of a point with the code of a tree, in one process or each in its own.
 
-    def __init__(self, tree: Tree, job: Path, answers: Path, inputs: Path, whole_process: bool) -> None:
+    `variables` are added to the environment of the processes.
+    """
+
+    def __init__(
+        self,
+        tree: Tree,
+        job: Path,
+        answers: Path,
+        inputs: Path,
+        whole_process: bool,
+        variables: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
         self.command = tree.command(WORKER, str(job), str(answers), str(inputs))
         self.tree, self.whole_process = tree, whole_process
+        self.environment = {**tree.variables, **variables}
         self.process: subprocess.Popen[str] | None = None
 
     def call(self) -> dict[str, float]:
@@ -53,7 +66,7 @@ class Job:
             self.process = subprocess.Popen(
                 self.command,
                 cwd=self.tree.sources,
-                env=self.tree.variables,
+                env=self.environment,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 text=True,

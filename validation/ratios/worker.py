@@ -19,6 +19,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+CONVERGED = 1e-14
+"""Local error of a step over the length scale, so small that the choice of the steps moves no digit."""
 SECOND_LOOKS = 3
 """Other starts that a class must come out from again, as in a sweep."""
 
@@ -94,7 +96,8 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
 
     model = build_model(gearbox._machine())
     speed = gearbox.values["dynamics"]["speed_rpm"]
-    integrator = Integrator(model.system, 2.0 * np.pi * mesh_frequency(model.machine.layout, speed))
+    frequency = 2.0 * np.pi * mesh_frequency(model.machine.layout, speed)
+    integrator = Integrator(model.system, frequency, CONVERGED)
     random, basis, linear = np.random.default_rng(1), model.reduced.basis, model.machine.linear
 
     def aside(size: float) -> Any:
@@ -112,7 +115,6 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
             "tangents": run.tangents @ basis.T,
             "samples": run.samples @ basis.T,
             "fractions": run.fractions[:, : integrator.contacts],
-            "steps": run.steps,
         }
     return ends
 

@@ -123,3 +123,21 @@ def test_the_page_shows_every_stored_row_and_every_capability(stored):
     counts = 1 + len({*STAGES, *METHODS.values()})
     assert len(shown) == counts + len(headings) + len(stored)
     assert len(set(headings)) == len(headings)
+
+
+SECTIONS = (
+    *("Summary", "Statement of need", "State of the field", "Software design", "Research impact statement"),
+    *("AI usage disclosure", "Acknowledgements", "References"),
+)
+"""Sections that the Journal of Open Source Software asks for."""
+
+
+def test_the_paper_has_its_sections_and_claims_only_programs_that_the_page_shows(stored):
+    paper = (ROOT / "docs" / "joss" / "paper.md").read_text(encoding="utf-8")
+    headings = re.findall(r"^# (.+)$", paper, flags=re.MULTILINE)
+    assert set(SECTIONS) <= set(headings)
+    (claimed,) = re.findall(r"as references: (.+?) compute cases", paper)
+    programs = re.split(r", | and ", claimed.replace("`", ""))
+    sources = " ".join(stored.loc[stored["kind"] != Kind.CONVERGENCE, "source"])
+    assert len(programs) == 5 and [name for name in programs if name not in sources] == []
+    assert "None of them is a measurement of a machine" in paper or (stored["kind"] == Kind.MEASUREMENT).any()

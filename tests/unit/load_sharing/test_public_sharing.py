@@ -92,6 +92,30 @@ def test_a_late_path_parts_at_the_number_of_the_closed_form(idlers, upper):
     agrees("share of the path past that number", shares[0], 0.0, absolute=1e-12)
 
 
+PLANETS = {
+    4: [1 / 4, -1 / 4, 1 / 4, -1 / 4],
+    5: [0.4, -0.32361, 0.12361, 0.12361, -0.32361],
+    6: [1 / 2, -1 / 3, 0.0, 1 / 6, 0.0, -1 / 3],
+}
+"""Share that a first planet late by e = W / k_e takes off the share of each planet around a floating sun."""
+
+
+@against(
+    "external source",
+    "Ligata et al. 2009, planet load shares with one planet out of place",
+    capability="statics",
+    module="facegear.transmission.statics",
+)
+@pytest.mark.parametrize("planets", list(PLANETS))
+def test_shares_of_idlers_are_those_of_planets_around_a_floating_sun(planets):
+    """The lateness is small enough for all planets to carry; a late planet carries less."""
+    number = 0.05
+    late_um = 1e6 * number * TOTAL / path_stiffness()
+    shares = upper_shares(make_idlers(planets, FLOATING, late_um=late_um), TOTAL)
+    found = (1.0 / planets - shares) / number
+    agrees("change of a planet's share over k_e e / W", found, PLANETS[planets], absolute=5.1e-6)
+
+
 @against(
     "external source",
     "Singh 2010, enumeration of all contact sets at X_e = 0.8",
