@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from facegear.machine_code.fourier import fourier_terms
-
 from facegear.machine_code.compiler import FAST, for_callers
+from facegear.machine_code.fourier import fourier_terms
 from facegear.machine_code.lanes import LANES, load, multiply_add, splat, take
 from facegear.machine_code.memory import aligned
 from facegear.machine_code.records import Record
+
 from facegear.mesh_law import terms
 
 inlined = for_callers(**FAST)
