@@ -80,6 +80,7 @@ def _require_plain(model: Model) -> None:
     lost = {
         "forces that depend on the load (mesh_law)": not isinstance(law, LinearLaw) or bool(law.pieces),
         "friction as an excitation": system.rubbing is not None,
+        "periodic torques (excitations)": system.load.shape[2] > 1,
         "bearing clearance": bool(system.ring_stiffness.size),
         "coupling of turning bodies or dampers of torsional springs": system.coupling is not None,
     }

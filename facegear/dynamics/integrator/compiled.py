@@ -51,7 +51,9 @@ def packed_system(system: System) -> motion.System:
         ring_stiffness=_contiguous(system.ring_stiffness),
         ring_clearance=_contiguous(system.ring_clearance),
         ring_lag=float(system.ring_lag),
-        rubbing_flank=np.zeros(0, np.int64) if rubbing is None else np.ascontiguousarray(rubbing.flank, np.int64),
+        rubbing_flank=np.zeros(0, np.int64)
+        if rubbing is None
+        else np.ascontiguousarray(rubbing.flank, np.int64),
         rubbing_ratios=np.zeros((0, 2, 1)) if rubbing is None else _contiguous(rubbing.ratios),
         rubbing_directions=np.zeros((0, n)) if rubbing is None else _contiguous(rubbing.directions),
         coupling=_coupling(system.coupling, n),
