@@ -36,7 +36,7 @@ def problems():
 @against(
     "second implementation",
     "the equations of motion written plainly with NumPy",
-    capability="machine_code dynamics_response",
+    capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",
 )
 def test_compiled_and_plain_right_hand_sides_agree(problems):

@@ -107,7 +107,7 @@ def apart(found, starts, periods):
 @against(
     "second implementation",
     "the integrator of a single machine, whose vectors hold its meshes",
-    capability="branches_starts machine_code",
+    capability="branches_starts",
     module="facegear.dynamics.many",
 )
 @pytest.mark.parametrize("name", [*MACHINES, *OSCILLATORS])
