@@ -54,7 +54,7 @@ def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band |
     width = f" ± {format_number(mean['half_width'], 2)}" if mean["half_width"] > 0.005 else ""
     name = f"{curve['label'].iloc[0]}: mean {format_number(mean['mean'])}{width}, {mean['motion']}"
     if mean["undefined_fraction"] > 0.005:
-        name += f", no load {format_number(100 * mean['undefined_fraction'], 2)} % of the time"
+        name += f", unloaded {format_number(100 * mean['undefined_fraction'], 2)} %"
     yield Curve(time, curve["coefficient"], name, colour, LINES[number % len(LINES)], width=1.3)
 
 
