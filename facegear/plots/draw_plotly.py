@@ -104,8 +104,8 @@ def interactive(figure: Figure) -> dict[str, Any]:
         *(_title(target) for target in targets if target.panel.title),
     ]
     layout["hovermode"] = "closest" if closest else "x unified"
-    more = _legend_height(figure, NARROW_WIDTH) - _legend_height(figure, LEGEND_WIDTH)
-    return {"title": markup(figure.title), "data": data, "layout": layout, "narrow_px": round(more)}
+    narrow_px = _legend_height(figure, NARROW_WIDTH) - _legend_height(figure, LEGEND_WIDTH)
+    return {"title": markup(figure.title), "data": data, "layout": layout, "narrow_px": round(narrow_px)}
 
 
 def write(figure: Figure, path: Path) -> None:
@@ -267,13 +267,13 @@ def _above(figure: Figure) -> float:
 
 def _legend_height(figure: Figure, width: float) -> float:
     """Pixels that the legend takes in a width: its entries stand beside each other as long as they fit."""
-    height, row, filled = LINE * _lines(figure.legend_title), 0.0, 0.0
+    height, row, row_width = float(LINE * _lines(figure.legend_title)), 0.0, 0.0
     for key in entries(figure.panels, figure.keys):
         lines = legend_text(key.name).split("<br>")
         entry = ENTRY + LETTER * max(map(len, lines))
-        if filled + entry > width or not filled:
-            height, row, filled = height + row, 0.0, 0.0
-        row, filled = max(row, ENTRY_HEIGHT + LINE * (len(lines) - 1)), filled + entry
+        if row_width + entry > width or not row_width:
+            height, row, row_width = height + row, 0.0, 0.0
+        row, row_width = max(row, ENTRY_HEIGHT + LINE * (len(lines) - 1)), row_width + entry
     return height + row
 
 
