@@ -385,6 +385,21 @@ class Figure:
         """
         return not self.shared_x or number + self.columns >= len(self.panels)
 
+    def shows_y(self, number: int) -> bool:
+        """Return whether a panel has the label of its y axis beside it.
+
+        Parameters
+        ----------
+        number : int
+            Number of the panel, from 0, dimensionless.
+
+        Returns
+        -------
+        bool
+            False where a panel at its left shares the axis.
+        """
+        return not self.shared_y or number % self.columns == 0
+
     def limits(self, number: int, letter: Letter) -> tuple[float, float]:
         """Return the ends of an axis of a panel; panels that share the axis have the same.
 

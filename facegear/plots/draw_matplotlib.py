@@ -299,7 +299,7 @@ def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
         if axis.logarithmic:
             getattr(on, f"set_{letter}scale")("log")
         getattr(on, f"set_{letter}lim")(*((high, low) if axis.is_falling else (low, high)))
-        if letter == "y" or figure.shows_x(number):
+        if figure.shows_y(number) if letter == "y" else figure.shows_x(number):
             getattr(on, f"set_{letter}label")(axis.label)
         _ticks(getattr(on, f"{letter}axis"), axis, log10(high / low) if axis.logarithmic else 0.0, letter)
     if panel.equal:

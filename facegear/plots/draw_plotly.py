@@ -49,7 +49,7 @@ letters, and each letter.
 """
 ENTRY_HEIGHT, WHOLE_LEGEND = 28, 2000
 """In pixels: height of an entry of a legend; height from which a legend would be rolled."""
-UPRIGHT, LABEL = 7, 50
+UPRIGHT, LABEL = 7, 46
 """Letters of a tick's name that stand upright, and of the longest line of a label or title."""
 BAR = 58
 """Pixels of a bar of colours that lies above all panels, with its numbers and its label."""
@@ -230,7 +230,12 @@ def _layout(figure: Figure, targets: Sequence[PlotlyAxes], domains: Any) -> dict
     for number, target in enumerate(targets):
         row, column = divmod(number, figure.columns)
         label = "\n".join(
-            text for text in (target.panel.y.label, figure.y_label if number == middle else "") if text
+            text
+            for text in (
+                target.panel.y.label if figure.shows_y(number) else "",
+                figure.y_label if number == middle else "",
+            )
+            if text
         )
         layout[f"yaxis{target.y[1:]}"] = {
             **_axis(target.panel.y, label, figure.limits(number, "y")),
@@ -292,7 +297,7 @@ def _axis(axis: Axis, label: str, ends: tuple[float, float]) -> dict[str, Any]:
     """Label, range, kind and named ticks of an axis."""
     limits = np.log10(ends) if axis.logarithmic else np.array(ends)
     layout_axis: dict[str, Any] = {
-        "title": {"text": markup(narrow(label)), "standoff": 5},
+        "title": {"text": markup(narrow(label))},
         "type": "log" if axis.logarithmic else "linear",
         "range": numbers(limits[::-1] if axis.is_falling else limits),
         "automargin": True,

@@ -197,8 +197,8 @@ def separation(
     marks.append(Curve(*path, "contact path", RED, line="none", marker="dot"))
     gap_record = record["smallest_gap"]
     title = (
-        f"Drive flank of the gear; smallest gap elsewhere\n{format_number(gap_record['gap_um'])} µm at "
-        f"{format_number(gap_record['gear_radius_mm'], 4)} mm (gear {gap_record['gear_part']}, "
+        f"Drive flank; smallest gap elsewhere {format_number(gap_record['gap_um'])} µm\n"
+        f"at {format_number(gap_record['gear_radius_mm'], 4)} mm (gear {gap_record['gear_part']}, "
         f"pinion {gap_record['pinion_part']})"
     )
     ends = np.hypot(top[[0, -1], 0], top[[0, -1], 1])

@@ -126,7 +126,9 @@ def _require_equal_panels(panel, axes, traces):
         ends = np.flatnonzero(np.isnan(rings[0]))
         shown = sum(_area(*ring[:, np.isfinite(ring[0])]) for ring in np.split(rings, ends, axis=1))
         np.testing.assert_allclose(drawn, shown, rtol=1e-3, atol=1e-6)
-    bands = [mark for mark in axes.collections if isinstance(mark, PolyCollection) and not mark.get_array()]
+    bands = [
+        mark for mark in axes.collections if isinstance(mark, PolyCollection) and mark.get_array() is None
+    ]
     assert len(bands) == sum(type(mark).__name__ == "Band" for mark in panel.marks)
 
 
