@@ -39,7 +39,7 @@ SOFTER, STIFFER = 0.5, 2.0
 TOLERANCE = 1e-6
 """Relative difference of stiffnesses, angles or radii below which they count as equal."""
 ADVICE_COLUMNS = (
-    *("group", "kind", "change", "from_to", "k_gamma", "predicted", "found", "gain"),
+    *("group", "kind", "change", "from_to", "k_gamma", "found", "gain", "predicted_gain"),
     *("worst", "worst_found"),
 )
 IDLERS = (Role.IDLER, Role.TAIL)
@@ -84,21 +84,24 @@ def advice(machine: Machine, options: MapOptions) -> pd.DataFrame:
     -------
     pd.DataFrame
         ADVICE_COLUMNS, one row a change and group, the largest gain of each group first. k_gamma and found
-        are the percentile JUDGED_LEVEL of idlers, or the value of an input, before and after; predicted is
-        the closed form's, nan where it has none. worst and worst_found: the largest of all groups before and
-        after, by which the machine as a whole is judged. Raises NotConverged.
+        are the percentile JUDGED_LEVEL of idlers, or the value of an input, before and after, gain their
+        difference; predicted_gain is that of the closed forms alone, nan where there is none. worst and
+        worst_found: the largest of all groups before and after, by which the machine as a whole is judged.
+        Raises NotConverged.
     """
     mapped, rows = MappedMachine(machine), []
     groups = [group for group in split_groups(machine.layout) if _is_loaded(mapped, group)]
     before = {group.name: judged_factor(mapped, group, options) for group in groups}
+    closed_before = {group.name: predicted_factor(mapped, group, options) for group in groups}
     for change in _changes(machine, options):
         after = {group.name: judged_factor(change.machine, group, change.options) for group in groups}
         for group in groups:
-            predicted = predicted_factor(change.machine, group, change.options, change.freedom)
+            closed_after = predicted_factor(change.machine, group, change.options, change.freedom)
             now, factor_after = before[group.name], after[group.name]
             key = (group.name, group.kind.value, change.words, change.from_to)
             worst = max(before.values()), max(after.values())
-            rows.append((*key, now, predicted, factor_after, now - factor_after, *worst))
+            gains = now - factor_after, closed_before[group.name] - closed_after
+            rows.append((*key, now, factor_after, *gains, *worst))
     table = pd.DataFrame(rows, columns=list(ADVICE_COLUMNS))
     order = {group.name: number for number, group in enumerate(groups)}
     return table.sort_values(

@@ -94,7 +94,7 @@ def _draw_inputs(axis: Axes, inputs: pd.DataFrame) -> None:
     near = [rows for _, rows in by_bearing if (rows["k_gamma"] / rows["closed"] - 1.0).abs().max() < HOLDS]
     _draw_closed(axis, [(rows["number"], rows["closed"]) for rows in near])
     for colour, (bearing, rows) in zip(COLOURS, by_bearing, strict=False):
-        label = f"bearings of {bearing:.2g} N/m"
+        label = f"bearing {bearing:.2g} N/m"
         axis.plot(rows["number"], rows["k_gamma"], color=colour, label=label)
     axis.set_xlabel(r"Misfit of inputs $2\,b\,k\,/\,W$")
     axis.set_ylabel(r"Largest $K_\gamma$ of the inputs")

@@ -22,8 +22,8 @@ class SharingMapResult(Result):
         Returns
         -------
         pd.DataFrame
-            Columns group, kind, change, from_to, k_gamma, predicted (closed form), found, gain, worst and
-            worst_found (the largest of all groups); the largest gain of each group first.
+            Columns group, kind, change, from_to, k_gamma, found, gain, predicted_gain (closed form), worst
+            and worst_found (the largest of all groups); the largest gain of each group first.
         """
         return self.content["advice"].copy()
 
