@@ -47,10 +47,11 @@ class DampingSection(Section):
         "a stand-in for losses elsewhere",
     )
     bearing_s: float = Field(ge=0, le=1e-2, description="damping of each bearing over its stiffness")
-    open_flanks: Literal["always", "contact_only", "push_only"] = Field(
+    open_flanks: Literal["always", "contact_only", "push_only", "mesh_deflection"] = Field(
         "contact_only",
         description="where the mesh damper acts: always, across open flanks too (equation (20)); "
-        "contact_only; push_only: in contact, and spring and damper together never pull parting flanks",
+        "contact_only; push_only: in contact, and spring and damper together never pull parting flanks; "
+        "mesh_deflection: always and whole along the drive flank (Kahraman and Singh 1990)",
     )
 
 

@@ -13,7 +13,6 @@ from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.simulate import Model, static_start
 from facegear.harmonics.series import stacked, stacked_values
 from facegear.transmission.flanks import error_series, slow_errors
@@ -70,7 +69,6 @@ def follow(
 
     The lead is doubled until two starts agree, up to MAX_LEAD cycles. Raises NotConverged if a step fails.
     """
-    prepare_for(model.system)
     settings = settings or Settings()
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
     integrator = Integrator(model.system, frequency, settings.tolerance, settings.order)

@@ -12,8 +12,7 @@ from facegear.dynamics.integrator.integrator import Integrator, RunResult
 class Stretch:
     """Whole mesh periods from a state (2, n) by phase, with what `Integrator.run` can be asked for.
 
-    Without batches there are no fractions of time in contact, and no divergence where machines run side by
-    side.
+    Without batches, samples or tangents there are no fractions of time in contact.
     """
 
     integrator: Integrator

@@ -1,13 +1,18 @@
 """What the force of a contact offers to statics, dynamics, tangents and load sharing."""
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from facegear.arrays import Array
 
-Held = Any
-"""A NamedTuple of any law, held at K phases."""
+
+class Held(Protocol):
+    """A law of M contacts at K phases: its field `stiffness` (K, M) bounds the slopes, N/m."""
+
+    @property
+    def stiffness(self) -> Array:
+        """Bounds of the slopes (K, M), N/m."""
 
 
 class MeshLaw(Protocol):
@@ -61,22 +66,13 @@ class MeshLaw(Protocol):
         """The law at one phase, whatever the phase."""
 
     def held(self, cycles: Array) -> Held:
-        """The law at K phases for `terms.held_force`, with a field `stiffness` (K, M): bounds of the slopes,
-        N/m.
+        """The law at K phases for statics. Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any
+        other, statics asks the law itself, position by position.
         """
 
-    def terms(self, frequency: float, width: int) -> NamedTuple:
-        """The law for the functions of `terms.py`, with time counted as mesh phase in rad.
-
-        Forces are over the squared mesh frequency (rad/s); arrays are padded to `width` contacts.
-        """
-
-    def series(self, rows: int, width: int) -> NamedTuple:
-        """Scratch space for Taylor series of `rows` coefficients of the contacts, padded to `width`.
-
-        It has a field `slope` (rows, width): the series of the slope along the motion. Laws of one type share
-        it, so that its size depends on `rows` and `width` alone.
-        """
+    @property
+    def compiled(self) -> Any:
+        """What the integrator takes of it, one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
 
 
 def past_levels(law: MeshLaw, beyond: Array) -> Array:

@@ -2,15 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from functools import cached_property
 
 import numpy as np
 
+from facegear._kernels import motion
 from facegear.arrays import Array, Integers
 from facegear.harmonics.series import Harmonics, stacked, stacked_values
-from facegear.machine_code.memory import aligned, divided, whole_lanes
-from facegear.mesh_law.law import Held
+from facegear.mesh_law.laws_at_phases import LinearHeld
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,24 +132,19 @@ class LinearLaw:
         fourier[:, 1, 0] = self.stiffness(np.array([cycle]))[0]
         return LinearLaw(fourier, np.arange(self.contacts))
 
-    def held(self, cycles: Array) -> Held:
+    def held(self, cycles: Array) -> LinearHeld:
         """k at some phases."""
-        from facegear.mesh_law.linear_terms import LinearHeld  # compiled; modes do without
+        return LinearHeld(self.stiffness(cycles))
 
-        return LinearHeld(np.ascontiguousarray(self.stiffness(cycles)))
-
-    def terms(self, frequency: float, width: int) -> NamedTuple:
-        """k over the squared mesh frequency."""
-        terms_of_law, square = _terms(self, width), frequency**2
-        return terms_of_law._replace(
-            fourier=divided(terms_of_law.fourier, square), pieces=terms_of_law.pieces / square
+    @cached_property
+    def compiled(self) -> motion.LinearLaw:
+        """What the integrator takes of it."""
+        return motion.linear_law(
+            np.ascontiguousarray(self.fourier, dtype=float),
+            np.ascontiguousarray(self.kind, np.int64),
+            2.0 * np.pi * self.breaks,
+            _pieces(self),
         )
-
-    def series(self, rows: int, width: int) -> NamedTuple:
-        """Scratch space; the slope is the series of k."""
-        from facegear.mesh_law.linear_terms import LinearSeries
-
-        return LinearSeries(aligned(rows, width), aligned(rows * width), aligned(rows))
 
 
 def linear_law(series: Sequence[Harmonics]) -> LinearLaw:
@@ -166,29 +160,13 @@ def different(series: Sequence[Harmonics]) -> tuple[Array, Integers]:
     return distinct.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
 
 
-def fourier_columns(rows: Array) -> Array:
-    """Fourier rows (kinds, 2, harmonics + 1) in the order that compiled functions read, padded."""
-    width = whole_lanes(len(rows))
-    series = aligned(*rows.shape[:0:-1], width)
-    series[..., : len(rows)] = rows.transpose(2, 1, 0)
-    return series
-
-
-@lru_cache(maxsize=16)
-def _terms(law: LinearLaw, width: int) -> Any:
-    """The terms at 1 rad/s; their arrays are shared and only read."""
-    from facegear.mesh_law.linear_terms import LinearTerms
-
-    return LinearTerms(fourier_columns(law.fourier), law.kind.astype(np.int64), _pieces(law, width))
-
-
-def _pieces(law: LinearLaw, width: int) -> Array:
-    """Coefficients (pieces, degree + 1, width) of each contact between common breaks, in powers of rad."""
+def _pieces(law: LinearLaw) -> Array:
+    """Coefficients (pieces, degree + 1, M) of each contact between common breaks, in powers of rad."""
     if not law.pieces:
-        return np.zeros((0, 0, width))
+        return np.zeros((0, 0, law.contacts))
     breaks = law.breaks
     degree = max(piece.coefficients.shape[1] for piece in law.pieces)
-    table = np.zeros((breaks.size - 1, degree, width))
+    table = np.zeros((breaks.size - 1, degree, law.contacts))
     for contact, kind in enumerate(law.kind):
         piece = law.pieces[kind]
         for row, start in zip(table, breaks[:-1], strict=True):

@@ -3,17 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from facegear._kernels import motion
 from facegear.arrays import Array, Integers
-from facegear.machine_code.memory import LANES, aligned, aligned_together, divided
 from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
-from facegear.mesh_law.law import Held
-
-if TYPE_CHECKING:
-    from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
+from facegear.mesh_law.laws_at_phases import LoadDependentHeld
+from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,9 +81,7 @@ class LoadDependentLaw:
         return self._pieces.at(self.kind, cycles, beyond, slopes=True)
 
     @cached_property
-    def _pieces(self) -> "PiecewiseCubics":
-        from facegear.mesh_law.piecewise_cubics import PiecewiseCubics  # compiled
-
+    def _pieces(self) -> PiecewiseCubics:
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
@@ -113,10 +108,8 @@ class LoadDependentLaw:
         tables = zip(self.tables, series, strict=True)
         return LoadDependentLaw(tuple(ForceTable(table.levels, *both) for table, both in tables), kind)
 
-    def held(self, cycles: Array) -> Held:
+    def held(self, cycles: Array) -> LoadDependentHeld:
         """The law at some phases."""
-        from facegear.mesh_law.load_dependent_terms import LoadDependentHeld  # compiled
-
         angle = 2.0 * np.pi * np.outer(cycles, np.arange(self._coefficients.shape[-1]))
         return LoadDependentHeld(
             np.repeat(self.steepest[None], cycles.size, axis=0),
@@ -127,19 +120,12 @@ class LoadDependentLaw:
             self.kind,
         )
 
-    def terms(self, frequency: float, width: int) -> NamedTuple:
-        """The law over the squared mesh frequency."""
-        from facegear.mesh_law.load_dependent_terms import LoadDependentTerms
-
-        return LoadDependentTerms(divided(_columns(self), frequency**2), self._levels, self.kind)
-
-    def series(self, rows: int, width: int) -> NamedTuple:
-        """Scratch space for the coefficients of the pieces and the powers of the amounts."""
-        from facegear.mesh_law.load_dependent_terms import LoadDependentSeries
-
-        shapes = dict.fromkeys(LoadDependentSeries._fields, (rows, width))
-        shapes |= {"four": (rows, LANES), "filled": (1, width)}
-        return LoadDependentSeries(**aligned_together(shapes))
+    @cached_property
+    def compiled(self) -> motion.LoadDependentLaw:
+        """What the integrator takes of it."""
+        return motion.load_dependent_law(
+            _columns(self), self._levels, np.ascontiguousarray(self.kind, np.int64)
+        )
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
@@ -148,8 +134,6 @@ def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
 
 
 @lru_cache(maxsize=16)
-def _columns(law: LoadDependentLaw) -> Any:
+def _columns(law: LoadDependentLaw) -> Array:
     """Coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; shared, only read."""
-    columns = aligned(*np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)).shape)
-    columns[:] = np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2))
-    return columns
+    return np.ascontiguousarray(np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)))

@@ -128,11 +128,6 @@ def machine(case: Case) -> bool:
     return case.values["transmission"] is not None
 
 
-def contact_or_machine(case: Case) -> bool:
-    """Whether a contact analysis is made or section transmission is given."""
-    return contact(case) or machine(case)
-
-
 def side_by_side(case: Case) -> bool:
     """Whether section transmission is given, with a linear law of mesh forces and no friction in motion."""
     return machine(case) and not load_dependent(case) and not friction_in_motion(case)

@@ -141,8 +141,8 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         FRICTION,
         "Friction of the loaded contact to first order: sliding velocities of the exact flanks, a "
         "coefficient by the model that stands beside each number, flash temperature after Blok and Jaeger, "
-        "film after Dowson and Higginson. Windage, churning, squeezing of oil, bearings and seals are left "
-        "out.",
+        "film after Dowson and Higginson. Windage, churning, squeezing of oil, bearings, seals and the "
+        "rolling traction of the film are left out.",
         ("friction_path", "friction_flank", "efficiency_map"),
     ),
     (

@@ -9,7 +9,7 @@ from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class ShaftOrdersResult(Result):
@@ -54,5 +54,4 @@ class ShaftOrdersResult(Result):
         if self.content["orders"].empty:
             message = "no runout, pitch deviation or single tooth is given, there is nothing to draw"
             raise FacegearError(f"{self.values['case']}: {message}")
-        speed = self.values["dynamics"]["speed_rpm"]
-        return shaft_order_figure(self.content["orders"], self.content["over_speed"], speed)
+        return shaft_order_figure(self.content["orders"], self.content["over_speed"])

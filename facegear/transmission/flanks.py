@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Mask
 from facegear.by_content import kept_by_content
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.force_table import ForceTable, lagging
@@ -60,15 +60,35 @@ def mesh_contacts(machine: Machine) -> MeshContacts:
 
 
 def _flank_contacts(machine: Machine) -> MeshContacts:
-    """Errors that never change stand in the edges of the flanks.
-
-    Damping across open flanks is shared by the two, so that turning alone meets the whole of it.
-    """
+    """Return the contacts of all flanks; errors that never change stand in their edges."""
     upper = flank_gaps(machine) + constant_errors(machine)
-    fraction = 0.5 if machine.damping.open_flanks is OpenFlanks.ALWAYS else 1.0
-    damping = np.full(upper.size, machine.damping.mesh * fraction)
+    damping = flank_dampers(machine, np.ones(upper.size, dtype=bool))
     never = np.full(upper.size, -np.inf)
     return MeshContacts(flank_law(machine), error_series(machine), never, upper, damping)
+
+
+def flank_dampers(machine: Machine, contact_mask: Mask) -> Array:
+    """Return the dampers that act on the flanks.
+
+    Parameters
+    ----------
+    machine
+        A machine whose meshes have two flanks each.
+    contact_mask : (2 meshes,)
+        Which flanks are in contact, drive flanks first.
+
+    Returns
+    -------
+    Array
+        Damping of each flank, shape (2 meshes,), N s/m. Where it acts on open flanks, the two flanks of a
+        mesh share it, so that the rotation alone meets the whole of it; or the drive flank has all of it.
+    """
+    meshes, damping = contact_mask.size // 2, machine.damping
+    if damping.open_flanks is OpenFlanks.MESH_DEFLECTION:
+        return np.repeat([damping.mesh, 0.0], meshes)
+    if damping.open_flanks is OpenFlanks.ALWAYS:
+        return np.full(contact_mask.size, 0.5 * damping.mesh)
+    return np.where(contact_mask, damping.mesh, 0.0)
 
 
 def _line_contacts(machine: Machine) -> MeshContacts:

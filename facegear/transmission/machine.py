@@ -13,6 +13,7 @@ from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.law import MeshLaw
+from facegear.number_format import count_noun
 from facegear.transmission.drive_line import DriveLine
 from facegear.transmission.excitation import Excitation, rigid_rotation, without_rigid_rotation
 from facegear.transmission.imperfections import Imperfections, perfect
@@ -29,12 +30,20 @@ class OpenFlanks(StrEnum):
     """Mesh damping where flanks are apart: `always` acting as in equation (20), or `contact_only`.
 
     In contact the damper may pull flanks together that are about to part. `push_only` cuts the force of a
-    contact, spring and damper together, at zero.
+    contact, spring and damper together, at zero. `mesh_deflection` is the classical definition: one damper
+    for each mesh acts on the deflection of its drive flank at all times (Kahraman and Singh 1990), where
+    `always` gives half of the damper to each of the two flanks.
     """
 
     ALWAYS = "always"
     CONTACT_ONLY = "contact_only"
     PUSH_ONLY = "push_only"
+    MESH_DEFLECTION = "mesh_deflection"
+
+    @property
+    def is_damped_when_open(self) -> bool:
+        """Whether dampers act on open flanks, too."""
+        return self in (OpenFlanks.ALWAYS, OpenFlanks.MESH_DEFLECTION)
 
 
 @dataclass(frozen=True)
@@ -133,7 +142,9 @@ class Machine:
             ("softening of the meshes", self.softening),
         ):
             if given is not None and len(given) != meshes:
-                raise InvalidInput(quantity, f"{len(given)} meshes", f"one for each of {meshes}")
+                raise InvalidInput(
+                    quantity, count_noun(len(given), "mesh", "meshes"), f"one for each of {meshes}"
+                )
         minimum = self.stiffness.minimum
         if minimum <= 0.0:
             raise InvalidInput(

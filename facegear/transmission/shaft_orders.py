@@ -20,10 +20,10 @@ import numpy as np
 
 from facegear.arrays import Array, ComplexArray, Integers, Mask
 from facegear.transmission.excitation import Excitation
-from facegear.transmission.flanks import slow_errors
+from facegear.transmission.flanks import flank_dampers, slow_errors
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_modes import pressed_springs
-from facegear.transmission.machine import Machine, OpenFlanks
+from facegear.transmission.machine import Machine
 
 SAMPLES = 32
 """Of a mesh cycle."""
@@ -201,11 +201,7 @@ class LoadedMachine:
 def loaded_machine(machine: Machine) -> LoadedMachine:
     """Of geometric meshes about the machine's mean torques. Raises NotConverged."""
     linear, springs = pressed_springs(machine)
-    if machine.damping.open_flanks is OpenFlanks.ALWAYS:
-        dampers = np.full(len(springs), 0.5 * machine.damping.mesh)
-    else:
-        dampers = np.where(np.diagonal(springs) > 0.0, machine.damping.mesh, 0.0)
-    return LoadedMachine(linear, springs, dampers)
+    return LoadedMachine(linear, springs, flank_dampers(machine, np.diagonal(springs) > 0.0))
 
 
 def mesh_amplitudes(forces: ComplexArray, closed: Mask) -> Array:

@@ -14,6 +14,7 @@ import pandas as pd
 import scipy.linalg
 
 from facegear.arrays import Array, ComplexArray
+from facegear.transmission.flanks import flank_dampers
 from facegear.transmission.layout import Layout
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_modes import pressed_springs
@@ -67,7 +68,7 @@ def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: fl
 def machine_at_speeds(machine: Machine, speeds_rpm: Sequence[float]) -> list[TurningModes]:
     """Modes of geometric meshes about their static load at every pinion speed. Raises NotConverged."""
     linear, springs = pressed_springs(machine)
-    dampers = np.where(np.diagonal(springs) > 0.0, machine.damping.mesh, 0.0)
+    dampers = flank_dampers(machine, np.diagonal(springs) > 0.0)
     return [turning_modes(linear, springs, dampers, speed * np.pi / 30.0) for speed in speeds_rpm]
 
 

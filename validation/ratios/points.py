@@ -1,10 +1,15 @@
-"""What is measured: jobs of the workflow, and into how many parts the time of each is divided."""
+"""Points of measurement: jobs of the workflow and calls of a fresh process, with the unit of each time."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
+ROOT = Path(__file__).parents[2]
 SAMPLES, DESIGNS = 200, 4
+"""Dynamic samples and designs of a call. 10 000 samples on two cores take 5000 times the time of one sample,
+if memory is as fast for two processes as for one.
+"""
 EXAMPLE = "validation/ratios/example_3878ccc2.yaml"
 """The example machine of that commit stays as it was: irregular motion under a load-dependent stiffness."""
 
@@ -16,36 +21,51 @@ class Point:
     Attributes
     ----------
     config, changes
-        The case, and what is changed in it by dotted keys.
+        The case, a file of the present tree for both commits, and what is changed in it by dotted keys.
+    unit, error
+        Unit of the time, and where the numerical error of the numbers is stated.
     stage, wildcards
-        The job. What it takes of other stages is computed once, and both commits are given the same.
-    amount, unit
-        Into how many parts the time of a call is divided, and what the number is then.
+        The job of the workflow. What it takes of other stages is computed untimed, by each commit itself.
+    calls
+        Methods of a gearbox in place of a stage; none: `import facegear` and what that puts off until the
+        first name is asked for.
+    amount
+        Into how many parts the time of a call is divided.
     scale
         Units in a second.
-    error
-        Where the numerical error of the stage's numbers is stated.
     whole_process
         Whether the start of the process counts, so that each call has one of its own.
     """
 
     config: str
-    stage: str
     unit: str
     error: str
+    stage: str = ""
+    wildcards: Mapping[str, str] = field(default_factory=dict)
+    calls: tuple[str, ...] = ()
     amount: int = 1
     scale: float = 1.0
     changes: Mapping[str, Any] = field(default_factory=dict)
-    wildcards: Mapping[str, str] = field(default_factory=dict)
     whole_process: bool = False
+
+    @property
+    def job(self) -> dict[str, Any]:
+        """Request to a process, in plain values."""
+        return {
+            "config": str(ROOT / self.config),
+            "changes": dict(self.changes),
+            "stage": self.stage,
+            "wildcards": dict(self.wildcards),
+            "calls": list(self.calls),
+        }
 
 
 def _body(name: str) -> Point:
     return Point(
         "config/paper.yaml",
-        "compliance",
         "s a body, its process started",
         "docs/contact.md, resolution",
+        "compliance",
         wildcards={"body": name},
         whole_process=True,
     )
@@ -55,9 +75,9 @@ def _sample(law: str) -> Point:
     changes = {"mesh_stiffness.mesh_law": law, "tolerances.model": "dynamic"}
     return Point(
         "config/tolerances.yaml",
-        "tolerances_chunk",
         "ms a dynamic sample",
         "docs/tolerances.md, accuracy",
+        "tolerances_chunk",
         amount=SAMPLES,
         scale=1e3,
         changes=changes,
@@ -68,10 +88,20 @@ def _sample(law: str) -> Point:
 def _sweep(direction: str, config: str = "config/paper.yaml", speeds: int = 400) -> Point:
     return Point(
         config,
-        "dynamics_sweep_chunk",
         f"s a sweep of {speeds} speeds",
         "docs/dynamics.md, convergence of the sweep",
+        "dynamics_sweep_chunk",
         wildcards={"direction": direction, "number": "0"},
+    )
+
+
+def _fresh(*calls: str) -> Point:
+    return Point(
+        "facegear/example.yaml",
+        "s a fresh process",
+        "docs/dynamics.md, integration",
+        calls=calls,
+        whole_process=True,
     )
 
 
@@ -80,9 +110,9 @@ POINTS: Mapping[str, Point] = {
     "face_gear": _body("face_gear"),
     "contact": Point(
         "config/paper.yaml",
-        "contact",
         "ms a contact with its pressure",
         "docs/contact.md, resolution",
+        "contact",
         amount=160,
         scale=1e3,
     ),
@@ -93,14 +123,17 @@ POINTS: Mapping[str, Point] = {
     "sample_with_law": _sample("load_dependent"),
     "sample_without_law": _sample("constant_load"),
     "load_sharing": Point(
-        "config/paper.yaml", "load_sharing", "s the machine's load sharing", "docs/load_sharing.md"
+        "config/paper.yaml", "s the machine's load sharing", "docs/load_sharing.md", "load_sharing"
     ),
     "microgeometry": Point(
         "config/microgeometry.yaml",
-        "tolerances_chunk",
         "s a design",
         "docs/tolerances.md, accuracy",
+        "tolerances_chunk",
         amount=DESIGNS,
         wildcards={"design": "samples", "first": "0", "last": str(DESIGNS - 1)},
     ),
+    "fresh_import": _fresh(),
+    "fresh_response": _fresh("modes", "statics", "response"),
+    "fresh_contact": _fresh("contact"),
 }

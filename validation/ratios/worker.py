@@ -1,50 +1,191 @@
 """One job of the `facegear` on the path, timed: runs as a file, so that the code of any commit can be on it.
 
-Reads one line for each call from its input, and answers with a line of JSON: processor time in s and largest
-memory in MB. `answers` is a file for what the first call gave.
+    python worker.py JOB ANSWERS INPUTS
+
+JOB is a file of JSON: `config` (path of a config file), `changes` by dotted keys, and either `stage` and
+`wildcards` of the workflow or `calls`: methods of a gearbox, `mesh_period` (one period of the motion from
+given starts) or `oscillators` (classes of as many random ones as `count` says, made by the code in the folder
+`sources`). Each line that is read from the standard input starts one call: `warm` for its own time, `whole`
+for that since the process began. It is answered by a line of JSON: `seconds` of a processor, `wall` seconds
+and `memory_mb`, the largest memory of the process. ANSWERS is the npz file that the numbers of the first call
+are written to; INPUTS is a folder in which this code keeps what other stages give to the stage. Only the
+standard library is imported before the clock is read.
 """
 
 import json
-import pickle
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+CONVERGED = 1e-14
+"""Local error of a step over the length scale, so small that the choice of the steps moves no digit."""
+SECOND_LOOKS = 3
+"""Other starts that a class must come out from again, as in a sweep."""
 
 
-def main(given: str, answers: str) -> None:
+def main(job: str, answers: str, inputs: str) -> None:
+    """Answer each line of the standard input.
+
+    Parameters
+    ----------
+    job, answers, inputs : str
+        Paths, as the module says.
+    """
+    request = json.loads(Path(job).read_text(encoding="utf-8"))
+    call: Callable[[], Any] | None = None
+    for line in sys.stdin:
+        whole = line.strip() == "whole"
+        call = call or (_stage(request, inputs) if request["stage"] else _calls(request))
+        begin, clock = 0.0 if whole else time.process_time(), time.perf_counter()
+        content = call()
+        seconds, wall = time.process_time() - begin, time.perf_counter() - clock
+        print(json.dumps({"seconds": seconds, "wall": wall, "memory_mb": _largest_memory()}), flush=True)
+        if not Path(answers).exists():
+            _write(Path(answers), content)
+
+
+def _stage(request: dict[str, Any], inputs: str) -> Callable[[], Any]:
+    """Call of a stage whose inputs are computed now, or read where this code has kept them."""
+    import facegear
     from facegear.pipeline.run import call
     from facegear.pipeline.table import STAGES
+    from facegear.results.chain import Chain
+    from facegear.results.partial import PartialResults
+    from facegear.results.store import Store
 
-    name, wildcards, arguments = pickle.loads(Path(given).read_bytes())
-    stage = STAGES[name]
-    for line in sys.stdin:
-        begin = time.process_time() if line.strip() == "warm" else 0.0
-        content = call(stage, arguments, **stage.typed(wildcards)).content
-        seconds = time.process_time() - begin
-        if not Path(answers).exists():
-            Path(answers).write_bytes(pickle.dumps(flat(content)))
-        print(json.dumps({"seconds": seconds, "memory_mb": _largest_memory()}), flush=True)
+    gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
+    stage = STAGES[request["stage"]]
+    arguments = Chain(gearbox.values, Store(partial=PartialResults(Path(inputs)))).arguments(stage.name)
+    return lambda: call(stage, arguments, **stage.typed(request["wildcards"])).content
+
+
+def _calls(request: dict[str, Any]) -> Callable[[], Any]:
+    """Calls that a user makes through the Python door, its import among them."""
+
+    def answer() -> Any:
+        import facegear
+
+        if not request["calls"]:
+            return {"door": facegear.Gearbox.__name__}
+        gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
+        return {name: _answer(gearbox, name, request) for name in request["calls"]}
+
+    return answer
+
+
+def _answer(gearbox: Any, name: str, request: dict[str, Any]) -> Any:
+    if name == "mesh_period":
+        return _mesh_period(gearbox)
+    if name == "oscillators":
+        return _oscillators(request["count"], request["sources"])
+    return getattr(gearbox, name)().content
+
+
+def _mesh_period(gearbox: Any) -> dict[str, Any]:
+    """State, disturbances, samples and contact after one mesh period, from rest and from two starts aside.
+
+    All are displacements of the bodies, as reduced coordinates may come in another order.
+    """
+    import numpy as np
+
+    from facegear.dynamics.integrator.integrator import Integrator
+    from facegear.dynamics.steady_state.simulate import build_model, static_start
+    from facegear.transmission.machine import mesh_frequency
+
+    model = build_model(gearbox._machine())
+    speed = gearbox.values["dynamics"]["speed_rpm"]
+    frequency = 2.0 * np.pi * mesh_frequency(model.machine.layout, speed)
+    integrator = Integrator(model.system, frequency, CONVERGED)
+    random, basis, linear = np.random.default_rng(1), model.reduced.basis, model.machine.linear
+
+    def aside(size: float) -> Any:
+        """A random state (2, n) by phase whose largest mesh deflection is `size` length scales."""
+        bodies = random.normal(size=(2, len(basis)))
+        state = np.array([basis.T @ linear.momentum(row) for row in bodies])
+        return state * (size * model.system.scale / np.abs(state @ model.system.mesh_jacobian.T).max())
+
+    start, ends = integrator.by_phase(static_start(model)), {}
+    for size in (0.0, 0.3, 1.0):
+        tangents = np.array([aside(1.0) for _ in range(2)])
+        run = integrator.run(start + aside(size), 1, tangents, samples=16)
+        ends[f"{size:g}"] = {
+            "state": run.ends[0] @ basis.T,
+            "tangents": run.tangents @ basis.T,
+            "samples": run.samples @ basis.T,
+            "fractions": run.fractions[:, : integrator.contacts],
+        }
+    return ends
+
+
+def _oscillators(count: int, sources: str) -> dict[str, Any]:
+    """Classes of random oscillators from their starts alone, and where they hold under second looks."""
+    from dataclasses import replace
+
+    sys.path.append(sources)
+    from facegear.dynamics.motion import Settings
+    from facegear.dynamics.steady_state.simulate import steady_state
+    from validation.dynamics.oscillators import random_oscillators
+
+    looks = {"label": Settings(), "second_look": replace(Settings(), second_looks=SECOND_LOOKS)}
+    oscillators = list(random_oscillators(count))
+    return {
+        name: [steady_state(body.system, body.speed, settings, body.start).label for body in oscillators]
+        for name, settings in looks.items()
+    }
 
 
 def _largest_memory() -> float:
-    """Of this process, MB; `resource` would count that of the process it was started by as well."""
+    """Largest memory of this process, MB; `resource` would count that of the process it was started by."""
     lines = Path("/proc/self/status").read_text().splitlines()
     return next(float(line.split()[1]) / 1024.0 for line in lines if line.startswith("VmHWM:"))
 
 
-def flat(content: Any, name: str = "") -> dict[str, np.ndarray]:
-    """All columns and arrays of what a stage gave, by the name under which they stand in it."""
+def _write(path: Path, content: Any) -> None:
+    """Write all columns and arrays into an npz file without Python objects."""
+    import numpy as np
+
+    with path.open("wb") as file:
+        np.savez(file, **flat(content))
+
+
+def flat(content: Any, name: str = "") -> dict[str, Any]:
+    """Return all columns and arrays of what a stage gave, by the name under which they stand in it.
+
+    Parameters
+    ----------
+    content : Any
+        Tables, arrays, numbers and texts in mappings and lists.
+    name : str
+        Beginning of all names.
+
+    Returns
+    -------
+    dict
+        Arrays of numbers or texts, of any shape and unit.
+    """
     if hasattr(content, "columns"):
-        return {f"{name}{column}": content[column].to_numpy() for column in content.columns}
+        return {f"{name}{column}": _plain(content[column].to_numpy()) for column in content.columns}
     if isinstance(content, dict):
         parts = [flat(value, f"{name}{key}/") for key, value in content.items()]
         return {key: value for part in parts for key, value in part.items()}
-    if isinstance(content, list | tuple):
+    if isinstance(content, list | tuple) and not all(isinstance(item, str) for item in content):
         return flat(dict(enumerate(content)), name)
-    return {name.rstrip("/"): np.asarray(content)}
+    return {name.rstrip("/"): _plain(content)}
+
+
+def _plain(values: Any) -> Any:
+    """Array of numbers, or of texts where one of them is none."""
+    import numpy as np
+
+    array = np.asarray(values)
+    if array.dtype.kind != "O":
+        return array
+    try:
+        return array.astype(float)
+    except (TypeError, ValueError):
+        return array.astype(str)
 
 
 if __name__ == "__main__":

@@ -6,11 +6,11 @@ from typing import cast
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.abreast.many import run_many
 from facegear.dynamics.branches.extrema import extrema
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.rings import ROWS
+from facegear.dynamics.integrator.system import RING_ROWS
+from facegear.dynamics.many import run_many
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.orbits import monodromy
 
@@ -140,7 +140,7 @@ class PeriodMap:
         slope = (self.gap(z, u + step) - self.gap(z, u - step)) / (2.0 * step)
         lower, upper = integrator.edges
         contact = (result.fractions[1:].sum(axis=0) > 0.0) | (lower >= upper)
-        for x in range(integrator.contacts, integrator.rows, ROWS):
+        for x in range(integrator.contacts, integrator.rows, RING_ROWS):
             contact[x : x + 2] = contact[x + 2]
         return Linear(
             gap=gap,

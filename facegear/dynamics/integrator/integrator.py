@@ -1,34 +1,32 @@
 """A system at one mesh frequency, ready to be run: what the kernels need stays inside."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from facegear._kernels import motion
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU, Packed, pack
-from facegear.dynamics.integrator.dense import (
-    NO_STEPS,
-    NO_TURNING_POINTS,
-    Extrema,
-    Steps,
-    make_extrema,
-    make_steps,
+from facegear.dynamics.integrator.compiled import (
+    TAU,
+    edges_of,
+    fastest,
+    make_runner,
+    pack,
+    packed_system,
+    weights_of,
 )
-from facegear.dynamics.integrator.periods import (
-    DONE,
-    MAX_STEPS,
-    NOT_FINITE,
-    TOO_MANY_STEPS,
-    Log,
-    disturbance_step,
-    run_periods,
-)
-from facegear.dynamics.integrator.sums import Sums, make_sums
+from facegear.dynamics.integrator.dense import Extrema, Steps, extrema_of, steps_of
+from facegear.dynamics.integrator.sums import Sums, sums_of
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import Work, make_work, sizes
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
+
+DONE, TOO_MANY_STEPS, NOT_FINITE = range(3)
+"""How the kernels say that a run has ended."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,73 +84,72 @@ class Integrator:
         like: "Integrator | None" = None,
     ) -> None:
         self.system, self.frequency, self.tolerance = system, frequency, tolerance
-        self.packed: Packed = pack(system, frequency)
+        self.machine: motion.Machine = pack(system, frequency, tolerance)
         if order is None:
             order = Settings(tolerance=tolerance).taylor_order
-        self._sizes = (order, *sizes(system, self.packed))
-        shares = like is not None and like._sizes == self._sizes
-        self.work: Work = like.work if like is not None and shares else make_work(system, self.packed, order)
-        self._empty = np.zeros((0, 2, self.packed.omega_squared.size))
+        made = packed_system(system)
+        shares = like is not None and like.order == order and packed_system(like.system).fits(made)
+        self.work: motion.Runner = like.work if like is not None and shares else make_runner(system, order)
 
     @property
     def size(self) -> int:
         """Number of coordinates n."""
-        return self.packed.n
+        return self.system.size
 
     @property
     def rows(self) -> int:
         """Number m of meshes or flanks, and three for each bearing with clearance."""
-        return self.packed.m
+        return len(self.system.mesh_jacobian)
 
     @property
     def contacts(self) -> int:
         """Number of meshes or flanks."""
-        return self.packed.contacts
+        return self.system.contacts
 
     @property
     def meshes(self) -> int:
         """Number of meshes; of all rows where a mesh is one contact."""
-        return self.packed.pairs or self.packed.m
+        return self.system.pairs or self.rows
 
     @property
     def order(self) -> int:
         """Order of the steps."""
-        return self.work.order
+        return int(self.work.order)
 
     @property
     def scale(self) -> float:
         """Length that the tolerance means, m."""
-        return self.packed.scale
+        return self.system.scale
 
     @property
     def weights(self) -> Array:
         """Largest deflection that one unit of each coordinate makes, (n,)."""
-        return self.packed.weights[: self.packed.n]
+        return weights_of(self.system)
 
     @property
     def damping(self) -> Array:
         """Damping of each coordinate per rad, (n,)."""
-        return self.packed.damping[: self.packed.n]
+        return self.system.damping / self.frequency
 
     @property
     def omega_squared(self) -> Array:
         """Square of the bearing frequency of each coordinate over that of the mesh frequency, (n,)."""
-        return self.packed.omega_squared[: self.packed.n]
+        return self.system.omega_squared / self.frequency**2
 
     @property
     def mesh_jacobian(self) -> Array:
         """Deflections by coordinates, (m, n)."""
-        return self.packed.transposed[: self.packed.m, : self.packed.n]
+        return self.system.mesh_jacobian
 
     @property
     def edges(self) -> tuple[Array, Array]:
         """Lower and upper edge of each row, (m,), m; of a mesh that never opens lower >= upper."""
-        return self.packed.lower[: self.packed.m], self.packed.upper[: self.packed.m]
+        return edges_of(self.system)
 
     @property
     def fastest(self) -> float:
         """Frequency of the fastest motion that the system answers with, over the mesh frequency."""
-        return self.packed.fastest
+        return fastest(self.system, self.frequency)
 
     def by_phase(self, state: State) -> Array:
         """A state (2, n) by phase."""
@@ -165,13 +162,7 @@ class Integrator:
     @cached_property
     def longest_step(self) -> float:
         """Longest step, rad, that disturbances of the motion may be moved over, whatever the motion does."""
-        return disturbance_step(self.packed.fastest, self.order, self.tolerance)
-
-    def padded(self, states: Array) -> Array:
-        """States (..., n) as the kernels hold them; a copy."""
-        padded = np.zeros((*states.shape[:-1], self.packed.omega_squared.size))
-        padded[..., : self.packed.n] = states
-        return padded
+        return disturbance_step(self.fastest, self.order, self.tolerance)
 
     def run(
         self,
@@ -191,98 +182,133 @@ class Integrator:
         fine: steps as short as tangents need, which they are with any. drift (terms, m): what is added to the
         error in every period, by powers of the phase.
         """
-        moved = self._empty if tangents is None else self.padded(tangents)
-        log = self._log(periods, samples, growth, batches)
-        padded = self.padded(state)
-        packed = self.packed if drift is None else self.packed._replace(drift=self._drift(drift))
-        longest = self.longest_step if fine or len(moved) else np.inf
-        status = run_periods(
-            packed,
-            self.work,
-            padded[0],
-            padded[1],
-            moved,
+        log = self._run(
+            state,
             periods,
-            samples,
-            self.tolerance,
-            log,
-            longest,
-            0.0,
+            tangents=tangents,
+            samples=samples,
+            batches=batches,
+            growth=growth,
+            fine=fine or tangents is not None,
+            drift=drift,
         )
-        require(status)
-        n, m = self.packed.n, self.packed.m
-        return RunResult(
-            state=padded[:, :n],
-            ends=log.ends[:, :, :n],
-            tangents=moved[:, :, :n],
-            samples=log.samples[:, :n],
-            fractions=log.fractions[:, :m] / (TAU * periods),
-            divergence=float(log.divergence[0]),
-            growth=log.growth,
-            steps=int(log.steps[0]),
-            sums=log.sums,
-        )
+        return result_of(log, 0, self, periods)
 
     def returned(self, state: Array) -> Array:
         """Where a state (2, n) is a mesh period later, by steps as short as tangents need. Raises
         NotConverged.
         """
-        return self._run_alone(state, 1, self._period, self.longest_step)[:, : self.packed.n]
-
-    @cached_property
-    def _period(self) -> Log:
-        """What returned() has written and nobody reads."""
-        return self._log(1)
+        return self._run(state, 1, fine=True).ends[0, 0]
 
     def steps(self, state: Array, periods: int, count: int, begin: float = 0.0) -> tuple[Array, int, Steps]:
         """Run whole mesh periods from a state (2, n) at a phase `begin`, in rad, of the first one.
 
         Returns the state at the end, the number of steps and the first `count` of them. Raises NotConverged.
         """
-        log = self._log(periods)._replace(kept=make_steps(self.packed, self.order, count))
-        padded = self._run_alone(state, periods, log, np.inf, begin)
-        return padded[:, : self.packed.n], int(log.steps[0]), log.kept
+        log = self._run(state, periods, begin=begin, steps=count)
+        return log.ends[0, -1], int(log.steps[0]), steps_of(log)
 
     def extrema(self, state: Array, periods: int, count: int) -> Extrema:
         """The first `count` maxima and minima of each deflection in a run from a state (2, n).
 
         Runs whole mesh periods; the steps are no longer than disturbances need. Raises NotConverged.
         """
-        log = self._log(periods)._replace(extrema=make_extrema(self.packed, count))
-        self._run_alone(state, periods, log, self.longest_step)
-        return log.extrema
+        log = self._run(state, periods, longest=self.longest_step, turns=count)
+        return extrema_of(log)
 
-    def _run_alone(self, state: Array, periods: int, log: Log, longest: float, begin: float = 0.0) -> Array:
-        """The padded state at the end of a run without tangents and samples."""
-        padded = self.padded(state)
-        moved = (padded[0], padded[1], self._empty)
-        require(run_periods(self.packed, self.work, *moved, periods, 0, self.tolerance, log, longest, begin))
-        return padded
+    def accelerations(self, phase: float, state: Array) -> Array:
+        """Second derivatives (n,) by phase of the coordinates at a phase, rad, and a state (2, n)."""
+        return motion.accelerations(self.work, self.machine, phase, np.ascontiguousarray(state))
 
-    def _log(self, periods: int, samples: int = 0, growth: bool = False, batches: int = 0) -> Log:
-        n = self.packed.omega_squared.size
-        return Log(
-            samples=np.zeros((periods * samples, n)),
-            ends=np.zeros((periods, 2, n)),
-            fractions=np.zeros((3, self.packed.lower.size)),
-            divergence=np.zeros(1),
-            growth=np.zeros(periods if growth else 0),
-            steps=np.zeros(1, dtype=np.int64),
-            sums=make_sums(self.packed, batches),
-            kept=NO_STEPS,
-            extrema=NO_TURNING_POINTS,
-        )
+    def _run(self, state: Array, periods: int, **asked: Any) -> motion.Log:
+        """A run of this machine alone. Raises NotConverged."""
+        log = run_machines(self.work, [self], [state], [periods], kept=periods, **asked)
+        require(int(log.status[0]))
+        return log
 
-    def _drift(self, drift: Array) -> Array:
-        padded = np.zeros((len(drift), self.packed.lower.size))
-        padded[:, : drift.shape[1]] = drift
-        return padded
+
+def run_machines(
+    runner: motion.Runner,
+    integrators: Sequence[Integrator],
+    states: Sequence[Array],
+    periods: Sequence[int],
+    kept: int,
+    tangents: Array | None = None,
+    samples: int = 0,
+    batches: int = 0,
+    growth: bool = False,
+    fine: bool = False,
+    longest: float = np.inf,
+    begin: float = 0.0,
+    drift: Array | None = None,
+    steps: int = 0,
+    turns: int = 0,
+) -> motion.Log:
+    """Run machines of one structure over whole mesh periods from states (2, n).
+
+    kept: of how many of the last periods the ends are kept; tangents (columns, 2, n) of one machine, or
+    (machines, columns, 2, n). The others are as in `Integrator`.
+    """
+    first, count = integrators[0], len(integrators)
+    n, m = first.size, first.rows
+    columns = np.zeros((count, 0, 2, n)) if tangents is None else tangents.reshape(count, -1, 2, n)
+    steps_up_to = [one.longest_step if fine else longest for one in integrators]
+    polynomial = np.zeros((0, m))
+    if drift is not None:
+        polynomial = np.zeros((len(drift), m))
+        polynomial[:, : drift.shape[1]] = drift
+    return motion.run(
+        runner,
+        [one.machine for one in integrators],
+        starts=np.array(states, dtype=float),
+        periods=np.array(periods, dtype=np.int64),
+        tangents=np.ascontiguousarray(columns),
+        longest=np.array(steps_up_to, dtype=float),
+        begin=begin,
+        drift=polynomial,
+        samples=samples,
+        batches=batches,
+        growth=growth,
+        fine=fine,
+        kept=kept,
+        steps=steps,
+        turns=turns,
+    )
+
+
+def result_of(log: motion.Log, number: int, integrator: Integrator, periods: int) -> RunResult:
+    """What a machine of a run has left. Raises NotConverged."""
+    require(int(log.status[number]))
+    ends = log.ends[number, :periods]
+    shared = len(log.fractions) > 0
+    return RunResult(
+        state=ends[-1],
+        ends=ends,
+        tangents=log.tangents[number],
+        samples=log.samples[number, : periods * (log.samples.shape[1] // log.periods)],
+        fractions=log.fractions[number] / (TAU * periods) if shared else np.zeros((3, integrator.rows)),
+        divergence=float(log.divergence[number]),
+        growth=log.growth[number, :periods] if len(log.growth) else np.zeros(0),
+        steps=int(log.steps[number]),
+        sums=sums_of(log, number, integrator.size, integrator.rows),
+    )
+
+
+def disturbance_step(fastest: float, order: int, tolerance: float) -> float:
+    """Step at which the last Taylor term of the fastest disturbance is a hundred times the tolerance.
+
+    The fastest are the most damped; one of half its frequency is then below the tolerance at any order used.
+    """
+    logarithm = math.log(min(100.0 * tolerance, 0.01))
+    for i in range(2, order + 1):
+        logarithm += math.log(i)
+    return math.exp(logarithm / order) / fastest
 
 
 def require(status: int) -> None:
     """Raise NotConverged unless the status of a run is good."""
     reported = {
-        TOO_MANY_STEPS: f"a mesh period took more than {MAX_STEPS} steps",
+        TOO_MANY_STEPS: f"a mesh period took more than {motion.MAX_STEPS} steps",
         NOT_FINITE: "the motion grew beyond all bounds",
     }
     if status != DONE:

@@ -15,9 +15,10 @@ from scipy.sparse.csgraph import connected_components
 
 from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.coupling import Coupling
-from facegear.machine_code.memory import LANES
 from facegear.transmission.linear_model import LinearModel
 
+LANES = 4
+"""Coordinates in a vector of the kernels."""
 SAME_FREQUENCY = 1e-12
 RANK = 1e-10
 RIGID = 1e-13

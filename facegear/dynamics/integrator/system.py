@@ -1,11 +1,11 @@
-"""What the compiled integrator sees: unit-mass oscillators coupled by meshes with clearance.
+"""What the integrator (`facegear/_kernels/src/motion`) sees: unit masses coupled by meshes with clearance.
 
     y'' + damping y' + omega_squared y + coupling + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
 
 x = d - upper above `upper`, d - lower below `lower`, zero between (Kahraman and Singh 1990). e and load are
 Fourier series in the mesh phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with clearance
-are rings (rings.py). Friction adds forces in directions of its own, which are Fourier series times the law's
-forces (rubbing.py). One degree of freedom is a case like any other.
+are rings (rings.hpp). Friction adds forces in directions of its own, which are Fourier series times the law's
+forces (friction.hpp). One degree of freedom is a case like any other.
 """
 
 from dataclasses import dataclass, field
@@ -23,6 +23,8 @@ from facegear.transmission.flanks import mesh_contacts
 from facegear.transmission.machine import Machine, OpenFlanks
 from facegear.transmission.mesh_friction import MeshFriction, flank_ratios, friction_rows
 
+RING_ROWS = 3
+"""Rows of a bearing with clearance: x and y of the body, and one of zeros."""
 NO_ERROR = Harmonics(np.zeros(1), np.zeros(1))
 
 
@@ -133,7 +135,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         error=error,
         error_kind=error_kind,
         load=load,
-        damping_when_open=machine.damping.open_flanks is OpenFlanks.ALWAYS,
+        damping_when_open=machine.damping.open_flanks.is_damped_when_open,
         scale=length_scale(machine),
         two_flanks=machine.layout.kinematics.flanks_apart,
         push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,
@@ -156,8 +158,7 @@ def _rubbing(machine: Machine, friction: MeshFriction, reduced: Reduced) -> Flan
     rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
     flank, part = np.nonzero(rows.any(axis=2))
     ratios = flank_ratios(friction.ratios, machine.phases)
-    # With strides, as np.nonzero gives them, the kernels would be compiled anew.
-    return FlankRubbing(flank.copy(), ratios[flank, part], rows[flank, part] @ reduced.basis)
+    return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduced.basis)
 
 
 def length_scale(machine: Machine) -> float:

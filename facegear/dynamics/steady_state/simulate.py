@@ -22,7 +22,6 @@ from facegear.dynamics.steady_state.mirror_images import (
     symmetries_of_start,
     with_chosen_image,
 )
-from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.response import SteadyState, response_of
 from facegear.dynamics.steady_state.second_look import disagreeing
 from facegear.dynamics.steady_state.watching import Begun, begin, not_settled, watch
@@ -203,7 +202,6 @@ def _begun(
     known: KnownOrbit | None = None,
 ) -> Course[Begun]:
     """The first watch of a system from a start."""
-    prepare_for(system)
     guide = guide if guide is not None and settings.refine and guide.serves(system) else None
     like = None if guide is None else guide.integrator
     integrator = Integrator(system, frequency, settings.tolerance, settings.order, like)

@@ -129,7 +129,7 @@ ROWS = (
             draw="facegear.plots.hunting:figures",
             names=("layout", "hunting", "bearing_stiffness", "sensitivity"),
             chapter="load_sharing",
-            upstream=from_stage("hunting", "meshes", "groups", "bearings", "cycles", "scan", "sensitivity"),
+            upstream=from_stage("hunting", "meshes", "bearings", "cycles", "scan", "sensitivity"),
             needs=MACHINE,
         ),
         asked=asked.hunting,

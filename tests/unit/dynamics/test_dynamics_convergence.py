@@ -6,9 +6,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_machine
 
+from facegear._kernels import motion
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix, first_root
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate
@@ -63,9 +63,7 @@ def test_first_root_is_the_first_sign_change(coefficients, root):
     polynomial = np.polynomial.Polynomial(coefficients) * np.polynomial.Polynomial([-root, 1.0])
     values = np.zeros(20)
     values[: polynomial.coef.size] = polynomial.coef
-    degree = 19
-    work = np.zeros((MAX_DEPTH + 2, degree + 1))
-    found = first_root(values, degree, bernstein_matrix(degree), work)
+    found = motion.first_root(values)
     grid = np.linspace(0.0, 1.0, 20_001)
     signs = np.sign(polynomial(grid))
     flips = np.flatnonzero(signs[1:] * signs[:-1] < 0)
@@ -83,7 +81,7 @@ def test_a_zero_where_an_interval_is_halved_is_found_whatever_sign_rounding_give
     coefficients, root
 ):
     polynomial = np.polynomial.Polynomial(coefficients) * np.polynomial.Polynomial([-root, 1.0])
-    found = first_root(polynomial.coef, 3, bernstein_matrix(3), np.zeros((MAX_DEPTH + 2, 4)))
+    found = motion.first_root(polynomial.coef)
     assert found == pytest.approx(root, abs=1e-12)
 
 
@@ -92,8 +90,4 @@ def test_a_root_is_found_after_many_places_where_the_polynomial_nearly_touches_z
     polynomial = np.polynomial.Polynomial.fromroots([0.91, 0.97])
     for place in (0.13, 0.29, 0.47, 0.61, 0.83):
         polynomial *= np.polynomial.Polynomial([place**2 + 3e-9, -2.0 * place, 1.0])
-    degree = polynomial.degree()
-    work = np.zeros((MAX_DEPTH + 2, degree + 1))
-    assert first_root(polynomial.coef, degree, bernstein_matrix(degree), work) == pytest.approx(
-        0.91, abs=1e-7
-    )
+    assert motion.first_root(polynomial.coef) == pytest.approx(0.91, abs=1e-7)

@@ -4,26 +4,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from force_tables import linear_table
+from force_tables import linear_table, power_table
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from oscillators import backlash_oscillator, mathieu, meissner, one_degree
 from random_machines import frequency, machines, speeds
 from references import against, agrees
+from test_bending_gears import machine as bending_gears
 from test_dynamics_hard_cases import CASES
 
-from facegear.dynamics.abreast.many import run_many, run_stretches
-from facegear.dynamics.abreast.rows import may_run_abreast
-from facegear.dynamics.abreast.wide import WIDTH
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.many import WIDTH, _groups, run_many, run_stretches
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.dynamics.stretch import Stretch
 from facegear.errors import NotConverged
 from facegear.mesh_law.load_dependent import load_dependent_law
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.machine import OpenFlanks
+from facegear.transmission.machine import FlankTables, OpenFlanks
+from facegear.transmission.mesh_friction import PARTS, MeshFriction
 from facegear.transmission.printed import PRINTED
+from facegear.transmission.teeth import GEOMETRIC
 
 SAME = 1e-9
 
@@ -33,21 +34,48 @@ def loaded_in_turn(speed):
     return one_degree(0.1, load=((0.0, 0.02, 0.0, 0.01), (0.1, 0.05 * speed**2, 0.03, 0.0)))
 
 
+PUSH_ONLY = one_degree(0.1, contact_damping=0.2, push_only=True)
+IN_PIECES = meissner(0.05, one_sided=True)
+ON_A_TABLE = replace(one_degree(0.1), law=load_dependent_law([linear_table(4, 2.0)]))
+TWO_FLANKS = make_layout(kinematics=GEOMETRIC)
+CLEARANCE = replace(perfect(TWO_FLANKS), bearing_clearance=np.full(5, 1e-5))
+RATIOS = 0.05 * np.random.default_rng(11).normal(size=(10, len(PARTS), 2, 3))
+RATIOS[:, :, 0, 0] = 0.0
+TABLES = 2 * (FlankTables(*(power_table(9, depth, 2e-6, 4e-4, 2.4e10) for depth in (0.2, 0.1))),)
+
+
+def two_flanks(**options):
+    """The machine with two flanks at each mesh, and what else it has."""
+    own = {name: options.pop(name) for name in ("tables", "friction") if name in options}
+    return replace(make_machine(TWO_FLANKS, **options), **own)
+
+
 MACHINES = {
     **CASES,
     "contact lost": (make_machine(), 4500.0),
     "irregular": (make_machine(), 15_000.0),
     "damper in contact only": (make_machine(open_flanks=OpenFlanks.CONTACT_ONLY), 7500.0),
+    "two flanks": (two_flanks(), 7500.0),
+    "tables": (two_flanks(tables=TABLES), 7500.0),
+    "flanks that only push": (two_flanks(mesh_damping=12e3, open_flanks=OpenFlanks.PUSH_ONLY), 7500.0),
+    "tables and flanks that only push": (
+        two_flanks(tables=TABLES, mesh_damping=12e3, open_flanks=OpenFlanks.PUSH_ONLY),
+        15_000.0,
+    ),
+    "bearing clearance": (two_flanks(imperfections=CLEARANCE, torque=100.0), 4500.0),
+    "friction": (two_flanks(friction=MeshFriction(RATIOS)), 7500.0),
+    "friction on tables": (two_flanks(friction=MeshFriction(RATIOS), tables=TABLES), 7500.0),
+    "gears that bend": (bending_gears(torque=100.0), 6100.0),
 }
 OSCILLATORS = {
     "backlash": (backlash_oscillator(0.75), 0.75),
     "oscillator's damper in contact only": (backlash_oscillator(0.75, in_gap=0.01), 0.75),
     "load of three harmonics": (loaded_in_turn(0.8), 0.8),
     "parametric": (mathieu(0.3), 1.3),
+    "oscillator that only pushes": (PUSH_ONLY, 0.7),
+    "stiffness in pieces": (IN_PIECES, 0.8),
+    "oscillator on a table": (ON_A_TABLE, 0.8),
 }
-PUSH_ONLY = one_degree(0.1, contact_damping=0.2, push_only=True)
-IN_PIECES = meissner(0.05, one_sided=True)
-ON_A_TABLE = replace(one_degree(0.1), law=load_dependent_law([linear_table(4, 2.0)]))
 
 
 def integrators(name, count=3):
@@ -78,12 +106,12 @@ def apart(found, starts, periods):
     "second implementation",
     "the integrator of a single machine, whose vectors hold its meshes",
     capability="branches_starts machine_code",
-    module="facegear.dynamics.abreast.many",
+    module="facegear.dynamics.many",
 )
 @pytest.mark.parametrize("name", [*MACHINES, *OSCILLATORS])
 def test_a_machine_moves_beside_others_as_it_does_alone(name):
     found, starts = integrators(name)
-    assert all(may_run_abreast(one.packed) for one in found)
+    assert len(_groups([Stretch(*each, 3) for each in zip(found, starts, strict=True)])) == 1
     agrees("state beside others, scaled", apart(found, starts, 3), 0.0, absolute=SAME)
 
 
@@ -115,20 +143,30 @@ def test_more_machines_than_lanes_come_out_in_their_order_with_their_samples():
         assert np.abs(run.samples - alone.samples).max() < SAME
 
 
-def test_machines_with_physics_that_lanes_have_not_run_alone_among_those_that_run_side_by_side():
-    clearance = replace(perfect(make_layout()), bearing_clearance=np.full(5, 1e-5))
-    beyond = [PUSH_ONLY, IN_PIECES, ON_A_TABLE, build_model(make_machine(imperfections=clearance)).system]
-    assert not any(may_run_abreast(Integrator(system, 0.8).packed) for system in beyond)
+def test_machines_of_several_structures_run_each_among_its_own():
     mixed = [
         backlash_oscillator(0.75),
         PUSH_ONLY,
         backlash_oscillator(0.8),
         IN_PIECES,
         backlash_oscillator(0.9),
+        ON_A_TABLE,
+        PUSH_ONLY,
     ]
     found = [Integrator(system, 0.8) for system in mixed]
     starts = [np.array([[1.2], [0.1 * i]]) for i in range(len(mixed))]
+    stretches = [Stretch(one, start, 4) for one, start in zip(found, starts, strict=True)]
+    assert sorted(_groups(stretches)) == [[0, 2, 4], [1, 6], [3], [5]]
     assert apart(found, starts, 4) < SAME
+
+
+def test_a_machine_comes_to_the_same_digits_whichever_machines_run_beside_it():
+    """So that a study in parts is the study in one piece."""
+    found, starts = integrators("tables", 11)
+    together = run_many(found, starts, 2, fewest=1)
+    parts = [run_many(found[i : i + 4], starts[i : i + 4], 2, fewest=1) for i in (0, 4, 8)]
+    for run, again in zip(together, [run for part in parts for run in part], strict=True):
+        assert np.array_equal(run.ends, again.ends) and run.steps == again.steps
 
 
 def test_a_run_that_leaves_all_bounds_is_refused_beside_others():
@@ -139,6 +177,7 @@ def test_a_run_that_leaves_all_bounds_is_refused_beside_others():
 
 
 ASKED = ("ends", "tangents", "samples", "fractions", "growth")
+SUMMED = ("origin", "level", "coordinates", "products", "deflections", "squared", "forces")
 
 
 def disturbance(one):
@@ -146,7 +185,13 @@ def disturbance(one):
     return tangent / np.sqrt(((one.weights * tangent) ** 2).sum())
 
 
-@pytest.mark.parametrize("name", ["contact lost", "irregular", "damper in contact only", "backlash"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("contact lost", "irregular", "damper in contact only", "backlash", "two flanks", "tables"),
+        *("flanks that only push", "bearing clearance", "friction", "gears that bend", "stiffness in pieces"),
+    ],
+)
 def test_a_disturbance_and_averages_beside_others_are_those_alone(name):
     found, starts = integrators(name)
     stretches = [
@@ -154,17 +199,20 @@ def test_a_disturbance_and_averages_beside_others_are_those_alone(name):
         for one, start, periods in zip(found, starts, (4, 2, 3), strict=True)
     ]
     for stretch, run in zip(stretches, run_stretches(stretches, fewest=1), strict=True):
-        alone, m, n = stretch.run(), stretch.integrator.rows, stretch.integrator.size
-        assert run.ends.shape == (stretch.periods, 2, n)
+        alone = stretch.run()
+        assert run.ends.shape == (stretch.periods, 2, stretch.integrator.size)
         assert run.steps == alone.steps
         for field in ASKED:
             same(getattr(run, field), getattr(alone, field), 1e-6)
-        same(run.sums.products, np.triu(alone.sums.products[:, :n, :n]))
-        for field in ("origin", "coordinates"):
-            same(getattr(run.sums, field), getattr(alone.sums, field)[..., :n])
-        for field in ("level", "deflections", "squared", "forces", "minimum", "maximum"):
-            same(getattr(run.sums, field), getattr(alone.sums, field)[..., :m])
-        same(run.sums.pull, alone.sums.pull[:m], scale=alone.sums.forces.max() / stretch.periods)
+        same(run.divergence, alone.divergence)
+        for field in SUMMED:
+            same(getattr(run.sums, field), getattr(alone.sums, field))
+        extremes = ((getattr(one.sums, name) for name in ("minimum", "maximum")) for one in (run, alone))
+        for found_one, expected in zip(*extremes, strict=True):
+            known = np.isfinite(expected)
+            assert np.array_equal(np.isfinite(found_one), known)
+            same(found_one[known], expected[known])
+        same(run.sums.pull, alone.sums.pull, scale=alone.sums.forces.max() / stretch.periods)
 
 
 def same(found, expected, within=SAME, scale=0.0):

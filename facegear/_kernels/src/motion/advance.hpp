@@ -1,0 +1,79 @@
+// One step of the integration: as far as the Taylor polynomials hold, or to the next contact switch.
+#pragma once
+
+#include "motion/contact_states.hpp"
+#include "motion/parting.hpp"
+#include "motion/switches.hpp"
+#include "motion/taylor.hpp"
+#include "motion/work.hpp"
+
+namespace facegear::motion {
+
+// The rest of the period, or of the stretch between two breaks of the law, that a step may take.
+template <class L, class Law>
+typename L::S rest_of_period(Work<L, Law>& w) {
+    using S = typename L::S;
+    S rest = smaller(S::splat(tau) - w.phase, w.longest);
+    const std::vector<double>& breaks = w.shape->breaks();
+    for (int machine = 0; !breaks.empty() && machine < L::machines; ++machine) {
+        const double s = w.phase[machine];
+        Index piece = 0;
+        while (piece < static_cast<Index>(breaks.size()) - 2 && s >= breaks[piece + 1] - rounding) ++piece;
+        w.piece[machine] = piece;
+        w.ahead[machine] = s - breaks[piece];
+        const double left = breaks[piece + 1] - s;
+        if (left < rest[machine]) rest.set(machine, left);
+    }
+    return rest;
+}
+
+// The forces that the recurrence does not need, where steps or switches do.
+template <class L, class Law>
+void expand_last_forces(Work<L, Law>& w) {
+    if (!Law::curved && !w.shape->push_only) return;
+    for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
+        for (Index i = w.order - 1; i <= w.order; ++i) {
+            const auto force = w.law.force(w.deflection, i, b);
+            if (w.shape->push_only || w.friction.count() > 0) w.elastic.put(i, b, absolute(w.side.at(0, b)) * force);
+        }
+    }
+}
+
+// Find what drives the motions and the contact states at the phases, from rows 0 and 1 of y; the length that the steps
+// may have at most.
+template <class L, class Law>
+typename L::S start_step(Work<L, Law>& w) {
+    const typename L::S rest = rest_of_period(w);
+    expand_excitation(w, w.rows);
+    for (Index b = 0; b < w.active.width; ++b) w.active.put(0, b, L::V::splat(0.0));
+    for (Index row = 0; row < 2; ++row) {
+        w.products.deflect(w.y, row, &w.error, w.deflection);
+        if (w.rings.count() > 0) w.rings.expand(w.deflection, w.active, row);
+    }
+    find_states(w);
+    w.law.expand_pieces(w.expansion, w.state, w.rows);
+    if (w.shape->push_only) find_parting(w);
+    return rest;
+}
+
+// Expand the motions from rows 0 and 1 of y at the phases, and find the lengths of the steps; y then holds the
+// polynomials valid over them. The contact states are found from the motions themselves.
+template <class L, class Law>
+void advance(Work<L, Law>& w) {
+    using S = typename L::S;
+    const S rest = start_step(w);
+    for (int guess = 0; guess < max_guesses; ++guess) {
+        recurrence(w, w.order, w.y, w.deflection, false);
+        bool changed = w.shape->opens && correct_states(w);
+        if (changed) w.law.expand_pieces(w.expansion, w.state, w.rows);
+        if (w.shape->push_only) changed = correct_parting(w) || changed;
+        if (!changed) break;
+    }
+    expand_last_forces(w);
+    const S length = step_length(w), half = S::splat(0.5) * rest;
+    const S shared = where_positive(length - half, half, length);
+    w.length = where_positive(rest - length, shared, rest);
+    until_switch(w);
+}
+
+} // namespace facegear::motion

@@ -1,0 +1,139 @@
+// Taylor coefficients of Fourier series of the phase s. Series are [harmonic][sine, cosine][block].
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "motion/functions.hpp"
+#include "motion/layout.hpp"
+
+namespace facegear::motion {
+
+// Series of some kinds: (kinds, 2, terms), sine part first, a term for the mean and each harmonic.
+struct FourierRows {
+    Index kinds = 0, terms = 1;
+    std::vector<double> values;
+    double at(Index kind, int part, Index term) const { return values[(kind * 2 + part) * terms + term]; }
+};
+
+// What series of up to `terms` terms need to be expanded in `rows` coefficients at the phases of the machines.
+template <class L>
+class Expansion {
+    using V = typename L::V;
+    using S = typename L::S;
+
+  public:
+    Expansion() = default;
+    Expansion(Index terms, Index rows) : terms_(terms), powers_(rows * terms), angles_(room_.numbers(2 * terms * L::machines)) {
+        parts_ = room_.numbers(2 * terms * L::lanes);
+        fours_ = room_.numbers(2 * terms * 4);
+        // j^i / i! with the signs of the cosine's and the sine's series.
+        for (Index j = 0; j < terms; ++j) {
+            double power = 1.0;
+            for (Index i = 0; i < rows; ++i) {
+                if (i > 0) power *= static_cast<double>(j) / static_cast<double>(i) * (i % 2 == 0 ? -1.0 : 1.0);
+                powers_[i * terms + j] = power;
+            }
+        }
+    }
+
+    // Cosines and sines of the multiples of the phases.
+    void set_phase(S s) {
+        const auto [sine, cosine] = sine_and_cosine(s);
+        S cos_j = S::splat(1.0), sin_j = S::splat(0.0);
+        for (Index j = 0; j < terms_; ++j) {
+            cos_j.store(angles_ + 2 * j * L::machines);
+            sin_j.store(angles_ + (2 * j + 1) * L::machines);
+            const S next = cos_j * cosine - sin_j * sine;
+            sin_j = cos_j * sine + sin_j * cosine;
+            cos_j = next;
+        }
+    }
+    S cosine(Index j) const { return S::load(angles_ + 2 * j * L::machines); }
+    S sine(Index j) const { return S::load(angles_ + (2 * j + 1) * L::machines); }
+    double cosine_of(Index j, int machine) const { return angles_[2 * j * L::machines + machine]; }
+    double sine_of(Index j, int machine) const { return angles_[(2 * j + 1) * L::machines + machine]; }
+
+    // The first `rows` coefficients of `terms` terms of series at the phases.
+    void expand(Table<L> series, Index terms, Index rows, Table<L> out) {
+        for (Index b = 0; b < out.width; ++b) {
+            for (Index j = 0; j < terms; ++j) {
+                const V cos_j = L::every(cosine(j)), sin_j = L::every(sine(j));
+                const V sine_part = series.at(2 * j, b), cosine_part = series.at(2 * j + 1, b);
+                (cosine_part * cos_j + sine_part * sin_j).store(parts_ + j * L::lanes);
+                (sine_part * cos_j - cosine_part * sin_j).store(parts_ + (terms_ + j) * L::lanes);
+            }
+            Index i = 0;
+            for (; i + 1 < rows; i += 2) expand_two(terms, i, b, out);
+            if (i < rows) out.put(i, b, sum(terms, i));
+        }
+    }
+
+    // The same of four series side by side, [harmonic][sine, cosine][4], at the phase of one machine; rows of four.
+    void expand_four(const double* series, Index terms, int machine, Index rows, double* out) {
+        using Four = Lanes<4>;
+        for (Index j = 0; j < terms; ++j) {
+            const Four cos_j = Four::splat(cosine_of(j, machine)), sin_j = Four::splat(sine_of(j, machine));
+            const Four sine_part = Four::load(series + 8 * j), cosine_part = Four::load(series + 8 * j + 4);
+            (cosine_part * cos_j + sine_part * sin_j).store(fours_ + 4 * j);
+            (sine_part * cos_j - cosine_part * sin_j).store(fours_ + 4 * (terms_ + j));
+        }
+        for (Index i = 0; i < rows; ++i) {
+            const double* part = fours_ + 4 * terms_ * (i % 2);
+            Four total = Four::splat(0.0);
+            for (Index j = 0; j < terms; ++j) total = Four::load(part + 4 * j) * Four::splat(powers_[i * terms_ + j]) + total;
+            total.store(out + 4 * i);
+        }
+    }
+
+  private:
+    V part(Index i, Index j) const { return V::load(parts_ + ((i % 2) * terms_ + j) * L::lanes); }
+    V power(Index i, Index j) const { return V::splat(powers_[i * terms_ + j]); }
+
+    // Rows i and i + 1, each in two sums: one alone would wait for each of its additions.
+    void expand_two(Index terms, Index i, Index b, Table<L> out) {
+        V even_1 = V::splat(0.0), even_2 = even_1, odd_1 = even_1, odd_2 = even_1;
+        Index j = 0;
+        for (; j + 1 < terms; j += 2) {
+            even_1 = part(i, j) * power(i, j) + even_1;
+            odd_1 = part(i + 1, j) * power(i + 1, j) + odd_1;
+            even_2 = part(i, j + 1) * power(i, j + 1) + even_2;
+            odd_2 = part(i + 1, j + 1) * power(i + 1, j + 1) + odd_2;
+        }
+        if (j < terms) {
+            even_1 = part(i, j) * power(i, j) + even_1;
+            odd_1 = part(i + 1, j) * power(i + 1, j) + odd_1;
+        }
+        out.put(i, b, even_1 + even_2);
+        out.put(i + 1, b, odd_1 + odd_2);
+    }
+    V sum(Index terms, Index i) const {
+        V total = V::splat(0.0);
+        for (Index j = 0; j < terms; ++j) total = part(i, j) * power(i, j) + total;
+        return total;
+    }
+
+    Index terms_ = 1;
+    std::vector<double> powers_;
+    Room room_;
+    double* angles_ = nullptr;
+    double* parts_ = nullptr;
+    double* fours_ = nullptr;
+};
+
+// Write series into a table of [2 term + part][kind] of a machine, times a factor.
+template <class L>
+void enter_series(const FourierRows& rows, double factor, int machine, Table<L> out) {
+    for (Index j = 0; j < rows.terms; ++j)
+        for (int part = 0; part < 2; ++part)
+            for (Index kind = 0; kind < rows.kinds; ++kind)
+                out.one(2 * j + part, kind, machine) = factor * rows.at(kind, part, j);
+}
+
+// Coefficients of a polynomial about a point further on by `ahead`.
+inline void shift_polynomial(double* c, Index terms, double ahead) {
+    for (Index start = 0; start + 1 < terms; ++start)
+        for (Index i = terms - 2; i >= start; --i) c[i] += ahead * c[i + 1];
+}
+
+} // namespace facegear::motion

@@ -1,0 +1,144 @@
+// The load-dependent law: between two levels of the amount the force is a cubic, whose coefficients are Fourier series
+// of the phase (docs/mesh_law.md).
+#pragma once
+
+#include <vector>
+
+#include "motion/constants.hpp"
+#include "motion/fourier.hpp"
+#include "motion/layout.hpp"
+
+namespace facegear::motion {
+
+struct LoadDependentLaw {
+    static constexpr bool curved = true;
+
+    Index kinds = 0, level_count = 0, harmonics = 1; // harmonics with the mean
+    std::vector<double> table;  // (kinds, levels, harmonics, 2, 4): of the powers of the amount since the piece began
+    std::vector<double> levels; // (kinds, levels), m
+    std::vector<Index> kind;    // of each contact
+    std::vector<double> breaks; // none: smooth in the phase
+
+    Index contacts() const { return static_cast<Index>(kind.size()); }
+    Index terms() const { return harmonics; }
+    // Whether machines with either law may share scratch space.
+    bool alike(const LoadDependentLaw& other) const {
+        return contacts() == other.contacts() && harmonics == other.harmonics;
+    }
+    const double* cubic(Index contact, Index piece) const {
+        return table.data() + (kind[contact] * level_count + piece - 1) * harmonics * 8;
+    }
+    double level(Index contact, Index number) const { return levels[kind[contact] * level_count + number]; }
+
+    template <class L>
+    class Motion;
+};
+
+// With d the deflection since the piece began, c0 .. c3 the coefficients of the piece:
+//     F = c0 + d rise,   rise = c1 + d bend,   bend = c2 + d c3,   dF/dd = rise + d (2 bend - c2).
+template <class L>
+class LoadDependentLaw::Motion {
+    using V = typename L::V;
+
+  public:
+    Motion(const LoadDependentLaw& law, Index rows)
+        : zeroth_(room_.table<L>(rows, law.contacts())), first_(room_.table<L>(rows, law.contacts())),
+          second_(room_.table<L>(rows, law.contacts())), third_(room_.table<L>(rows, law.contacts())),
+          bend_(room_.table<L>(rows, law.contacts())), rise_(room_.table<L>(rows, law.contacts())),
+          lever_(room_.table<L>(rows, law.contacts())), slope_{room_.table<L>(rows, law.contacts()), nullptr},
+          four_(room_.numbers(4 * rows)), filled_(zeroth_.width * L::lanes), touching_(zeroth_.width) {}
+
+    void enter(const LoadDependentLaw& law, double factor, int machine) {
+        law_[machine] = &law;
+        factor_[machine] = factor;
+    }
+
+    void expand_phase(Expansion<L>&, const Index*, const double*, Index) {}
+
+    // The series of the four coefficients of every contact's piece, odd ones on a back flank. state: as the contacts'.
+    void expand_pieces(Expansion<L>& expansion, Table<L> state, Index rows) {
+        for (Index b = 0; b < zeroth_.width; ++b) {
+            touching_[b] = 0;
+            for (int lane = 0; lane < L::lanes; ++lane) {
+                const Index m = entity_of<L>(b, lane), at = b * L::lanes + lane;
+                const int machine = machine_of<L>(lane);
+                if (m >= law_[machine]->contacts()) continue;
+                const double piece = state.data[at];
+                if (piece == 0.0) {
+                    if (filled_[at]) clear(at, rows);
+                    filled_[at] = 0;
+                    continue;
+                }
+                touching_[b] = filled_[at] = 1;
+                const Index number = static_cast<Index>(piece < 0.0 ? -piece : piece);
+                expansion.expand_four(law_[machine]->cubic(m, number), law_[machine]->harmonics, machine, rows, four_);
+                keep(at, rows, factor_[machine], piece > 0.0 ? factor_[machine] : -factor_[machine]);
+            }
+        }
+    }
+
+    V force(Table<L> deflection, Index i, Index block) {
+        if (!touching_[block]) return V::splat(0.0);
+        bend_.put(i, block, second_.at(i, block) + product(third_, deflection, i, block));
+        rise_.put(i, block, first_.at(i, block) + product(bend_, deflection, i, block));
+        return zeroth_.at(i, block) + product(rise_, deflection, i, block);
+    }
+
+    // The series of the slope, once the forces up to `order` are known.
+    void expand_slopes(Table<L> deflection, Index order) {
+        for (Index b = 0; b < zeroth_.width; ++b) {
+            for (Index i = 0; touching_[b] && i <= order; ++i) {
+                lever_.put(i, b, V::splat(2.0) * bend_.at(i, b) - second_.at(i, b));
+                slope_.table.put(i, b, rise_.at(i, b) + product(lever_, deflection, i, b));
+            }
+        }
+    }
+    Series<L> slope() const { return slope_; }
+
+    void look_ahead(Index, V) {}
+    V force_ahead(V deflection, Index order, V step, Index block) const {
+        if (!touching_[block]) return V::splat(0.0);
+        V total = value_ahead(third_, order, step, block) * deflection;
+        total = (total + value_ahead(second_, order, step, block)) * deflection;
+        total = (total + value_ahead(first_, order, step, block)) * deflection;
+        return total + value_ahead(zeroth_, order, step, block);
+    }
+
+    Index piece_of(int machine, Index contact, double amount) const {
+        Index low = 0, high = law_[machine]->level_count;
+        while (high - low > 1) {
+            const Index middle = (low + high) / 2;
+            (law_[machine]->level(contact, middle) <= amount ? low : high) = middle;
+        }
+        return low + 1;
+    }
+    double begin_of(int machine, Index contact, Index piece) const { return law_[machine]->level(contact, piece - 1); }
+    double end_of(int machine, Index contact, Index piece) const {
+        return piece < law_[machine]->level_count ? law_[machine]->level(contact, piece) : infinity;
+    }
+
+  private:
+    void keep(Index at, Index rows, double even, double odd) {
+        const Index stride = zeroth_.stride();
+        for (Index i = 0; i < rows; ++i) {
+            zeroth_.data[i * stride + at] = odd * four_[4 * i];
+            first_.data[i * stride + at] = even * four_[4 * i + 1];
+            second_.data[i * stride + at] = odd * four_[4 * i + 2];
+            third_.data[i * stride + at] = even * four_[4 * i + 3];
+        }
+    }
+    void clear(Index at, Index rows) {
+        for (Index i = 0; i < rows; ++i)
+            for (const Table<L>& each : {zeroth_, first_, second_, third_}) each.row(i)[at] = 0.0;
+    }
+
+    Room room_;
+    Table<L> zeroth_, first_, second_, third_, bend_, rise_, lever_;
+    Series<L> slope_;
+    double* four_;
+    std::vector<char> filled_, touching_;
+    const LoadDependentLaw* law_[L::machines] = {};
+    double factor_[L::machines] = {};
+};
+
+} // namespace facegear::motion

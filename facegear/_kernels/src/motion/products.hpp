@@ -1,0 +1,406 @@
+// Products with the matrices of a system, the one part of the recurrence that differs between the layouts.
+//
+// One machine: dense and padded, vectors run over contacts or coordinates. Machines side by side: sparse, entry by
+// entry. Where coordinates are coupled beside the meshes (gears that bend), one machine takes dense blocks: modes of a
+// body are felt by that body's flanks alone and couple with those of their own order only.
+#pragma once
+
+#include <vector>
+
+#include "motion/layout.hpp"
+#include "motion/system.hpp"
+
+namespace facegear::motion {
+
+template <class L>
+class Products;
+
+// Dense blocks of the mesh Jacobian: coordinates next to each other, and the rows that touch them.
+struct Blocks {
+    std::vector<Index> starts{0}, rows; // of block b: rows[starts[b]] to rows[starts[b + 1]]
+    std::vector<Index> first, last;     // its coordinates, in vectors
+    std::vector<Index> tiles{0}, columns; // the rows in vector k touch coordinates in vectors columns[tiles[k]] and on
+};
+
+// A block is continued by the next vector of coordinates if that brings no more vectors of zeros into it.
+constexpr Index block_zeros = 8;
+
+// touches[row * width + vector]: whether a row touches a vector of coordinates.
+inline Blocks blocks_from(const std::vector<char>& touches, Index rows, Index width, int lanes) {
+    Blocks result;
+    const auto zeros = [&](Index begin, Index end) {
+        Index count = 0;
+        for (Index row = 0; row < rows; ++row) {
+            Index own = 0;
+            for (Index c = begin; c < end; ++c) own += touches[row * width + c];
+            count += own ? end - begin - own : 0;
+        }
+        return count;
+    };
+    Index begin = 0;
+    for (Index k = 1; k <= width; ++k) {
+        if (k < width && zeros(begin, k + 1) - zeros(begin, k) <= block_zeros) continue;
+        result.first.push_back(begin);
+        result.last.push_back(k);
+        for (Index row = 0; row < rows; ++row) {
+            bool any = false;
+            for (Index c = begin; c < k; ++c) any = any || touches[row * width + c];
+            if (any) result.rows.push_back(row);
+        }
+        result.starts.push_back(static_cast<Index>(result.rows.size()));
+        begin = k;
+    }
+    for (Index top = 0; top < rows; top += lanes) {
+        for (Index c = 0; c < width; ++c) {
+            bool any = false;
+            for (Index row = top; row < std::min(top + lanes, rows); ++row) any = any || touches[row * width + c];
+            if (any) result.columns.push_back(c);
+        }
+        result.tiles.push_back(static_cast<Index>(result.columns.size()));
+    }
+    return result;
+}
+
+template <int W>
+class Products<Coordinates<W>> {
+    using L = Coordinates<W>;
+    using V = Lanes<W>;
+    using S = Lanes<1>;
+
+  public:
+    explicit Products(const System& system)
+        : n_(system.n), m_(system.m), contacts_(system.contacts), by_coordinate_(room_.table<L>(system.n, system.m)),
+          by_contact_(room_.table<L>(blocks_of<L>(system.m) * W, system.n)),
+          along_(room_.table<L>(system.rubbing(), system.n)), coupled_(system.coupled) {
+        if (coupled_) find_blocks(system);
+    }
+
+    void enter(const Machine& machine, int) {
+        const System& system = *machine.system;
+        for (Index row = 0; row < m_; ++row)
+            for (Index k = 0; k < n_; ++k)
+                by_contact_.one(row, k, 0) = by_coordinate_.one(k, row, 0) = system.jacobian[row * n_ + k];
+        for (Index row = 0; row < system.rubbing(); ++row)
+            for (Index k = 0; k < n_; ++k) along_.one(row, k, 0) = system.rubbing_directions[row * n_ + k];
+        for (std::size_t strip = 0; strip < strip_columns_.size(); ++strip) {
+            const Index column = strip_columns_[strip];
+            for (Index lane = 0; lane < W; ++lane) {
+                const Index k = strip_rows_[strip] * W + lane;
+                strips_[strip * W + lane] = k >= n_       ? 0.0
+                                            : column < n_ ? system.by_velocity(k, column, machine.frequency)
+                                                          : system.by_displacement(k, column - n_, machine.frequency);
+            }
+        }
+    }
+
+    // A row of the deflections, G y - e; of a disturbance G y.
+    void deflect(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
+        if (coupled_ && W == 4) {
+            deflect_by_tiles(y, row, error, deflection);
+            return;
+        }
+        for (Index b = 0; b < deflection.width; ++b)
+            deflection.put(row, b, error ? -error->at(row, b) : V::splat(0.0));
+        accumulate(by_coordinate_, n_, y.row(row), deflection.row(row), deflection.width);
+    }
+
+    // List the rows of every block that may hold a force: contacts that act, and all rows of rings.
+    void find_pressing(Table<L> active, Table<L> acting) {
+        if (!coupled_) return;
+        Index count = 0;
+        for (std::size_t block = 0; block < blocks_.first.size(); ++block) {
+            for (Index at = blocks_.starts[block]; at < blocks_.starts[block + 1]; ++at) {
+                const Index row = blocks_.rows[at];
+                if (row >= contacts_ || active.data[row] != 0.0 || acting.data[row] != 0.0) pressing_[count++] = row;
+            }
+            pressing_starts_[block + 1] = count;
+        }
+    }
+
+    // Add G^T force to a row of the coordinates.
+    void push(Table<L> force, Table<L> y, Index row) const {
+        if (!coupled_) {
+            accumulate(by_contact_, m_, force.data, y.row(row), y.width);
+            return;
+        }
+        for (std::size_t block = 0; block < blocks_.first.size(); ++block) {
+            const Index* rows = pressing_.data() + pressing_starts_[block];
+            const Index count = pressing_starts_[block + 1] - pressing_starts_[block], last = blocks_.last[block];
+            Index b = blocks_.first[block];
+            for (; b + 3 <= last; b += 3) push_columns<3>(rows, count, force.data, y.row(row), b);
+            for (; b < last; ++b) push_columns<1>(rows, count, force.data, y.row(row), b);
+        }
+    }
+
+    // Add what couples coordinates beside the meshes to row i + 2 of y from the two rows before it.
+    void couple(Table<L> y, Index i) {
+        if (!coupled_) return;
+        const V by_rate = V::splat(-1.0 / static_cast<double>(i + 2));
+        const V by_place = V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2)));
+        double* rates = factors_;
+        double* places = factors_ + n_; // strips are numbered by the n coordinates twice
+        for (Index b = 0; b < y.width; ++b) (by_place * y.at(i, b)).store(places + b * W);
+        store_rates(y, i + 1, by_rate, rates);
+        for (Index b = 0; b < y.width; ++b) {
+            V even = y.at(i + 2, b), odd = V::splat(0.0);
+            Index strip = strip_starts_[b];
+            for (; strip + 1 < strip_starts_[b + 1]; strip += 2) {
+                even = V::load(strips_ + strip * W) * V::splat(factors_[strip_columns_[strip]]) + even;
+                odd = V::load(strips_ + (strip + 1) * W) * V::splat(factors_[strip_columns_[strip + 1]]) + odd;
+            }
+            if (strip < strip_starts_[b + 1])
+                even = V::load(strips_ + strip * W) * V::splat(factors_[strip_columns_[strip]]) + even;
+            y.put(i + 2, b, even + odd);
+        }
+    }
+
+    // Add forces of friction along their directions to a row of the coordinates.
+    void rub(Index force, S size, Table<L> y, Index row) const {
+        for (Index b = 0; b < y.width; ++b) y.add(row, b, V::splat(size[0]) * along_.at(force, b));
+    }
+
+    // A row of G times a row of the coordinates.
+    S dot(Index contact, Table<L> y, Index row) const {
+        V total = V::splat(0.0);
+        for (Index b = 0; b < y.width; ++b) total = by_contact_.at(contact, b) * y.at(row, b) + total;
+        return sum(total);
+    }
+    // Add a row of G times a number to a row of the coordinates.
+    void add_row(Index contact, S factor, Table<L> y, Index row) const {
+        for (Index b = 0; b < y.width; ++b) y.add(row, b, V::splat(factor[0]) * by_contact_.at(contact, b));
+    }
+
+    static S sum(V lanes) {
+        double total = 0.0;
+        for (int i = 0; i < W; ++i) total += lanes[i];
+        return S::splat(total);
+    }
+    static S largest(V lanes) {
+        double found = lanes[0];
+        for (int i = 1; i < W; ++i) found = lanes[i] > found ? lanes[i] : found;
+        return S::splat(found);
+    }
+
+  private:
+    // Add the first `rows` rows of a matrix times factors to `width` vectors.
+    static void accumulate(Table<L> matrix, Index rows, const double* factors, double* out, Index width) {
+        Index b = 0;
+        for (; b + 5 < width; b += 3) add_columns<3>(matrix, rows, factors, out, b);
+        switch (width - b) {
+        case 5: return add_columns<5>(matrix, rows, factors, out, b);
+        case 4: return add_columns<4>(matrix, rows, factors, out, b);
+        case 3: return add_columns<3>(matrix, rows, factors, out, b);
+        case 2: return add_columns<2>(matrix, rows, factors, out, b);
+        case 1: return add_columns<1>(matrix, rows, factors, out, b);
+        default: return;
+        }
+    }
+
+    // Count vectors at a time share each factor that is read; each is added up in two sums.
+    template <int Count>
+    static void add_columns(Table<L> matrix, Index rows, const double* factors, double* out, Index b) {
+        V even[Count], odd[Count];
+        for (int c = 0; c < Count; ++c) {
+            even[c] = V::load(out + (b + c) * W);
+            odd[c] = V::splat(0.0);
+        }
+        const Index stride = matrix.stride();
+        const double* at = matrix.begin(b);
+        Index row = 0;
+        for (; row + 1 < rows; row += 2, at += 2 * stride) {
+            const V first = V::splat(factors[row]), second = V::splat(factors[row + 1]);
+            for (int c = 0; c < Count; ++c) {
+                even[c] = V::load(at + c * W) * first + even[c];
+                odd[c] = V::load(at + stride + c * W) * second + odd[c];
+            }
+        }
+        if (row < rows) {
+            const V first = V::splat(factors[row]);
+            for (int c = 0; c < Count; ++c) even[c] = V::load(at + c * W) * first + even[c];
+        }
+        for (int c = 0; c < Count; ++c) (even[c] + odd[c]).store(out + (b + c) * W);
+    }
+
+    template <int Count>
+    void push_columns(const Index* rows, Index count, const double* force, double* out, Index b) const {
+        V even[Count], odd[Count];
+        for (int c = 0; c < Count; ++c) {
+            even[c] = V::load(out + (b + c) * W);
+            odd[c] = V::splat(0.0);
+        }
+        Index at = 0;
+        for (; at + 1 < count; at += 2) {
+            const V first = V::splat(force[rows[at]]), second = V::splat(force[rows[at + 1]]);
+            for (int c = 0; c < Count; ++c) {
+                even[c] = by_contact_.at(rows[at], b + c) * first + even[c];
+                odd[c] = by_contact_.at(rows[at + 1], b + c) * second + odd[c];
+            }
+        }
+        if (at < count) {
+            const V first = V::splat(force[rows[at]]);
+            for (int c = 0; c < Count; ++c) even[c] = by_contact_.at(rows[at], b + c) * first + even[c];
+        }
+        for (int c = 0; c < Count; ++c) (even[c] + odd[c]).store(out + (b + c) * W);
+    }
+
+    void deflect_by_tiles(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
+        if constexpr (W == 4) {
+            for (Index k = 0; k < deflection.width; ++k) {
+                V sums[4] = {V::splat(0.0), V::splat(0.0), V::splat(0.0), V::splat(0.0)};
+                for (Index tile = blocks_.tiles[k]; tile < blocks_.tiles[k + 1]; ++tile) {
+                    const Index c = blocks_.columns[tile];
+                    const V factor = y.at(row, c);
+                    for (int i = 0; i < 4; ++i) sums[i] = by_contact_.at(4 * k + i, c) * factor + sums[i];
+                }
+                const V total = lane_sums(sums[0], sums[1], sums[2], sums[3]);
+                deflection.put(row, k, error ? total - error->at(row, k) : total);
+            }
+        }
+    }
+
+    // The n rates, without the padding behind them, where the n displacements follow.
+    void store_rates(Table<L> y, Index row, V factor, double* rates) const {
+        Index b = 0;
+        for (; (b + 1) * W <= n_; ++b) (factor * y.at(row, b)).store(rates + b * W);
+        for (Index k = b * W; k < n_; ++k) rates[k] = factor[0] * y.row(row)[k];
+    }
+
+    void find_blocks(const System& system) {
+        const Index width = by_contact_.width, vectors = by_coordinate_.width;
+        std::vector<char> touches(vectors * W * width, 0);
+        for (Index row = 0; row < m_; ++row)
+            for (Index e = system.by_contact.starts[row]; e < system.by_contact.starts[row + 1]; ++e)
+                touches[row * width + system.by_contact.columns[e] / W] = 1;
+        blocks_ = blocks_from(touches, vectors * W, width, W);
+        pressing_.resize(blocks_.rows.size());
+        pressing_starts_.resize(blocks_.starts.size());
+        for (Index k = 0; k < width; ++k) {
+            std::vector<char> kept(2 * n_, 0);
+            for (Index row = k * W; row < std::min((k + 1) * W, n_); ++row)
+                for (Index e = system.coupled_rows.starts[row]; e < system.coupled_rows.starts[row + 1]; ++e)
+                    kept[system.coupled_rows.columns[e]] = 1;
+            for (Index column = 0; column < 2 * n_; ++column) {
+                if (!kept[column]) continue;
+                strip_columns_.push_back(column);
+                strip_rows_.push_back(k);
+            }
+            strip_starts_.push_back(static_cast<Index>(strip_columns_.size()));
+        }
+        strips_ = room_.numbers(static_cast<Index>(strip_columns_.size()) * W);
+        factors_ = room_.numbers(2 * n_ + W);
+    }
+
+    Room room_;
+    Index n_, m_, contacts_;
+    Table<L> by_coordinate_, by_contact_, along_;
+    bool coupled_;
+    Blocks blocks_;
+    std::vector<Index> pressing_, pressing_starts_;
+    std::vector<Index> strip_starts_{0}, strip_columns_, strip_rows_; // strips of W rows and one column
+    double* strips_ = nullptr;
+    double* factors_ = nullptr;
+};
+
+template <int W>
+class Products<Machines<W>> {
+    using L = Machines<W>;
+    using V = Lanes<W>;
+
+  public:
+    explicit Products(const System& system)
+        : system_(&system), values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))),
+          along_(room_.table<L>(1, static_cast<Index>(system.along.columns.size()))),
+          coupling_(room_.table<L>(1, static_cast<Index>(system.coupled_rows.columns.size()))) {}
+
+    void enter(const Machine& machine, int lane) {
+        const System& system = *machine.system;
+        for (std::size_t e = 0; e < system.by_contact.values.size(); ++e)
+            values_.one(0, static_cast<Index>(e), lane) = system.by_contact.values[e];
+        for (std::size_t e = 0; e < system.along.values.size(); ++e)
+            along_.one(0, static_cast<Index>(e), lane) = system.along.values[e];
+        if (!system.coupled) return;
+        for (Index k = 0; k < system.n; ++k)
+            for (Index e = system.coupled_rows.starts[k]; e < system.coupled_rows.starts[k + 1]; ++e) {
+                const Index column = system.coupled_rows.columns[e];
+                coupling_.one(0, e, lane) = column < system.n
+                                                ? system.by_velocity(k, column, machine.frequency)
+                                                : system.by_displacement(k, column - system.n, machine.frequency);
+            }
+    }
+
+    void deflect(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
+        const Sparse& rows = system_->by_contact;
+        for (Index m = 0; m < system_->m; ++m) {
+            V even = error ? -error->at(row, m) : V::splat(0.0), odd = V::splat(0.0);
+            Index e = rows.starts[m];
+            for (; e + 1 < rows.starts[m + 1]; e += 2) {
+                even = values_.at(0, e) * y.at(row, rows.columns[e]) + even;
+                odd = values_.at(0, e + 1) * y.at(row, rows.columns[e + 1]) + odd;
+            }
+            if (e < rows.starts[m + 1]) even = values_.at(0, e) * y.at(row, rows.columns[e]) + even;
+            deflection.put(row, m, even + odd);
+        }
+    }
+
+    void find_pressing(Table<L>, Table<L>) {}
+
+    void push(Table<L> force, Table<L> y, Index row) const {
+        const Sparse& rows = system_->by_coordinate;
+        const Index* entry = system_->entry.data();
+        for (Index k = 0; k < system_->n; ++k) {
+            V even = y.at(row, k), odd = V::splat(0.0);
+            Index e = rows.starts[k];
+            for (; e + 1 < rows.starts[k + 1]; e += 2) {
+                even = values_.at(0, entry[e]) * force.at(0, rows.columns[e]) + even;
+                odd = values_.at(0, entry[e + 1]) * force.at(0, rows.columns[e + 1]) + odd;
+            }
+            if (e < rows.starts[k + 1]) even = values_.at(0, entry[e]) * force.at(0, rows.columns[e]) + even;
+            y.put(row, k, even + odd);
+        }
+    }
+
+    void couple(Table<L> y, Index i) const {
+        if (!system_->coupled) return;
+        const Sparse& rows = system_->coupled_rows;
+        const V by_rate = V::splat(-1.0 / static_cast<double>(i + 2));
+        const V by_place = V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2)));
+        for (Index k = 0; k < system_->n; ++k) {
+            V rates = V::splat(0.0), places = rates;
+            Index e = rows.starts[k];
+            for (; e < rows.starts[k + 1] && rows.columns[e] < system_->n; ++e)
+                rates = coupling_.at(0, e) * y.at(i + 1, rows.columns[e]) + rates;
+            for (; e < rows.starts[k + 1]; ++e)
+                places = coupling_.at(0, e) * y.at(i, rows.columns[e] - system_->n) + places;
+            y.add(i + 2, k, by_rate * rates + by_place * places);
+        }
+    }
+
+    void rub(Index force, V size, Table<L> y, Index row) const {
+        const Sparse& rows = system_->along;
+        for (Index e = rows.starts[force]; e < rows.starts[force + 1]; ++e)
+            y.add(row, rows.columns[e], size * along_.at(0, e));
+    }
+
+    V dot(Index contact, Table<L> y, Index row) const {
+        const Sparse& rows = system_->by_contact;
+        V total = V::splat(0.0);
+        for (Index e = rows.starts[contact]; e < rows.starts[contact + 1]; ++e)
+            total = values_.at(0, e) * y.at(row, rows.columns[e]) + total;
+        return total;
+    }
+    void add_row(Index contact, V factor, Table<L> y, Index row) const {
+        const Sparse& rows = system_->by_contact;
+        for (Index e = rows.starts[contact]; e < rows.starts[contact + 1]; ++e)
+            y.add(row, rows.columns[e], factor * values_.at(0, e));
+    }
+
+    static V sum(V lanes) { return lanes; }
+    static V largest(V lanes) { return lanes; }
+
+  private:
+    Room room_;
+    const System* system_;
+    Table<L> values_, along_, coupling_;
+};
+
+} // namespace facegear::motion
