@@ -153,8 +153,10 @@ def predicted_factor(
     -------
     float
         Dimensionless: the loop formula for an input, the percentile JUDGED_LEVEL for idlers; nan where
-        there is no closed form.
+        there is no closed form, as for a gear that floats while inputs guide it.
     """
+    if freedom is not None and input_groups(mapped.machine):
+        return float("nan")
     if group.kind is GroupKind.INPUTS:
         return loop_factor(mapped, group)
     even = float(mapped.even(group).sum())
