@@ -192,7 +192,9 @@ def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
                 now = mapped.bearing(groups[0])
                 words = f"{verb} the radial stiffness of the bearings of the {name}"
                 new_machine = MappedMachine(with_scaled_bearings(machine, roles, factor))
-                yield Change(words, f"{1e-6 * now:.3g} to {1e-6 * factor * now:.3g} N/um", new_machine, options)
+                yield Change(
+                    words, f"{1e-6 * now:.3g} to {1e-6 * factor * now:.3g} N/um", new_machine, options
+                )
     for floating, sides in FLOATING.items():
         if floating == AS_GIVEN or not idlers or floating_machine(machine, idlers[0], floating) is None:
             continue
