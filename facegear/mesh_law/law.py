@@ -4,7 +4,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Arrays
 
 Held = Any
 """A NamedTuple of any law, held at K phases."""
@@ -64,6 +64,10 @@ class MeshLaw(Protocol):
         """The law at K phases for `terms.held_force`, with a field `stiffness` (K, M): bounds of the slopes,
         N/m.
         """
+
+    @property
+    def numbers(self) -> Arrays:
+        """Its arrays by the names that the integrator's function for this law takes."""
 
     @property
     def compiled(self) -> Any:
