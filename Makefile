@@ -4,16 +4,20 @@ CORES ?= 2
 BIN := .venv/bin
 LOCKED := $(BIN)/pip install --quiet --require-hashes -r
 PYTEST := $(BIN)/python -m pytest -n $(CORES) --dist loadgroup --max-worker-restart=0 # a crash ends the tests
-COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes pyproject.toml
-.PHONY: all env tools check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms starters mutation lock clean
+COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes
+.PHONY: all env tools kernels check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms starters mutation lock clean
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 env: .venv/run
-.venv/run: requirements-run.lock pyproject.toml # libraries of a run, and this repository, editable
+.venv/run: requirements-run.lock requirements-build.lock requirements-zig.lock pyproject.toml # and this repository, editable
 	$(PYTHON) -m venv .venv
-	$(LOCKED) requirements-run.lock
-	$(BIN)/pip install --quiet --no-deps --editable .
+	$(LOCKED) requirements-run.lock -r requirements-build.lock
+	$(PYTHON) building/kernels.py --has-compiler || $(LOCKED) requirements-zig.lock
+	$(BIN)/python building/kernels.py
+	$(BIN)/pip install --quiet --no-deps --no-build-isolation --editable .
 	touch $@
+kernels: env # compiles the C++ sources that have changed
+	@$(BIN)/python building/kernels.py
 tools: .venv/tools
 .venv/tools: requirements.lock .venv/run
 	$(LOCKED) requirements.lock
@@ -21,17 +25,18 @@ tools: .venv/tools
 .venv/cluster: requirements-cluster.lock .venv/tools # submission to Slurm
 	$(LOCKED) requirements-cluster.lock
 	touch $@
-check: env
+check: kernels
 	@$(BIN)/python -m facegear.system_check
 test: check tools
 	$(PYTEST)
 random: check tools # properties alone, with fresh examples; what one finds becomes a named case of its test
 	$(PYTEST) -m hypothesis --hypothesis-profile=random
-lint: tools
+lint: kernels tools
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check workflow/Snakefile workflow paper validation
 	$(BIN)/mypy
+	$(BIN)/python building/lint.py
 docs: tools
 	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
 ci: lint docs release .venv/cluster
@@ -53,8 +58,10 @@ platforms starters: check tools # what moves on two threads and with lower level
 mutation: check tools # whether the tests notice mutants that survived before
 	$(BIN)/uv tool run --from cosmic-ray==8.7.0 python -m validation.mutation.run docs/measured/mutation.csv --survivors
 lock: tools
-	$(COMPILE) --extra dev --extra benchmark -o requirements.lock
-	$(COMPILE) --extra workflow -c requirements.lock -o requirements-run.lock
-	$(COMPILE) --extra cluster -c requirements.lock -o requirements-cluster.lock
+	$(COMPILE) pyproject.toml --extra dev --extra benchmark -o requirements.lock
+	$(COMPILE) --group build -c requirements.lock -o requirements-build.lock
+	$(COMPILE) --group zig -o requirements-zig.lock
+	$(COMPILE) pyproject.toml --extra workflow -c requirements.lock -o requirements-run.lock
+	$(COMPILE) pyproject.toml --extra cluster -c requirements.lock -o requirements-cluster.lock
 clean:
 	rm -rf results/*/ .snakemake

@@ -43,11 +43,12 @@ def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
 
         from validation.mutation.modules import mutation_tables, rows
         from validation.platforms import MEASURED, OUTCOMES, outcomes_table, platforms_table
-        from validation.references import read, verification_table
+        from validation.references import read, shares_table, verification_table
 
         source[0] = source[0].replace("{mutants}", mutation_tables(rows()))
         source[0] = source[0].replace("{platforms}", platforms_table(pd.read_csv(MEASURED)))
         source[0] = source[0].replace("{platform_tests}", outcomes_table(pd.read_csv(OUTCOMES)))
+        source[0] = source[0].replace("{shares}", shares_table(read()))
         source[0] = source[0].replace("{references}", verification_table(read()))
 
 

@@ -9,10 +9,12 @@ from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
+from facegear.number_format import count_noun
 from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
@@ -143,15 +145,25 @@ def _new(given: argparse.Namespace) -> int:
         case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own}) | given_values)
     )
     machine = first_machine(known)
-    with atomic_path(given.config) as temporary:
-        temporary.write_text(machine.text, encoding="utf-8")
+    with TemporaryDirectory() as folder:
+        draft = Path(folder) / given.config.name
+        draft.write_text(machine.text, encoding="utf-8")
         try:
-            load_config(temporary)
+            load_config(draft)
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
+    _say_if_new(given.config.parent)
+    with atomic_path(given.config) as temporary:
+        temporary.write_text(machine.text, encoding="utf-8")
     print(*rexs.notes, *machine.expected, sep="\n")
     print(f"{given.config}: written; `facegear report {given.config}` computes it")
     return 0
+
+
+def _say_if_new(folder: Path) -> None:
+    """Say that a folder does not exist yet: a misspelt one is noticed."""
+    if not folder.exists():
+        print(f"{folder}: new folder", file=sys.stderr)
 
 
 def _run(given: argparse.Namespace) -> int:
@@ -210,6 +222,7 @@ def _report(given: argparse.Namespace) -> int:
 
     gearbox = facegear.load(given.config, given.results)
     path = given.output or Path(f"{gearbox.config.case}.html")
+    _say_if_new(path.parent)
     failures: list[str] = []
 
     def print_stage(stage: str, summary: str) -> None:
@@ -235,7 +248,7 @@ def _figures(given: argparse.Namespace) -> int:
         if not given.png:
             raise FacegearError(f"figures: the svg in {folder} are those of the run: add --png or --output")
     paths = gearbox.figures(folder, given.names, suffix, _printed)
-    print(paths[0] if len(paths) == 1 else f"{len(paths)} figures in {folder}")
+    print(paths[0] if len(paths) == 1 else f"{count_noun(len(paths), 'figure')} in {folder}")
     return 0
 
 
@@ -255,8 +268,7 @@ def _check(given: argparse.Namespace) -> int:
         for line in result.failures:
             print(f"{given.config}: would fail later: {line}", file=sys.stderr)
         return 1
-    count = len(result.cases)
-    print(f"{given.config}: no mistakes; {count} case{'s' * (count > 1)}: {', '.join(result.cases)}")
+    print(f"{given.config}: no mistakes; {count_noun(len(result.cases), 'case')}: {', '.join(result.cases)}")
     return 0
 
 
@@ -271,14 +283,18 @@ def _compare(given: argparse.Namespace) -> int:
     """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
     from facegear.compare.answers import opened
     from facegear.compare.judge import compare
-    from facegear.compare.page import by_table, causes_table, verdict, write_page
+    from facegear.compare.page import by_table, causes_table, stored_in_words, verdict, write_page
 
     if given.page:
+        _say_if_new(given.page.parent)
         require_writable_file(given.page)
     with opened(given.old) as old, opened(given.new) as new:
         comparison = compare(old, new)
         reasons = causes_table(comparison, old, new)
         print(verdict(comparison))
+        sides = {given.old: old, given.new: new}.items()
+        for sentence in filter(None, [stored_in_words(name, folder) for name, folder in sides]):
+            print(sentence)
         if len(comparison.rows):
             print(by_table(comparison).to_string(index=False, na_rep=""))
             for reason in reasons.itertuples(index=False):

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from facegear.results.search import SearchResult
     from facegear.results.shaft_orders import ShaftOrdersResult
     from facegear.results.shafts import ShaftsResult
+    from facegear.results.sharing_map import SharingMapResult
     from facegear.results.statics import StaticsResult
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.stress_over_speed import StressOverSpeedResult
@@ -534,6 +535,20 @@ class Gearbox:
 
         changes = _given({"dynamics.speed_rpm": speed_rpm})
         return self._changed("shaft_orders", changes)._chain.result(ShaftOrdersResult)
+
+    def sharing_map(self) -> "SharingMapResult":
+        """Map load sharing over the numbers that decide it, and try what changes of the machine would buy.
+
+        Returns
+        -------
+        SharingMapResult
+            For the deviations of section `sharing_map`, or its defaults. Raises ConfigErrors for a machine
+            without geometric meshes or with one face gear, NotConverged.
+        """
+        from facegear.results.sharing_map import SharingMapResult
+
+        section = self._values["sharing_map"] or {}
+        return self._changed("sharing_map", {"sharing_map": section})._chain.result(SharingMapResult)
 
     def tooth_errors(self) -> "ToothErrorsResult":
         """What teeth that deviate from the others of their gear add to the transmission error.

@@ -1,4 +1,4 @@
-"""Check that gmsh's system libraries load, and print the apt line that mends it if not."""
+"""Check that gmsh's system libraries and the compiled kernels load, and print what mends it if not."""
 
 import ctypes
 import ctypes.util
@@ -21,26 +21,60 @@ PACKAGES = {
 
 
 def missing_packages() -> list[str]:
-    """Debian packages whose library does not load on this machine."""
+    """Debian packages whose library does not load on this machine.
+
+    Returns
+    -------
+    list of str
+        Names of the packages.
+    """
     return [package for library, package in PACKAGES.items() if not _loads(library)]
 
 
+def kernels_origin() -> str:
+    """Return a sentence that says which compiler built the kernels.
+
+    Returns
+    -------
+    str
+        Compiler, level of instructions, and what builds the kernels sooner where zig built them.
+    """
+    from facegear import _kernels
+
+    sentence = f"The kernels were compiled by {_kernels.COMPILER}; those for {_kernels.LEVEL} run here."
+    if _kernels.COMPILER.startswith("zig"):
+        sentence += " They build sooner with g++ (apt-get install -y g++) or clang++."
+    return sentence
+
+
 def main() -> int:
-    """Print what is missing in one line; 0 if gmsh imports."""
+    """Print which compiler built the kernels, or what is missing in one line.
+
+    Returns
+    -------
+    int
+        0 if gmsh and the kernels load.
+    """
     try:
         import gmsh  # noqa: F401
+
+        print(kernels_origin())
+    except ImportError as error:
+        return _complain(str(error))
     except OSError as error:
         packages = missing_packages()
         if not packages:
-            print(f"gmsh does not load: {error}", file=sys.stderr)
-            return 1
-        print(
+            return _complain(f"gmsh does not load: {error}")
+        return _complain(
             "gmsh needs system libraries that are missing here; install them with: "
-            f"apt-get install -y {' '.join(packages)}",
-            file=sys.stderr,
+            f"apt-get install -y {' '.join(packages)}"
         )
-        return 1
     return 0
+
+
+def _complain(line: str) -> int:
+    print(line, file=sys.stderr)
+    return 1
 
 
 def _loads(library: str) -> bool:

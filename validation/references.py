@@ -20,12 +20,14 @@ TESTS = ("tests", "validation/tests", "paper/tests")
 
 
 class Kind(StrEnum):
-    """What an expected value rests on."""
+    """What an expected value rests on, from the real world to our own numbers."""
 
+    MEASUREMENT = "measured"
+    EXTERNAL = "external source"
+    THIRD_PARTY = "third-party program"
     ANALYTIC = "analytic"
     MANUFACTURED = "manufactured"
-    EXTERNAL = "external source"
-    PROGRAM = "other program"
+    SECOND = "second implementation"
     CONVERGENCE = "own convergence"
 
 
@@ -107,6 +109,39 @@ def merged(stored: pd.DataFrame, fresh: pd.DataFrame, declared: set[str]) -> pd.
     """Fresh rows in place of the stored ones of the same tests, without rows of tests that are gone."""
     kept = stored[~stored["test"].isin(fresh["test"]) & stored["test"].isin(declared)]
     return pd.concat([kept, fresh], ignore_index=True) if len(kept) else fresh
+
+
+def shares_table(rows: pd.DataFrame) -> str:
+    """Write how many references there are of each kind.
+
+    Parameters
+    ----------
+    rows : pd.DataFrame
+        Stored references, COLUMNS.
+
+    Returns
+    -------
+    str
+        A table as Markdown: kind, rows, and their share in tenths of a percent, which add up to 100 %.
+
+    Raises
+    ------
+    ValueError
+        For a row whose kind is none of Kind.
+    """
+    if other_kinds := sorted(set(rows["kind"]) - set(Kind)):
+        raise ValueError(f"kinds of references: {', '.join(other_kinds)}; known are {', '.join(Kind)}")
+    counts = [int((rows["kind"] == kind).sum()) for kind in Kind]
+    total = sum(counts)
+    tenths = [1000 * count // total for count in counts]
+    # Whole tenths lose up to one each; the largest remainders take them back, so that the shares add up.
+    by_remainder = sorted(range(len(counts)), key=lambda i: -(1000 * counts[i] % total))
+    for i in by_remainder[: 1000 - sum(tenths)]:
+        tenths[i] += 1
+    lines = ["| kind | rows | share |", "|---|---|---|"]
+    for kind, count, tenth in zip(Kind, counts, tenths, strict=True):
+        lines.append(f"| {kind} | {count or 'none'} | {tenth / 10:.1f} % |")
+    return "\n".join([*lines, f"| all | {total} | 100.0 % |"])
 
 
 def verification_table(rows: pd.DataFrame) -> str:

@@ -1,6 +1,7 @@
 """Twenty machines of `facegear new`, from their numbers to their report: `python -m validation.starters`."""
 
 import random
+import re
 import subprocess
 import sys
 import time
@@ -12,7 +13,7 @@ from tempfile import TemporaryDirectory
 import pandas as pd
 
 from facegear.errors import FacegearError
-from facegear.gearbox import load
+from facegear.gearbox import Gearbox, load
 from facegear.variants.first_machine import first_machine
 from facegear.variants.starting_wishes import MachineWishes
 
@@ -30,6 +31,10 @@ UNIT_LOADS = (20.0, 60.0)
 FACE = 6.4
 PITCH_SPEEDS = (5.0, 40.0)
 """Speed at the pitch circle of the pinion, m/s."""
+SAFETIES = ("bending_safety", "pitting_safety")
+"""Safeties of the pinions' drive flank that `facegear new` prints, in the order of its line."""
+SHARING = ("k_gamma_inputs", "k_gamma_idlers_least", "k_gamma_idlers_largest", "group_ratio")
+"""Numbers of load sharing that `facegear new` prints for a split-torque machine, in the order of its line."""
 
 
 def draw_machines(count: int = COUNT, seed: int = SEED) -> Iterator[MachineWishes]:
@@ -82,7 +87,9 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
     -------
     dict
         A row of the table: the machine's numbers, `outcome` (report, incomplete or refused), `reason` of what
-        is missing, `stages` that were computed, and `processor_s`.
+        is missing, `stages` that were computed, load sharing of a split-torque machine by `hunting` with the
+        stiffness of the contact analysis, safeties of the pinions, both also as `facegear new` printed them,
+        and `processor_s`.
     """
     stages: list[str] = []
     reasons: list[str] = []
@@ -95,11 +102,17 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
             stages.append(stage)
 
     outcome = "refused"
+    estimates: dict[str, float] = {}
     try:
         path = folder / f"{machine.case}.yaml"
-        path.write_text(first_machine(machine).text, encoding="utf-8")
-        load(path, None).report(folder / f"{machine.case}.html", note)
+        first = first_machine(machine)
+        path.write_text(first.text, encoding="utf-8")
+        gearbox = load(path, None)
+        gearbox.report(folder / f"{machine.case}.html", note)
         outcome = "incomplete" if reasons else "report"
+        if machine.idlers:
+            estimates = computed_sharing(gearbox) | printed_numbers(first.expected[1], SHARING)
+        estimates |= computed_safety(gearbox) | printed_numbers(first.expected[-2], SAFETIES)
     except FacegearError as error:
         reasons.append(str(error).splitlines()[0])
     return {
@@ -115,8 +128,70 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
         "outcome": outcome,
         "reason": "; ".join(reasons),
         "stages": len(stages),
+        **estimates,
         "processor_s": round(time.process_time() - start, 1),
     }
+
+
+def computed_sharing(gearbox: Gearbox) -> dict[str, float]:
+    """Compute the load sharing of a split-torque machine over its hunting cycle.
+
+    Parameters
+    ----------
+    gearbox : Gearbox
+        The machine.
+
+    Returns
+    -------
+    dict
+        Numbers by the names of SHARING, dimensionless.
+    """
+    hunting = gearbox.hunting()
+    meshes = hunting.meshes().set_index("mesh")["k_gamma"]
+    idlers = meshes.filter(like="idler")
+    values = (
+        meshes.filter(like="input").max(),
+        idlers.min(),
+        idlers.max(),
+        hunting.table()["group_ratio"].max(),
+    )
+    return {name: round(float(value), 3) for name, value in zip(SHARING, values, strict=True)}
+
+
+def computed_safety(gearbox: Gearbox) -> dict[str, float]:
+    """Compute the safety of the pinions' drive flank by finite elements and contact analysis.
+
+    Parameters
+    ----------
+    gearbox : Gearbox
+        The machine.
+
+    Returns
+    -------
+    dict
+        Numbers by the names of SAFETIES, dimensionless.
+    """
+    safety = gearbox.rating().safety().set_index(["body", "flank"]).loc[("pinion", "drive")]
+    return {name: round(float(safety[name]), 3) for name in SAFETIES}
+
+
+def printed_numbers(line: str, names: Sequence[str]) -> dict[str, float]:
+    """Read numbers from a line that `facegear new` prints.
+
+    Parameters
+    ----------
+    line : str
+        The line, which begins with the numbers.
+    names : sequence of str
+        What the numbers are, in their order.
+
+    Returns
+    -------
+    dict
+        Numbers by these names with `printed_` before them, any unit.
+    """
+    numbers = re.findall(r"\d+\.\d+|\d+", line)
+    return {f"printed_{name}": float(number) for name, number in zip(names, numbers, strict=False)}
 
 
 def run_all(machines: Sequence[MachineWishes]) -> pd.DataFrame:

@@ -1,21 +1,24 @@
-"""Compiled kernels (C++, `src/`): the module for the instructions that this processor has."""
+"""Compiled kernels (C++, `src/`): the modules for the instructions that this processor has.
+
+Each part that `src/bindings` binds is a module of this package, such as `facegear._kernels.arithmetic`. The
+build writes its types beside this file (`arithmetic.pyi`).
+"""
 
 import hashlib
+import sys
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 _SOURCES = Path(__file__).with_name("src")
-_BUILD = "rebuild them by `make kernels`"
+_REMEDY = "rebuild them by `make kernels`, or by `pip install -e .` where pip installed this folder"
 
 try:
-    from facegear._kernels import _baseline
+    _module = import_module(f"{__name__}._baseline")
+    if _module.has_x86_64_v3():
+        _module = import_module(f"{__name__}._x86_64_v3")
 except ImportError as error:
-    raise ImportError(f"the compiled kernels of facegear cannot be loaded ({error}): {_BUILD}") from error
-
-_module = _baseline
-if _baseline.has_x86_64_v3():
-    from facegear._kernels import _x86_64_v3
-
-    _module = _x86_64_v3
+    raise ImportError(f"the compiled kernels of facegear cannot be loaded ({error}): {_REMEDY}") from error
 
 
 def sources_hash() -> str:
@@ -32,7 +35,13 @@ def sources_hash() -> str:
 
 
 if (Path(__file__).parents[2] / "CMakeLists.txt").exists() and sources_hash() != _module.SOURCES_HASH:
-    raise ImportError(f"the compiled kernels of facegear are older than their sources: {_BUILD}")
+    raise ImportError(f"the compiled kernels of facegear are older than their sources: {_REMEDY}")
 
-arithmetic = _module.arithmetic
-motion = _module.motion
+COMPILER: str = _module.COMPILER
+"""Name and version of the compiler that built the kernels."""
+LEVEL: str = _module.__name__.rpartition(".")[2].strip("_")
+"""Level of instructions that is used here: `x86_64_v3`, or `baseline` on other processors."""
+
+for _name, _part in vars(_module).items():
+    if isinstance(_part, ModuleType):
+        globals()[_name] = sys.modules[f"{__name__}.{_name}"] = _part

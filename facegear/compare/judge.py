@@ -79,7 +79,7 @@ def compare(old: Path, new: Path) -> Comparison:
     wrote it.
     """
     names = {side: answer_tables(side) for side in (old, new)}
-    left_out = _not_stored(old) | _not_stored(new)
+    left_out = tables_not_stored(old) | tables_not_stored(new)
     judged = [
         _judge_file(name, old if name in names[old] else None, new if name in names[new] else None)
         for name in sorted((names[old] | names[new]) - left_out)
@@ -98,7 +98,19 @@ def answer_tables(folder: Path) -> set[str]:
     return kept
 
 
-def _not_stored(folder: Path) -> set[str]:
+def tables_not_stored(folder: Path) -> set[str]:
+    """Return the tables that were too large for a stored answer; none for a folder of results.
+
+    Parameters
+    ----------
+    folder : Path
+        A folder of results, or an unpacked stored answer.
+
+    Returns
+    -------
+    set of str
+        Paths inside the folder of results.
+    """
     path = folder / NOT_STORED
     return set(documents.read(path, ("tables",))["tables"]) if path.is_file() else set()
 

@@ -7,12 +7,20 @@ from tempfile import TemporaryDirectory
 import pandas as pd
 
 from facegear.compare.causes import causes
-from facegear.compare.judge import CHANGES, Comparison, Verdict
+from facegear.compare.judge import (
+    CHANGES,
+    NOT_STORED,
+    Comparison,
+    Verdict,
+    answer_tables,
+    tables_not_stored,
+)
 from facegear.compare.quantities import CURVES, Curve, declared
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
+from facegear.number_format import count_noun
 from facegear.plots.compare import curves_compared
-from facegear.plots.style import save
+from facegear.plots.save import save
 from facegear.report.page import Chapter, Picture, Table, render
 from facegear.report.table import words
 
@@ -64,7 +72,29 @@ def verdict(comparison: Comparison) -> str:
         more += f" {images} are of the mirror image of the same motion." if images else ""
         return f"Both folders say the same.{more}"
     files = comparison.rows.loc[comparison.rows["verdict"].isin(CHANGES), "file"].nunique()
-    return f"The folders differ in {files} table{'s' * (files > 1)}."
+    return f"The folders differ in {count_noun(files, 'table')}."
+
+
+def stored_in_words(name: str, folder: Path) -> str:
+    """Say how many tables a stored answer holds, and that nothing is compared with the others.
+
+    Parameters
+    ----------
+    name : str
+        Name of the answer, as `current/quick`.
+    folder : Path
+        Where it is unpacked.
+
+    Returns
+    -------
+    str
+        A sentence; empty for a folder of results, which holds all of its tables.
+    """
+    if not (folder / NOT_STORED).is_file():
+        return ""
+    stored_count = count_noun(len(answer_tables(folder)), "table")
+    omitted_count = count_noun(len(tables_not_stored(folder)), "larger table")
+    return f"{name} holds {stored_count}. Not stored, and not compared: {omitted_count}."
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:

@@ -12,6 +12,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from facegear.config.keys import config_error
 from facegear.config.plausibility import plausibility_notes, unit_suggestion
 from facegear.errors import ConfigError, ConfigErrors, InvalidInput
+from facegear.number_format import count_noun
 
 
 class Section(BaseModel):
@@ -91,16 +92,18 @@ def _with_likely_units(lines: list[str], values: Mapping[str, Any]) -> list[str]
     """
     notes = {note.partition(" = ")[0].partition("[")[0]: note for note in plausibility_notes(values)}
     for key, note in notes.items():
-        if any(line.startswith(key) and "; is it in " in line for line in lines):
-            continue
-        section = ".".join(key.split(".")[:2]) + "."
+        sections = key.split(".")
+        starts = (key, ".".join(sections[:2]) + ".", f"{sections[0]}.")
         about = [number for number, line in enumerate(lines) if key in line]
-        about += [number for number, line in enumerate(lines) if line.startswith(section)]
+        about += [number for start in starts for number, line in enumerate(lines) if line.startswith(start)]
         if not about:
             continue
         caused = about[0]
-        reason = note.partition(": ")[2] if lines[caused].startswith(key) else note
-        lines[caused] = f"{lines[caused]}; {reason}"
+        if lines[caused].startswith(key):
+            # A bound of the schema is wider than what these teeth suggest, and fits more units.
+            lines[caused] = lines[caused].partition("; is it in ")[0] + f"; {note.partition(': ')[2]}"
+        else:
+            lines[caused] += f"; {note}"
     return lines
 
 
@@ -172,7 +175,7 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
     if kind in ("too_short", "too_long"):
         words, name = ("at least", "min_length") if kind == "too_short" else ("at most", "max_length")
         count = details["ctx"][name]
-        items = f"{words} {count} item{'s' * (count != 1)}"
+        items = f"{words} {count_noun(count, 'item')}"
         return [f"{key} = {_shown(details['input'])}: must have {items}, not {len(details['input'])}"]
     if kind in RULES:
         rule = RULES[kind]
@@ -181,7 +184,7 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
     elif kind in ("string_too_short", "string_too_long"):
         words, name = ("at least", "min_length") if kind == "string_too_short" else ("at most", "max_length")
         count = details["ctx"][name]
-        rule = f"have {words} {count} character{'s' * (count != 1)}"
+        rule = f"have {words} {count_noun(count, 'character')}"
     else:
         message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
         rule = message.replace("should ", "", 1) if message.startswith("should ") else message

@@ -30,6 +30,7 @@ from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors, NotConverged
+from facegear.number_format import count_noun
 
 MAX_POINTS = 200
 """Points of all studies of a config together: each is a case of its own with some five jobs."""
@@ -207,7 +208,7 @@ def check_studies(studies: Sequence[Study]) -> None:
     points = sum(int(np.prod([len(axis.resolved()) for axis in study.axes])) for study in studies)
     if points > MAX_POINTS:
         allowed = f"at most {MAX_POINTS} in all: fewer values, several configs, or a loop in Python"
-        raise ConfigError("studies", f"{points} points", allowed)
+        raise ConfigError("studies", count_noun(points, "point"), allowed)
 
 
 def check_tolerances(

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from facegear.config.base import RENAMED, suggestion
+from facegear.number_format import count_noun
 
 LARGEST_FILE = 2_000_000
 """Bytes that are read at most."""
@@ -106,7 +107,9 @@ def _row(
     line: int, header: Sequence[str], cells: Sequence[str], columns: Sequence[str], texts: Sequence[str]
 ) -> tuple[CsvRow, dict[str, str]]:
     if len(cells) != len(header):
-        raise CsvFault(f"line {line}: {len(cells)} values under {len(header)} column names")
+        raise CsvFault(
+            f"line {line}: {count_noun(len(cells), 'value')} under {count_noun(len(header), 'column name')}"
+        )
     by_column = dict(zip(header, cells, strict=True))
     numbers = {name: _number(line, name, by_column[name]) for name in columns}
     return CsvRow(line, numbers), {name: by_column[name].strip() for name in texts}

@@ -13,6 +13,7 @@ from facegear.config.flank_csv import CsvFault, read_flanks
 from facegear.geometry.design import DeviationGrid, Flanks
 from facegear.geometry.deviations import deviation
 from facegear.geometry.nominal import Face, nominal_points
+from facegear.number_format import count_noun
 
 Side = Literal["right", "left"]
 SIDES: tuple[Side, ...] = ("right", "left")
@@ -85,7 +86,11 @@ class FlanksSection(Section):
                     refuse("grids", tooth or "all", f"one grid for each tooth of the {side} flank")
             axes = {(grid.face_mm, grid.profile_mm) for grid in self.grids if grid.flank == side}
             if len(axes) > 1:
-                refuse("grids", f"{len(axes)} grids", f"at the same places on all teeth of the {side} flank")
+                refuse(
+                    "grids",
+                    count_noun(len(axes), "grid"),
+                    f"at the same places on all teeth of the {side} flank",
+                )
         return self
 
 

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, refuse, require_all
 from facegear.config.csv_file import CsvFault, read_numbers
 from facegear.config.material import MaterialSection
+from facegear.number_format import count_noun
 
 COLUMNS = ("r_mm", "height_mm")
 MAX_CORNERS = 200
@@ -182,5 +183,9 @@ def _step_corners(name: str) -> tuple[tuple[float, float], ...]:
     except StepFault as fault:
         refuse("step", name, f"{allowed}; {fault}")
     if len(corners) > MAX_CORNERS:
-        refuse("step", name, f"{allowed}; its outline takes {len(corners)} corners, more than {MAX_CORNERS}")
+        refuse(
+            "step",
+            name,
+            f"{allowed}; its outline takes {count_noun(len(corners), 'corner')}, more than {MAX_CORNERS}",
+        )
     return tuple(corners)

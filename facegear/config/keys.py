@@ -23,6 +23,7 @@ KEYS = {
     "face gears": "transmission.face_gears",
     "torques": "transmission.torque",
     "lags of the transmission error": "transmission.transmission_error.phasing",
+    "order of an excitation": "transmission.excitations",
     "half backlashes": "transmission.single_meshes",
 }
 """Dotted keys by the words of the computations; a quantity without a key keeps its words."""

@@ -17,6 +17,7 @@ from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.shafts.condensed import condensed
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
+from facegear.transmission.excitation import Excitation
 from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import (
@@ -70,6 +71,37 @@ def machine(
         forces=external_forces(section, shape),
         drive_line=drive_line(section, shape),
         tables=tables,
+        excitations=excitations(section, shape),
+    )
+
+
+def excitations(section: Transmission, shape: Layout) -> tuple[Excitation, ...]:
+    """Return the periodic torques of section `transmission`.
+
+    Parameters
+    ----------
+    section : Transmission
+        As given.
+    shape : Layout
+        Its bodies.
+
+    Returns
+    -------
+    tuple of Excitation
+        In N m and rad.
+    """
+    pinions = [pinion.name for pinion in section.pinions]
+    bodies = [*pinions, *(gear.side.value for gear in shape.gears)]
+    numbers = [bodies.index(torque.body) for torque in section.excitations]
+    return tuple(
+        Excitation(
+            body=number,
+            order=torque.order,
+            teeth=shape.pinion_teeth if number < len(pinions) else shape.gear_teeth,
+            amplitude=torque.torque_n_m,
+            phase=float(np.radians(torque.phase_deg)),
+        )
+        for number, torque in zip(numbers, section.excitations, strict=True)
     )
 
 

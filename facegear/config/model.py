@@ -37,6 +37,7 @@ from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.modal import Modal
 from facegear.config.poses import check_posed_variants, check_poses
 from facegear.config.search import Search
+from facegear.config.sharing_map import SharingMap
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.strength import Strength
 from facegear.config.studies import NAME, Study
@@ -76,6 +77,9 @@ class Config(Section):
     dynamics: Dynamics = Dynamics()
     branches: Branches | None = Field(None, description="continuation of periodic motions; null: not done")
     load_sharing: LoadSharing = LoadSharing()
+    sharing_map: SharingMap | None = Field(
+        None, description="load sharing over the numbers that decide it, and advice; null: not done"
+    )
     tolerances: Tolerances | None = Field(
         None, description="thousands of machines with their tolerances: percentiles, indices; null: not done"
     )
@@ -227,10 +231,21 @@ class Config(Section):
                 allowed = f"within dynamics.sweep, {sweep.from_rpm:g} to {sweep.to_rpm:g}"
                 raise ConfigError(f"strength.duty[{number}].speed_rpm", load.speed_rpm, allowed)
 
+    def _check_sharing_map(self, machine: Transmission) -> None:
+        if self.sharing_map is None:
+            return
+        if machine.mesh_kinematics == "printed":
+            raise ConfigError(
+                "transmission.mesh_kinematics", "printed", "geometric, as required by sharing_map"
+            )
+        if len(machine.face_gears) < 2:
+            both_gears = "lower and upper, as required by sharing_map: one gear alone splits no load"
+            raise ConfigError("transmission.face_gears", list(machine.face_gears), both_gears)
+
     def _check_machine(self) -> None:
         pair, machine = self.tooth_pair, self.transmission
         if machine is None:
-            for key in ("studies", "tolerances", "search", "reproduction"):
+            for key in ("sharing_map", "studies", "tolerances", "search", "reproduction"):
                 if getattr(self, key):
                     raise ConfigError("transmission", None, f"given, as required by {key}")
             if self.strength is not None and self.strength.load_factors == "machine":
@@ -239,6 +254,7 @@ class Config(Section):
                 )
             return
         self._check_duty_speeds()
+        self._check_sharing_map(machine)
         check_positions(pair, machine)
         check_machine_strain(pair, machine)
         check_torques(pair, machine)

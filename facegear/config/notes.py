@@ -22,6 +22,10 @@ EXTERNAL = (
     "transmission: external forces on {} act at rest and in motion, the same at every speed and torque of a "
     "duty cycle"
 )
+UNREPEATED = (
+    "transmission.excitations: {} do not repeat with the mesh; the vibration at the orders of turns has them "
+    "(dynamics/excited.csv), and motion in time refuses them"
+)
 WITHOUT_FRICTION = (
     "lubrication.friction.effect = excitation: {} leave out how friction disturbs the motion; loss, "
     "temperature and film of samples are those of the forces without it (docs/friction.md)"
@@ -55,6 +59,7 @@ def notes(values: Mapping[str, Any]) -> list[str]:
         + _backlash(values)
         + _preloads(values)
         + _pushes(transmission)
+        + _unrepeated(values)
         + _sums(values)
         + _without_friction(values)
         + [AS_ASSEMBLED] * (transmission["operating_pose"] == "static" and bool(values.get("lubrication")))
@@ -100,6 +105,18 @@ def _pushes(transmission: Mapping[str, Any]) -> list[str]:
     singles = {**transmission["single_pinions"], **transmission["single_gears"]}
     named = [name for name, own in singles.items() if any((own.get("force_n") or {}).values())]
     return [EXTERNAL.format(", ".join(named))] if named else []
+
+
+def _unrepeated(values: Mapping[str, Any]) -> list[str]:
+    """Periodic torques that no mesh harmonic has."""
+    transmission, teeth = values["transmission"], values["tooth_pair"]
+    pinions = [pinion["name"] for pinion in transmission["pinions"]]
+    names = [
+        f"order {torque['order']:g} of {torque['body']}"
+        for torque in transmission["excitations"]
+        if torque["order"] % teeth["pinion_teeth" if torque["body"] in pinions else "face_gear_teeth"]
+    ]
+    return [UNREPEATED.format(", ".join(names))] if names else []
 
 
 def _sums(values: Mapping[str, Any]) -> list[str]:

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from facegear.arrays import Array
 from facegear.config.base import Section, refuse, require_all
 from facegear.load_sharing.quantity_names import QUANTITIES
+from facegear.number_format import count_noun
 
 if TYPE_CHECKING:
     from facegear.scenarios.sampling import Population
@@ -111,7 +112,11 @@ class LoadMap(Section):
                 refuse(key, list(given), "rising, each once")
         points = len(self.torque_factors) * max(len(self.speeds_rpm), 1)
         if points * self.samples > MAX_MAPPED:
-            refuse("samples", self.samples, f"at most {MAX_MAPPED // points}: there are {points} loads")
+            refuse(
+                "samples",
+                self.samples,
+                f"at most {MAX_MAPPED // points}: there are {count_noun(points, 'load')}",
+            )
         return self
 
     def loads(self, speed_rpm: float) -> list[tuple[float, float]]:

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
 from facegear.config.bodies import LIKE_ALL_PINIONS, GearBody, PinionBody, SingleGear, SinglePinion
+from facegear.config.excitations import ExcitationSection
 from facegear.config.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.config.transmission_error import TransmissionError
 
@@ -99,6 +100,9 @@ class Transmission(Section):
         description="turning masses on torsional springs, from the gear outwards, the torque on the last: by "
         "the pinions' role, a pinion's name, or output for the face gear that gives the power out",
     )
+    excitations: tuple[ExcitationSection, ...] = Field(
+        (), max_length=50, description="periodic torques on bodies, at orders of their turns"
+    )
     damping: DampingSection
     backlash_um: float | None = Field(
         None, ge=0, le=1e5, description="2b along the line of action; null: that of the teeth as assembled"
@@ -153,6 +157,10 @@ class Transmission(Section):
             for name in given:
                 if name not in known:
                     refuse(f"{key}.{name}", name, f"one of {', '.join(known)}")
+        bodies = [*names, *self.face_gears]
+        for number, excitation in enumerate(self.excitations):
+            if excitation.body not in bodies:
+                refuse(f"excitations[{number}].body", excitation.body, f"one of {', '.join(bodies)}")
 
     def _lags(self) -> None:
         phasing = self.transmission_error.phasing
@@ -184,7 +192,7 @@ class Transmission(Section):
         for key in ("single_meshes", "single_pinions", "single_gears"):
             if named := list(getattr(self, key)):
                 refuse(key, named, "none where mesh_kinematics is printed: it knows no errors of one part")
-        for key in ("shafts", "torsion"):
+        for key in ("shafts", "torsion", "excitations"):
             if named := list(getattr(self, key)):
                 refuse(key, named, "none where mesh_kinematics is printed")
         if self.operating_pose != "none":

@@ -3,10 +3,11 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.averages import HatPoints, Rows, closing, rows_of
-from facegear.contact.spreading import Lattice, NodalLoads
+from facegear.contact.basis_functions import Cover, Facing, FacingPoints, Rows, chosen_rows, functions_within
+from facegear.contact.lattice import Lattice
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +28,13 @@ class Candidates:
     averages: Rows
     at: tuple[Array, Array]
     lattices: tuple[Lattice, Lattice]
-    _made: dict[tuple[int, bool], NodalLoads] = field(default_factory=dict, init=False)
+    _made: dict[tuple[int, bool], sp.csr_matrix] = field(default_factory=dict, init=False)
 
-    def loads(self, side: int, refined: bool) -> NodalLoads:
-        """On the nodes of the pinion's (0) or the gear's (1) lattice, before refinement unless `refined`."""
+    def loads(self, side: int, refined: bool) -> sp.csr_matrix:
+        """Nodal forces (m, nodes) on the pinion's (0) or the gear's (1) lattice.
+
+        Its nodes are those before refinement unless `refined`.
+        """
         if (side, refined) not in self._made:
             self._made[side, refined] = self.lattices[side].loads(self.averages, self.at[side], refined)
         return self._made[side, refined]
@@ -45,7 +49,7 @@ class Candidates:
             gap=self.gap[keep],
             lever_arm=self.lever_arm[keep],
             fillet=self.fillet[keep],
-            averages=rows_of(*self.averages, keep),
+            averages=chosen_rows(self.averages, keep),
         )
 
 
@@ -53,7 +57,7 @@ def candidates_of(
     pinion: Lattice,
     gear: Lattice,
     tooth: int,
-    points: HatPoints,
+    points: FacingPoints,
     min_area: Array,
     limit: float,
     first: int = 0,
@@ -63,12 +67,14 @@ def candidates_of(
     min_area: the covered area below which a hat is left out; those of the pinion's nodes begin at `first`,
     the others are hats of edges.
     """
-    ends = pinion.flank_end, gear.flank_end
-    starts = np.array([0, points.gap.size])
-    _, node, gap, lever_arm, fillet, rows = closing(
-        points, starts, min_area, first, pinion.shape, ends, limit
-    )
-    if node.size == 0:
+    starts, teeth = np.array([0, points.gap.size]), np.array([tooth])
+    cover = Cover(min_area, first, pinion.shape, (pinion.flank_end, gear.flank_end))
+    found = functions_within(Facing(points, starts, teeth), cover, limit)
+    if found.node.size == 0:
         return []
     at = points.pinion, points.gear
-    return [Candidates(tooth, node, gap, lever_arm, fillet, rows, at, (pinion, gear))]
+    return [
+        Candidates(
+            tooth, found.node, found.gap, found.lever_arm, found.fillet, found.average, at, (pinion, gear)
+        )
+    ]

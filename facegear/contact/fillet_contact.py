@@ -13,9 +13,6 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.position import Spot
 from facegear.geometry import pinion
-from facegear.machine_code import picked
-from facegear.machine_code.compiler import compiler
-from facegear.machine_code.picked import marks
 
 APART = 2.0
 """Rows of the lattice between two loaded hats of a plane from which on they belong to two contacts."""
@@ -42,29 +39,20 @@ def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
     return replace(spot, hats=spot.hats[keep], force=spot.force[keep], fillet=spot.fillet[keep])
 
 
-@compiler(*picked.SOURCES)
 def kept_hats(row: Integers, plane: Integers, fillet: Mask, line: Array, apart: float) -> Mask:
     """Which loaded hats, in rows and planes (m,), are neither in a fillet nor part of a contact in one.
 
     A contact: hats of a plane no more than `apart` rows from the next. One that reaches a fillet lies in it,
     unless the plane's contact line (n,) is within `apart` rows of it.
     """
-    kept = marks(fillet.size, True)
-    for hat in range(fillet.size):
-        kept[hat] = not fillet[hat]
-    for hat in range(row.size):
-        if not fillet[hat]:
-            continue
-        low = high = row[hat]
-        grown = True
-        while grown:
-            grown = False
-            for other in range(row.size):
-                beside = low - apart <= row[other] <= high + apart and not low <= row[other] <= high
-                if beside and plane[other] == plane[hat]:
-                    low, high, grown = min(low, row[other]), max(high, row[other]), True
-        if not low - apart <= line[plane[hat]] <= high + apart:
-            for other in range(row.size):
-                if plane[other] == plane[hat] and low <= row[other] <= high:
-                    kept[other] = False
+    order = np.lexsort((row, plane))
+    row, plane = row[order], plane[order]
+    begins = np.concatenate([[True], (np.diff(plane) != 0) | (np.diff(row) > apart)])[: row.size]
+    first = np.flatnonzero(begins)
+    low, high = row[first], row[np.append(first[1:], row.size) - 1]
+    at_line = line[plane[first]]
+    on_line = (low - apart <= at_line) & (at_line <= high + apart)
+    in_fillet = np.logical_or.reduceat(fillet[order], first) if row.size else on_line
+    kept = ~fillet
+    kept[order] &= (on_line | ~in_fillet)[np.cumsum(begins) - 1]
     return kept

@@ -17,8 +17,8 @@ from facegear.contact.bodies.surface import (
     interpolation,
     pressure_basis,
 )
+from facegear.contact.lattice import Lattice
 from facegear.contact.options import Refinement
-from facegear.contact.spreading import Lattice
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
@@ -31,7 +31,7 @@ OF_AN_EDGE = 0.5
 
 
 class PinionPoints(NamedTuple):
-    """Points (q, 3) of a pinion that may touch and their normals, with what `HatPoints` has of them."""
+    """Points (q, 3) of a pinion that may touch and their normals, with what `FacingPoints` has of them."""
 
     position: Array
     normal: Array

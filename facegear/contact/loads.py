@@ -5,18 +5,14 @@ grows by micrometres within a node distance, so that averages over the surface b
 therefore carry loads of their own, hats along the edge with gaps taken on it.
 """
 
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
-from facegear.contact.averages import HatPoints
+from facegear.arrays import AnyArray, Array, Integers
+from facegear.contact.basis_functions import FacingPoints
 from facegear.contact.flanks import OF_AN_EDGE, PinionPoints, PinionSurface
-from facegear.machine_code import picked
-from facegear.machine_code.compiler import compiler
-from facegear.machine_code.picked import empty_numbers, empty_table, integer_table, integers, table
-
-compiled = compiler(*picked.SOURCES)
 
 SMALLEST_COVER = 0.02
 """Part of a hat's area below which it is left out: the tooth opposite ends there."""
@@ -24,13 +20,13 @@ SMALLEST_COVER = 0.02
 
 def flank_points(
     surface: PinionSurface, points: Integers, gap: Array, lever_arm: Array, gear: Array, first: int = 0
-) -> HatPoints:
+) -> FacingPoints:
     """Integration points (q,) of the pinion, numbered `points` (q,), whose hats are numbered from `first` on.
 
     gap, lever_arm (q,) m; gear (q, 2): refined lattice coordinates opposite.
     """
     under, values = surface.under
-    return HatPoints(
+    return FacingPoints(
         gap, lever_arm, surface.at[points], gear, under[points] + first, values[points], surface.area[points]
     )
 
@@ -50,10 +46,9 @@ class EdgePoints(NamedTuple):
     values: Array
 
 
-@compiled
 def gathered(
     points: PinionPoints, first: int, hits: tuple[Integers, Integers, Array, Array], edge: EdgePoints
-) -> tuple[HatPoints, Integers]:
+) -> tuple[FacingPoints, Integers]:
     """Points of p pairs of teeth, and where those of each begin (p + 1,): those of the gear's tip edge, then
     those of the pinion, whose hats are numbered from `first` on.
 
@@ -62,28 +57,27 @@ def gathered(
     """
     number, ends, gap, gear = hits
     pairs, beside = edge.gap.shape
-    size = number.size + pairs * beside
-    lever_arm, area = empty_numbers(size), empty_numbers(size)
-    gaps, at_pinion, at_gear = empty_numbers(size), empty_table(size, 2), empty_table(size, 2)
-    hats, values = integer_table(size, 4), table(size, 4)
-    starts, row = integers(pairs + 1, 0), 0
-    for pair in range(pairs):
-        for e in range(beside):
-            gaps[row], lever_arm[row], area[row] = edge.gap[pair, e], edge.lever_arm[pair, e], OF_AN_EDGE
-            for i in range(2):
-                at_pinion[row, i], at_gear[row, i] = edge.pinion[pair, e, i], edge.gear[e, i]
-                hats[row, i], values[row, i] = edge.hats[e, i], edge.values[e, i]
-            row += 1
-        for q in range(ends[pair], ends[pair + 1]):
-            point = number[q]
-            gaps[row], lever_arm[row], area[row] = gap[q], points.lever_arm[point], points.area[point]
-            for i in range(2):
-                at_pinion[row, i], at_gear[row, i] = points.at[point, i], gear[q, i]
-            for h in range(4):
-                hats[row, h], values[row, h] = points.hats[point, h] + first, points.values[point, h]
-            row += 1
-        starts[pair + 1] = row
-    return HatPoints(gaps, lever_arm, at_pinion, at_gear, hats, values, area), starts
+
+    def placed(on_edge: AnyArray, on_pinion: AnyArray) -> AnyArray:
+        """Return values (p, e, ...) of the edge's points and (q, ...) of the pinion's as one array."""
+        parts = (on_pinion[first:last] for first, last in pairwise(ends.tolist()))
+        return np.concatenate([*chain.from_iterable(zip(on_edge, parts, strict=True)), on_pinion[:0]])
+
+    def at_each_pair(values: AnyArray, columns: int) -> AnyArray:
+        """Return values (e, c) at the edge's points of each pair (p, e, columns), 0 in further columns."""
+        filled = np.pad(values, ((0, 0), (0, columns - values.shape[1])))
+        return np.broadcast_to(filled, (pairs, *filled.shape))
+
+    gathered_points = FacingPoints(
+        gap=placed(edge.gap, gap),
+        lever_arm=placed(edge.lever_arm, points.lever_arm[number]),
+        pinion=placed(edge.pinion, points.at[number]),
+        gear=placed(at_each_pair(edge.gear, 2), gear),
+        functions=placed(at_each_pair(edge.hats, 4), points.hats[number] + first),
+        values=placed(at_each_pair(edge.values, 4), points.values[number]),
+        area=placed(np.full((pairs, beside), OF_AN_EDGE), points.area[number]),
+    )
+    return gathered_points, ends + beside * np.arange(pairs + 1)
 
 
 def flank_cover(surface: PinionSurface) -> Array:

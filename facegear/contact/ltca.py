@@ -7,17 +7,24 @@ from functools import cached_property
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.contact.basis_functions import Facing
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.flanks import FlankPair
-from facegear.contact.influence import Surface, surface_of
 from facegear.contact.known_contact import KnownContact
 from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try
 from facegear.contact.position import MARGIN, LoadedPosition, contact_at, first_turn, results_of
+from facegear.contact.position_solver import PositionContact, PositionSolver
 from facegear.contact.search import cover_of, facing_points
-from facegear.contact.solver import NEWTON_STEPS, TOLERANCE
-from facegear.contact.strip_of_hats import GAP, KNOWN_WIDTH, START_GAP, START_WIDTH, WIDER, WIDTH, Strip
-from facegear.contact.touching import Cover, Facing, Touching, touching
+from facegear.contact.search_strip import (
+    GAP,
+    KNOWN_WIDTH,
+    START_GAP,
+    START_WIDTH,
+    WIDER,
+    WIDTH,
+    SearchStrip,
+)
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import pinion_angle
 from facegear.geometry.unloaded import PAIRS, unloaded_motion
@@ -130,24 +137,20 @@ class _Searched:
         """
         return KNOWN_MARGIN if row and self.known is not None else MARGIN
 
-    def strip(self, row: int, teeth: Integers) -> Strip:
+    def strip(self, row: int, teeth: Integers) -> SearchStrip:
         """In which contact of the pairs `teeth` (p,) is sought at first."""
         margin, width, near = self.margin(row), WIDTH, np.zeros((0, 0), bool)
         if self.known is not None:
             width, near = KNOWN_WIDTH, self.known.near[row, np.searchsorted(PAIRS, teeth)]
-        return Strip(GAP * MARGIN / margin, width, WIDER, START_GAP / margin, START_WIDTH, near)
+        return SearchStrip(GAP * MARGIN / margin, width, WIDER, START_GAP / margin, START_WIDTH, near)
 
     @cached_property
-    def cover(self) -> Cover:
-        """The hats of the pair."""
-        return cover_of(self.model.flanks, self.options)
-
-    @cached_property
-    def surfaces(self) -> tuple[Surface, Surface]:
-        """Those of pinion and gear."""
+    def solver(self) -> PositionSolver:
+        """The solver of the pair's positions, with memory that serves all of them."""
         model = self.model
-        pinion, gear = model.flanks.pinion.lattice, model.flanks.gear.lattice
-        return surface_of(pinion, model.pinion), surface_of(gear, model.gear)
+        lattices = model.flanks.pinion.lattice, model.flanks.gear.lattice
+        cover = cover_of(model.flanks, self.options)
+        return PositionSolver(cover, lattices, (model.pinion, model.gear), self.options.coupled)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,8 +166,8 @@ class _PairAtPosition:
     def base_radius(self) -> float:
         return self.searched.model.design.pinion_base_radius
 
-    def touching(self, torques: Array, limit: float) -> Touching:
-        searched = self.searched
-        facing, coupled = searched.at(self.row, limit), searched.options.coupled
-        strip, accuracy = searched.strip(self.row, facing.teeth), (NEWTON_STEPS, TOLERANCE)
-        return touching(facing, searched.cover, searched.surfaces, torques, limit, strip, coupled, accuracy)
+    def contact(self, torques: Array, limit: float) -> PositionContact:
+        """Solve for the contact of what a rotation of the pinion by `limit` (rad) would close."""
+        facing = self.searched.at(self.row, limit)
+        strip = self.searched.strip(self.row, facing.teeth)
+        return self.searched.solver.solve(facing, torques, limit, strip)

@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
+from facegear.contact.position_solver import PositionContact
 from facegear.contact.solver import check_solved
-from facegear.contact.touching import Touching
 from facegear.errors import NotConverged
 from facegear.geometry.unloaded import PAIRS
 
@@ -41,8 +41,11 @@ class PairAtPosition(Protocol):
     @property
     def base_radius(self) -> float: ...
 
-    def touching(self, torques: Array, limit: float) -> Touching:
-        """Contact of what a turn of the pinion by `limit` (rad) would close, as `touching` has it."""
+    def contact(self, torques: Array, limit: float) -> PositionContact:
+        """Solve for the contact of what a rotation of the pinion by `limit` (rad) would close.
+
+        `torques` (t,) N m, the largest first.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +129,7 @@ def solve_position(
     return results_of(pair, contact, torques), float(contact.rotation[0])
 
 
-def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> Touching:
+def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> PositionContact:
     """The contact of a position under all torques (N m), the largest first.
 
     It is sought for turns up to `limit` (rad), and farther where it turns farther. Raises NotConverged naming
@@ -138,7 +141,7 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
         return f"position {pair.position:.6f}, torque {torque:g} N m"
 
     for _ in range(ENLARGEMENTS):
-        contact = pair.touching(loads, limit)
+        contact = pair.contact(loads, limit)
         if not contact.candidates:
             limit *= 4.0
             continue
@@ -154,20 +157,22 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
     raise NotConverged("contact", where(max(torques)), tried)
 
 
-def results_of(pair: PairAtPosition, contact: Touching, torques: Sequence[float]) -> list[LoadedPosition]:
-    """What a contact is at a position, in the order of the torques (N m)."""
+def results_of(
+    pair: PairAtPosition, contact: PositionContact, torques: Sequence[float]
+) -> list[LoadedPosition]:
+    """Return the result at each torque (N m), in the order of the torques."""
     order = np.argsort(torques)[::-1]
     results = _results(pair, contact, np.array([float(torques[index]) for index in order]))
     return [results[row] for row in np.argsort(order)]
 
 
-def _results(pair: PairAtPosition, contact: Touching, torques: Array) -> list[LoadedPosition]:
-    """Those of all torques (t,) N m of what was found."""
-    base, hats, teeth = pair.base_radius, contact.hats, contact.teeth
+def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> list[LoadedPosition]:
+    """Return the result at each torque (t,), in N m, in the order of the contact."""
+    base, teeth = pair.base_radius, contact.teeth
     approach, overlap = base * contact.rotation, base * contact.overlap
     average = np.where(overlap <= UNKNOWN_REFERENCE * approach, torques / base / approach, np.nan)
-    local, part = 1.0 / (base**2 * contact.slope), contact.force * hats.lever_arm / torques[:, None]
-    of_pair = hats.pair[:, None] == np.arange(teeth.size)
+    local, part = 1.0 / (base**2 * contact.slope), contact.force * contact.lever_arm / torques[:, None]
+    of_pair = contact.pair[:, None] == np.arange(teeth.size)
     load_share = np.zeros((torques.size, len(PAIRS)))
     load_share[:, np.searchsorted(PAIRS, teeth)] = part @ of_pair
     spots = _spots(contact)
@@ -176,7 +181,7 @@ def _results(pair: PairAtPosition, contact: Touching, torques: Array) -> list[Lo
         pair.unloaded + approach,
         average,
         local,
-        part @ hats.fillet,
+        part @ contact.fillet,
         contact.residual,
         contact.steps,
     )
@@ -202,12 +207,12 @@ def _results(pair: PairAtPosition, contact: Touching, torques: Array) -> list[Lo
     ]
 
 
-def _spots(contact: Touching) -> list[tuple[Spot, ...]]:
+def _spots(contact: PositionContact) -> list[tuple[Spot, ...]]:
     """Of each torque, tooth by tooth."""
-    hats, (torques, pairs) = contact.hats, contact.on_pinion.shape[:2]
+    torques, pairs = contact.on_pinion.shape[:2]
     row, on = np.nonzero(contact.force > 0.0)
-    node, force, fillet = hats.node[on], contact.force[row, on], hats.fillet[on]
-    begun = np.searchsorted(row * pairs + hats.pair[on], np.arange(torques * pairs + 1)).tolist()
+    node, force, fillet = contact.node[on], contact.force[row, on], contact.fillet[on]
+    begun = np.searchsorted(row * pairs + contact.pair[on], np.arange(torques * pairs + 1)).tolist()
     tooth, spots = contact.teeth.tolist(), [list[Spot]() for _ in range(torques)]
     for number, (first, last) in enumerate(pairwise(begun)):
         torque, pair = divmod(number, pairs)

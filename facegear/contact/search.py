@@ -7,13 +7,12 @@ from itertools import chain, pairwise
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.averages import HatPoints
+from facegear.contact.basis_functions import Cover, Facing, FacingPoints
 from facegear.contact.bodies.surface import edge_hats
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import FlankPair
 from facegear.contact.loads import EdgePoints, edge_cover, flank_cover, gathered
 from facegear.contact.options import ContactOptions
-from facegear.contact.touching import Cover, Facing
 from facegear.geometry.opposite import located, tip_edge_feet
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.separation import separation, separation_each
@@ -54,8 +53,8 @@ def find_candidates(
     placement: angles phi1, phi2 (rad) of the unloaded gears. Pairs without any are left out.
     """
     cover, lattices = cover_of(pair, options), (pair.pinion.lattice, pair.gear.lattice)
-    points, starts, _ = facing_points(pair, [placement], [teeth], limit, options)[0]
-    parts = [points.part(slice(*ends)) for ends in pairwise(starts.tolist())]
+    facing = facing_points(pair, [placement], [teeth], limit, options)[0]
+    parts = [facing.points.part(slice(*ends)) for ends in pairwise(facing.starts.tolist())]
     return list(
         chain(
             *(
@@ -100,7 +99,7 @@ def facing_points(
 
 def _facing(
     pair: FlankPair, placements: Placements, depth: float, options: ContactOptions
-) -> tuple[HatPoints, Integers]:
+) -> tuple[FacingPoints, Integers]:
     """Points of all pairs of teeth, and where those of each begin (p + 1,)."""
     design, gear = pair.design, pair.gear
     points, flank_count = pair.pinion.facing, len(pair.pinion.area)

@@ -10,13 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from facegear._kernels import contact as kernels
 from facegear.arrays import Array, Mask
-from facegear.contact.active_set import exchanges, solved
-from facegear.contact.bonded import violation
 from facegear.errors import NotConverged
 
 NEWTON_STEPS = 40
+"""Steps after which Newton's method gives way to the exchange of single points; it takes some three."""
 TOLERANCE = 1e-11
+"""Penetration that counts as rounding, over the displacement by the rotation and the widest gap closed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,19 +70,18 @@ def solve_contact(
         raise ValueError(f"torque = {torque}: must be positive")
     if not (lever_arm > 0.0).any():
         raise NotConverged("contact", where, "no candidate point can carry the torque")
-    problem = (*map(np.ascontiguousarray, (compliance, gap, lever_arm)), float(torque))
-    begin = np.zeros(gap.size, bool) if start is None else start
-    steps, force, rotation, slope, residual, _ = solved(*problem, begin, (NEWTON_STEPS, TOLERANCE))
-    check_solved(steps, residual, gap.size, where)
-    return ContactSolution(
-        torque=torque, force=force, rotation=rotation, slope=slope, residual=residual, steps=steps
-    )
+    problem = (np.ascontiguousarray(each, float) for each in (compliance, gap, lever_arm))
+    begin = np.zeros(gap.size, bool) if start is None else np.ascontiguousarray(start)
+    found = kernels.solve_active_set(*problem, torque, begin, NEWTON_STEPS, TOLERANCE)
+    check_solved(found["steps"], found["residual"], gap.size, where)
+    del found["force_change"]
+    return ContactSolution(torque=torque, **found)
 
 
 def check_solved(steps: int, residual: float, points: int, where: str) -> None:
     """Raise NotConverged naming `where` if no solution among so many points was found."""
     if not steps:
-        tried = f"{NEWTON_STEPS} Newton and {exchanges(points)} exchange steps"
+        tried = f"{NEWTON_STEPS} Newton and {kernels.exchange_steps(points)} exchange steps"
         raise NotConverged("contact", where, tried)
     if not residual < TOLERANCE * 10:
         raise NotConverged("contact", where, f"KKT residual {residual:.1e} after {steps} steps")
@@ -96,5 +96,14 @@ def kkt_residual(
     rotation: float,
 ) -> float:
     """Largest relative violation of balance, no tension, no penetration and complementarity."""
-    given = (np.ascontiguousarray(part) for part in (compliance, gap, lever_arm))
-    return violation(*given, float(torque), np.ascontiguousarray(force), float(rotation))
+    distance = gap + compliance @ force - rotation * lever_arm
+    touching = force != 0.0
+    scale = np.abs(rotation * lever_arm).max() + np.abs(gap[touching]).max(initial=0.0)
+    return float(
+        max(
+            abs(lever_arm @ force - torque) / torque,
+            -force.min() / force.max(),
+            -distance.min() / scale,
+            np.abs(distance[touching]).max(initial=0.0) / scale,
+        )
+    )

@@ -8,8 +8,8 @@ from collections import defaultdict
 from collections.abc import Generator, Mapping, Sequence
 from typing import TypeAlias, TypeVar
 
-from facegear.dynamics.many import run_stretches
 from facegear.dynamics.integrator.integrator import RunResult
+from facegear.dynamics.many import run_stretches
 from facegear.dynamics.stretch import Stretch
 from facegear.errors import NotConverged
 

@@ -11,6 +11,7 @@ from facegear.errors import NotConverged
 from facegear.gear_body.elements import V
 from facegear.gear_body.factor import Solve, solver
 from facegear.gear_body.matrices import BodyMatrices, around, rigid_motions
+from facegear.number_format import count_noun
 
 FIRST_TRY = 6
 """Modes of an order that are looked for at first."""
@@ -129,7 +130,7 @@ def _smallest(
         squared, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-11)
     except ArpackNoConvergence as error:
         raise NotConverged(
-            "gear body", f"order {order}", f"{len(error.eigenvalues)} of {count} modes"
+            "gear body", f"order {order}", f"{len(error.eigenvalues)} of {count_noun(count, 'mode')}"
         ) from None
     ascending = np.argsort(squared)
     return squared[ascending], vectors[:, ascending]

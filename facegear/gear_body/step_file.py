@@ -8,6 +8,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.errors import extras_named
 from facegear.io.gmsh_session import gmsh_session
+from facegear.number_format import count_noun
 
 with extras_named():
     import gmsh
@@ -94,7 +95,7 @@ def _cut(solid: int) -> Array:
         occ.rotate([(2, plane)], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, angle)
         pieces, _ = occ.intersect([(2, plane)], [(3, solid)], removeTool=False)
         if len(pieces) != 1:
-            raise StepFault(f"a half plane through its z axis cuts it in {len(pieces)} pieces")
+            raise StepFault(f"a half plane through its z axis cuts it in {count_noun(len(pieces), 'piece')}")
         faces.append(pieces[0][1])
     occ.synchronize()
     _require_revolution(solid, faces)

@@ -1,6 +1,6 @@
-"""The face gear's surfaces in closed form, for single numbers as for arrays.
+"""Compute the face gear's surfaces in closed form, for single numbers as for arrays.
 
-Plain functions of numbers: `face_gear` takes them as they are on arrays, `rays` compiles them for rays.
+The kernels of rays hold the same formulas in C++: `facegear/_kernels/src/flanks/closed_forms.hpp`.
 Symbols as in `face_gear`; base is the shaper's base radius (m), ratio its tooth number over the gear's, space
 its half space angle (rad), lift the distance (m) of the axes' planes. Right side of tooth 0, m and rad.
 """
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 Numbers = Any
-"""A single number, or an array of them; floats where a function is compiled."""
+"""A single number, or an array of them."""
 
 
 def flank_frame(
@@ -18,13 +18,7 @@ def flank_frame(
 ) -> tuple[Numbers, ...]:
     """Point x, y, z of the flank, and its derivatives with respect to roll and to psi."""
     turn = ratio * (psi - roll - space)
-    return turned_flank_frame(base, ratio, lift, roll, np.cos(turn), np.sin(turn), np.cos(psi), np.sin(psi))
-
-
-def turned_flank_frame(
-    base: float, ratio: float, lift: float, roll: Numbers, ct: Numbers, st: Numbers, cp: Numbers, sp: Numbers
-) -> tuple[Numbers, ...]:
-    """`flank_frame` by cosine and sine of the gear's turn, ratio (psi - roll - space), and of psi."""
+    ct, st, cp, sp = np.cos(turn), np.sin(turn), np.cos(psi), np.sin(psi)
     p, q = base * (sp - roll * cp), base / (ratio * cp)
     p_psi, q_psi = base * (cp + roll * sp), q * sp / cp
     x, y, z = p * ct - q * st, p * st + q * ct, lift - p_psi
@@ -64,16 +58,6 @@ def fillet_frame(
     return x, y, z, x_psi, y_psi, z_psi, x_q, y_q, z_q
 
 
-def fillet_height(
-    centre: float, rounding: float, ratio: float, lift: float, psi: Numbers, q: Numbers
-) -> Numbers:
-    """z of `fillet_frame` alone."""
-    cp, sp = np.cos(psi), np.sin(psi)
-    k = ratio * q / centre
-    w = np.sqrt(1 - k * k * cp * cp)
-    return lift - centre * (k * cp * cp + sp * w) - rounding * sp
-
-
 def radius_at_roll(
     base: float, ratio: float, radius: Numbers, roll: Numbers, psi: Numbers
 ) -> tuple[Numbers, Numbers]:
@@ -96,8 +80,3 @@ def radius_at_height(
 def roll_at_height(height: Numbers, psi: Numbers) -> Numbers:
     """Roll angle where the flank has a height, taken as in `radius_at_height`."""
     return (height - np.cos(psi)) / np.sin(psi)
-
-
-def first_psi(base: float, ratio: float, radius: Numbers) -> Numbers:
-    """psi where the contact path's pressure angle belongs to a gear radius: a start for Newton's method."""
-    return np.arccos(base / (ratio * radius))

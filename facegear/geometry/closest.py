@@ -4,19 +4,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.arrays import Array, Integers, Mask
+from facegear.arrays import Array, Mask
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.curvature import relative_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.flank_gaps import FlankGaps
-from facegear.machine_code.compiler import compiler
-
-compiled = compiler()
 
 PAIRS = np.arange(-2, 3)
 """Tooth numbers looked at: at phi1 within half a pitch of zero no other pair can touch."""
 
-_GRID = np.linspace(-1.0, 1.0, 5)
+_ACROSS, _ALONG = (part.ravel() for part in np.meshgrid(*2 * [np.linspace(-1.0, 1.0, 5)], indexing="ij"))
+"""Places (25,) of a grid's points in half widths, across the roll and along y."""
+_ON_BORDER = np.stack([np.abs(_ACROSS) == 1.0, np.abs(_ALONG) == 1.0], axis=-1)
+"""Which of the points (25, 2) are on the border, both ways."""
 _SHRINK, _GROWTH, _MAX_STEPS = 0.55, 1.5, 60
 _GAIN = 1e-13
 """By how much (m) a gap must be less to count as such."""
@@ -122,59 +122,21 @@ def _walked(pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int) -
     gap, roll, y = np.full(len(roll), np.inf), roll.copy(), y.copy()
     lean, active = _contact_line(pairs.design, roll, y), np.arange(len(roll))
     for _ in range(_MAX_STEPS):
-        rolls, ys = _grids(active, roll, y, lean, width, low, high)
-        gaps = pairs.only(active).at(rolls, ys)
-        active = _walk_on(gaps, rolls, ys, active, gap, roll, y, width, size * _SHRINK**levels)
+        across, along = (part * width[active, axis, None] for axis, part in enumerate((_ACROSS, _ALONG)))
+        rolls = np.clip(roll[active, None] + across + lean[active, None] * along, low[0], high[0])
+        ys = np.clip(y[active, None] + along, low[1], high[1])
+        gaps, rows = pairs.only(active).at(rolls, ys), np.arange(len(active))
+        best = np.argmin(gaps, axis=1)
+        new = gaps[rows, best]
+        # a width grows where a lesser gap lies on the grid's border
+        gains = (new < gap[active] - _GAIN) & (new < np.inf)
+        border = gains[:, None] & _ON_BORDER[best]
+        gap[active], roll[active], y[active] = new, rolls[rows, best], ys[rows, best]
+        width[active] *= np.where(border, _GROWTH, _SHRINK)
+        active = active[(width[active] > size * _SHRINK**levels).any(axis=1)]
         if len(active) == 0:
             break
     return gap, roll, y
-
-
-@compiled
-def _grids(
-    active: Integers, roll: Array, y: Array, lean: Array, width: Array, low: Array, high: Array
-) -> tuple[Array, Array]:
-    """Roll and y of the `active` grids (n, 25), half as wide as `width` (m, 2), between `low` and `high`."""
-    rolls, ys = np.empty((2, active.size, _GRID.size**2))
-    for number in range(active.size):
-        row = active[number]
-        for i in range(_GRID.size):
-            for j in range(_GRID.size):
-                across, along = _GRID[i] * width[row, 0], _GRID[j] * width[row, 1]
-                at = i * _GRID.size + j
-                rolls[number, at] = min(max(roll[row] + across + lean[row] * along, low[0]), high[0])
-                ys[number, at] = min(max(y[row] + along, low[1]), high[1])
-    return rolls, ys
-
-
-@compiled
-def _walk_on(
-    gaps: Array,
-    rolls: Array,
-    ys: Array,
-    active: Integers,
-    gap: Array,
-    roll: Array,
-    y: Array,
-    width: Array,
-    ends: Array,
-) -> Integers:
-    """Move gap, roll and y (m,) of the active ones to the least of the gaps (n, 25) on their grids.
-
-    A width (m, 2) grows where a lesser gap lies on the grid's border, else it shrinks. Returns those that are
-    wider than one of the `ends` (2,).
-    """
-    going = np.empty(active.size, np.bool_)
-    for number in range(active.size):
-        row, best = active[number], np.argmin(gaps[number])
-        new = gaps[number, best]
-        gained = new < gap[row] - _GAIN and new < np.inf
-        gap[row], roll[row], y[row] = new, rolls[number, best], ys[number, best]
-        for axis, at in ((0, best // _GRID.size), (1, best % _GRID.size)):
-            border = gained and (at == 0 or at == _GRID.size - 1)
-            width[row, axis] *= _GROWTH if border else _SHRINK
-        going[number] = width[row, 0] > ends[0] or width[row, 1] > ends[1]
-    return active[going]
 
 
 def _smooth_minimum(pairs: FlankGaps, roll: Array, y: Array) -> tuple[Array, Array, Array, Mask]:

@@ -1,19 +1,15 @@
 """Gaps between pinion flanks and the gear at many placements, asked for again and again by a search."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Self
 
 import numpy as np
 
 from facegear.arrays import AnyArray, Array
-from facegear.geometry import pinion_surface
 from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion import FlankNumbers, flank_numbers
-from facegear.geometry.pinion_surface import added, involute_point
+from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.placement import RigidMotion, to_left_flank
 from facegear.geometry.separation import GearSide
-from facegear.machine_code.compiler import compiler
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,27 +34,7 @@ class FlankGaps:
 
         As `facegear.geometry.separation` has it, no farther than a module. Raises what that raises.
         """
-        extra, count = added(self.design, roll.ravel(), y.ravel()), roll.shape[-1]
-        numbers, shift = flank_numbers(self.design), np.ascontiguousarray(self.motion.shift)
-        places = roll.reshape(-1, count), y.reshape(-1, count)
-        starts, ways = flank_rays(numbers, self.motion.matrix, shift, *places, extra)
-        return np.asarray(self.gear.cut(starts, ways, self.design.module)[0].reshape(-1, count))
-
-
-@compiler(Path(pinion_surface.__file__), *pinion_surface.SOURCES)
-def flank_rays(
-    flank: FlankNumbers, matrix: Array, shift: Array, roll: Array, y: Array, extra: Array
-) -> tuple[Array, Array]:
-    """Points and directions (p n, 3) at roll and y, (p, n) or (1, n), in p motions, with what is `added`."""
-    shared, count = roll.shape[0] == 1, roll.shape[1]
-    starts, ways = np.empty((shift.shape[0] * count, 3)), np.empty((shift.shape[0] * count, 3))
-    for p in range(shift.shape[0]):
-        for k in range(count):
-            row, ray = 0 if shared else p, p * count + k
-            beyond = extra[row * count + k] if extra.size else 0.0
-            x, z, nx, nz = involute_point(flank, roll[row, k], y[row, k], beyond)
-            for i in range(3):
-                turned = matrix[p, i, 0] * x + matrix[p, i, 1] * y[row, k] + matrix[p, i, 2] * z
-                starts[ray, i] = shift[p, i] + turned
-                ways[ray, i] = matrix[p, i, 0] * nx + matrix[p, i, 2] * nz
-    return starts, ways
+        points = flank_points(self.design, roll, y)
+        starts, ways = self.motion.points(points.position), self.motion.directions(points.normal)
+        gap = self.gear.cut(starts.reshape(-1, 3), ways.reshape(-1, 3), self.design.module)[0]
+        return np.asarray(gap.reshape(starts.shape[:-1]))

@@ -1,24 +1,17 @@
 """What of the gear's tooth stands opposite points of the pinion, and the reverse for the gear's tip edge."""
 
 from dataclasses import dataclass
-from pathlib import Path
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
-from facegear.arrays import Array, Integers
-from facegear.geometry import closed_forms, face_gear, pinion, ray_surfaces
+from facegear.arrays import Array
+from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import fillet_points
 from facegear.geometry.placement import to_pinion_section
-from facegear.geometry.ray_surfaces import psi_at
 from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
-from facegear.machine_code import picked
-from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import integers, numbers
-
-SOURCES = Path(ray_surfaces.__file__), Path(closed_forms.__file__), *picked.SOURCES
-compiled, inlined = compiler(*SOURCES), for_callers()
 
 FILLET_SAMPLES = 2000
 
@@ -64,6 +57,11 @@ class FilletCurve:
     normals: Array
     gamma: Array
 
+    @cached_property
+    def tree(self) -> cKDTree:
+        """The points for searches of the nearest."""
+        return cKDTree(self.points)
+
 
 def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
     """Many points of the pinion's fillet between two angles gamma (rad)."""
@@ -75,54 +73,15 @@ def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
 
 def located(design: PairDesign, seen: Separation) -> GearHits:
     """Where on the gear's tooth a separation ends."""
-    edge, shape = face_gear.tip_edge_by_radius(design), seen.gap.shape
-    cubics = edge.roll.x, np.ascontiguousarray(edge.roll.c), np.ascontiguousarray(edge.angle.c)
-    base, ratio, _, _ = face_gear.shaper_numbers(design)
-    hit = seen.part.ravel(), seen.u.ravel(), seen.radius.ravel()
-    flank, fillet, beyond = (
-        part.reshape(shape) for part in by_tip_edge(*hit, base, ratio, design.shaper_tip_roll, *cubics)
-    )
+    edge, last_roll = face_gear.tip_edge_by_radius(design), design.shaper_tip_roll
+    flank, fillet, beyond = np.full((3, *seen.gap.shape), np.nan)
+    on_flank, in_fillet, on_land = (seen.part == part for part in (FLANK, FILLET, TIP_LAND))
+    tip = edge.roll(seen.radius[on_flank])
+    flank[on_flank] = (seen.u[on_flank] - tip) / (last_roll - tip)
+    fillet[in_fillet] = face_gear.fillet_fraction(design, seen.radius[in_fillet], seen.u[in_fillet])
+    radius = seen.radius[on_land]
+    beyond[on_land] = radius * (edge.angle(radius) - seen.u[on_land])
     return GearHits(gap=seen.gap, radius=seen.radius, flank=flank, fillet=fillet, beyond=beyond)
-
-
-@compiled
-def by_tip_edge(
-    part: NDArray[np.int8],
-    u: Array,
-    radius: Array,
-    base: float,
-    ratio: float,
-    last_roll: float,
-    radii: Array,
-    rolls: Array,
-    angles: Array,
-) -> tuple[Array, Array, Array]:
-    """`flank`, `fillet` and `beyond` (n,) of `GearHits` by what is hit and where on it, (n,) of `Separation`.
-
-    base, ratio: of the shaper; last_roll (rad): where the flank ends at the fillet. Cubics (4, r) of the tip
-    edge's roll and gear angle (rad) begin at gear radii (r + 1,) m, evenly spaced.
-    """
-    flank, fillet, beyond = numbers(part.size, np.nan), numbers(part.size, np.nan), numbers(part.size, np.nan)
-    for i in range(part.size):
-        if part[i] == FLANK:
-            tip = _cubic(radii, rolls, radius[i])
-            flank[i] = (u[i] - tip) / (last_roll - tip)
-        elif part[i] == FILLET:
-            start = psi_at(base, ratio, radius[i], last_roll)
-            fillet[i] = (u[i] - start) / (0.5 * np.pi - start)
-        elif part[i] == TIP_LAND:
-            beyond[i] = radius[i] * (_cubic(radii, angles, radius[i]) - u[i])
-    return flank, fillet, beyond
-
-
-@inlined
-def _cubic(begin: Array, cubics: Array, at: float) -> float:
-    last = cubics.shape[1] - 1
-    number = int(min(max((at - begin[0]) / (begin[1] - begin[0]), 0.0), last))
-    x = at - begin[number]
-    return float(
-        ((cubics[0, number] * x + cubics[1, number]) * x + cubics[2, number]) * x + cubics[3, number]
-    )
 
 
 def tip_edge_feet(
@@ -180,7 +139,7 @@ def _fillet_feet(
     low, high = curve.min(axis=0) - search_radius, curve.max(axis=0) + search_radius
     close = np.flatnonzero(((section[:, :2] > low) & (section[:, :2] < high)).all(axis=1))
     here = section[close]
-    nearest = nearest_of(np.ascontiguousarray(here), curve)
+    nearest = fillet.tree.query(here[:, :2])[1]
     apart = np.sum((here[:, :2] - curve[nearest]) * normal[nearest], axis=1)
     apart += pinion.removed(design, pinion.junction_roll(design), here[:, 2])
     on = (nearest > 0) & (nearest < len(curve) - 1) & (np.abs(apart) < search_radius)
@@ -188,17 +147,3 @@ def _fillet_feet(
     gap[close], gamma[close] = apart[on], fillet.gamma[nearest]
     lever_arm[close] = curve[nearest, 1] * normal[nearest, 0] - curve[nearest, 0] * normal[nearest, 1]
     return gap, gamma, lever_arm
-
-
-@compiled
-def nearest_of(points: Array, curve: Array) -> Integers:
-    """The point (n,) of a curve (m, 2) nearest to each of points (n, 3) in their first two coordinates."""
-    nearest = integers(points.shape[0], 0)
-    for i in range(points.shape[0]):
-        min_square = np.inf
-        for j in range(curve.shape[0]):
-            x, y = points[i, 0] - curve[j, 0], points[i, 1] - curve[j, 1]
-            square = x * x + y * y
-            if square < min_square:
-                min_square, nearest[i] = square, j
-    return nearest

@@ -7,7 +7,6 @@ envelope of the rack's tip circle, whose normals pass through the pitch point.
 """
 
 from math import cos, pi, sin, tan
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array
 from facegear.geometry.design import PairDesign
 from facegear.geometry.deviations import deviation
-from facegear.geometry.reliefs import Numbers, ReliefNumbers, linear, parabola
+from facegear.geometry.reliefs import linear, parabola
 
 
 def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
@@ -98,7 +97,7 @@ def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
     reliefs = (part.tip_relief, linear), (part.root_relief, linear), (part.lead_crowning, parabola)
     roll, y = np.asarray(roll, float), np.asarray(y, float)
     taken = np.zeros(np.broadcast_shapes(roll.shape, y.shape))
-    for (relief, shape), distance in zip(reliefs, distances(flank_numbers(design), roll, y), strict=True):
+    for (relief, shape), distance in zip(reliefs, distances(design, roll, y), strict=True):
         if relief.amount != 0.0:
             taken += shape(relief, distance)
     if part.flanks.right is None:
@@ -106,43 +105,15 @@ def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
     return taken - deviation(part.flanks.right, *deviation_place(design, roll, y))
 
 
-class FlankNumbers(NamedTuple):
-    """The right flank as kernels take it: base radius (m), half the angle (rad) of the tooth there, roll
-    (rad) where the involute ends at the tip and at the fillet, `middle` (m) of the face, and modifications.
+def distances(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Distances (m) of roll angles (rad) and axial positions y (m) from where tip relief, root relief and
+    lead crowning are measured.
     """
-
-    base: float
-    angle: float
-    tip_roll: float
-    fillet_roll: float
-    middle: float
-    tip_relief: ReliefNumbers
-    root_relief: ReliefNumbers
-    lead_crowning: ReliefNumbers
-
-
-def flank_numbers(design: PairDesign) -> FlankNumbers:
-    """Those of a design."""
-    part = design.pinion
-    reliefs = (part.tip_relief, part.root_relief, part.lead_crowning)
-    return FlankNumbers(
-        design.pinion_base_radius,
-        design.pinion_half_base_angle,
-        design.pinion_tip_roll,
-        junction_roll(design),
-        design.mean_radius,
-        *map(ReliefNumbers.of_relief, reliefs),
-    )
-
-
-def distances(flank: FlankNumbers, roll: Numbers, y: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """How far (m) roll angles (rad) and axial positions y (m) are from where tip relief, root relief and lead
-    crowning are measured; for arrays, and compiled for single numbers.
-    """
+    base = design.pinion_base_radius
     return (
-        flank.base * (flank.tip_roll - roll),
-        flank.base * (roll - flank.fillet_roll),
-        abs(y - flank.middle),
+        base * (design.pinion_tip_roll - roll),
+        base * (roll - junction_roll(design)),
+        abs(y - design.mean_radius),
     )
 
 

@@ -1,4 +1,4 @@
-"""The face gear's numbers and a sample of its flank, as the compiled rays take them."""
+"""The face gear's numbers and a sample of its flank, as the kernel of rays takes them."""
 
 from functools import lru_cache
 from math import pi
@@ -16,7 +16,7 @@ SAMPLES = 25
 
 
 class Blank(NamedTuple):
-    """The gear's numbers as the kernels take them."""
+    """Numbers of the gear as the kernel of rays takes them (`facegear/_kernels/src/flanks/blank.hpp`)."""
 
     base: float
     ratio: float

@@ -1,33 +1,12 @@
-"""How much a modification takes off by the distance from where it is measured.
-
-`linear` and `parabola` are for arrays, and compiled for single numbers, by `ReliefNumbers`.
-"""
-
-from typing import Any, NamedTuple, Self
+"""How much a modification takes off by the distance from where it is measured."""
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.geometry.design import Relief
 
-Numbers = Any
-"""A single number, or an array of them; floats where a function is compiled."""
 
-
-class ReliefNumbers(NamedTuple):
-    """A `Relief` as kernels take it."""
-
-    amount: float
-    start: float
-    length: float
-
-    @classmethod
-    def of_relief(cls, relief: Relief) -> Self:
-        """The same numbers."""
-        return cls(relief.amount, relief.start, relief.length)
-
-
-def linear(relief: Relief | ReliefNumbers, from_end: Numbers) -> Numbers:
+def linear(relief: Relief, from_end: Array) -> Array:
     """Of a tip, root or end relief: removed (m) at distances from the end (m)."""
     if relief.amount == 0:
         return 0.0 * from_end
@@ -35,7 +14,7 @@ def linear(relief: Relief | ReliefNumbers, from_end: Numbers) -> Numbers:
     return relief.amount * np.minimum(np.maximum(part, 0.0), 1.0)
 
 
-def parabola(relief: Relief | ReliefNumbers, from_middle: Numbers) -> Numbers:
+def parabola(relief: Relief, from_middle: Array) -> Array:
     """Of a crowning: removed (m) at distances from the middle (m)."""
     if relief.amount == 0:
         return 0.0 * from_middle

@@ -13,6 +13,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from facegear._kernels import flanks
 from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.errors import NotConverged
 from facegear.geometry.design import PairDesign
@@ -21,9 +22,6 @@ from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import RigidMotion, to_left_flank
 from facegear.geometry.ray_blank import Blank, FlankSample, gear_rays
 from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
-from facegear.machine_code import picked
-from facegear.machine_code.compiler import compiler
-from facegear.machine_code.picked import empty_table
 
 PARTS = ("none", "flank", "fillet", "tip land", "root land")
 """Names of the parts NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND."""
@@ -123,26 +121,9 @@ def _rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Arr
 
 
 def _rays(motion: RigidMotion, points: SurfacePoints, at: Integers, number: Integers) -> tuple[Array, Array]:
-    shift = np.ascontiguousarray(motion.shift)
-    return placed_rays(motion.matrix, shift, at, number, points.position, points.normal)
-
-
-@compiler(*picked.SOURCES)
-def placed_rays(
-    matrix: Array, shift: Array, at: Integers, number: Integers, position: Array, normal: Array
-) -> tuple[Array, Array]:
-    """Those of points and directions (m, 3) that `number` (n,) says, (n, 3), each by the motion `at` (n,): of
-    matrices (p, 3, 3) and shifts (p, 3).
-    """
-    starts, ways = empty_table(at.size, 3), empty_table(at.size, 3)
-    for row in range(at.size):
-        placed, point = at[row], number[row]
-        for i in range(3):
-            start, way = shift[placed, i], 0.0
-            for j in range(3):
-                start += matrix[placed, i, j] * position[point, j]
-                way += matrix[placed, i, j] * normal[point, j]
-            starts[row, i], ways[row, i] = start, way
+    """Rays (n, 3) from those of `points` (m, 3) that `number` (n,) says, each in motion `at` (n,)."""
+    starts, ways = np.empty((2, at.size, 3))
+    flanks.place(motion.matrix, motion.shift, at, number, points.position, points.normal, starts, ways)
     return starts, ways
 
 
@@ -165,7 +146,7 @@ class GearSide:
 
         Raises NotConverged where a ray close to the flank cannot be cut with it.
         """
-        hit, lost = cut(self.blank, starts, ways, search_radius, *self.sample)
+        hit, lost = cut(self.blank, self.sample, starts, ways, search_radius)
         if lost:
             where = f"{lost} rays at the gear"
             raise NotConverged("separation", where, "Newton from two starts, 16 steps each")

@@ -14,6 +14,7 @@ from facegear.arrays import Array
 from facegear.errors import NotConverged, extras_named
 from facegear.io.atomic import atomic_path
 from facegear.io.gmsh_session import gmsh_session
+from facegear.number_format import count_noun
 
 with extras_named():
     import gmsh
@@ -56,13 +57,14 @@ def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
         volume = abs(gmsh.model.occ.getMass(3, solid)) * 1e-9
         sides = [len(gmsh.model.getAdjacencies(1, edge)[0]) for _, edge in gmsh.model.getEntities(1)]
         if set(sides) != {2}:
-            raise NotConverged("STEP", name, f"{len(patches)} patches do not close")
+            failure = f"{count_noun(len(patches), 'patch does', 'patches do')} not close"
+            raise NotConverged("STEP", name, failure)
         with atomic_path(path) as temporary:
             with _silent():
                 gmsh.write(str(temporary))
             named, count = _with_product(temporary.read_text(encoding="ascii"), name)
             if count != 1:
-                raise NotConverged("STEP", name, f"{count} products in place of one solid")
+                raise NotConverged("STEP", name, f"{count_noun(count, 'product')} in place of one solid")
             temporary.write_text(named, encoding="ascii")
         return volume
 

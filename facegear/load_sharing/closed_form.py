@@ -5,8 +5,7 @@ flanks, and the face gears sit on rigid bearings, or one of them floats.
 
 References
 ----------
-A. Singh, "Load sharing behavior in epicyclic gears: physical explanation and generalized formulation",
-Mechanism and Machine Theory 45 (2010); docs/theory.md for the loop through inputs and idlers.
+Singh 2010 and Ligata et al. 2009 for idlers; docs/theory.md for the loop through inputs and idlers.
 """
 
 from dataclasses import dataclass
@@ -89,7 +88,7 @@ class SplitMachine:
         return 1.0 + 2.0 * self.mesh_stiffness / input_bearing
 
 
-def path_forces(total: float, stiffness: float, errors: Array, floating: bool) -> Array:
+def path_forces(total: float, stiffness: float, errors: Array, freedom: float) -> Array:
     """Forces of equal paths that share a load, all of them closed.
 
     Parameters
@@ -98,19 +97,115 @@ def path_forces(total: float, stiffness: float, errors: Array, floating: bool) -
         Sum W of all forces, N.
     stiffness : float
         Stiffness k_e of each path, N/m.
-    errors : (paths,) array
+    errors : (..., paths) array
         How late each path is along the line of action, m; the paths stand evenly around the gear.
+    freedom : float
+        `plane_freedom`: 1 where one of the two central members moves freely in its plane, 0 where both are
+        held.
+
+    Returns
+    -------
+    (..., paths) array
+        Force of each path, N.
+    """
+    late = np.asarray(errors, dtype=float)
+    count = late.shape[-1]
+    angles = 2.0 * np.pi * np.arange(count) / count
+    once = freedom * _sideways(count) * np.cos(angles[:, None] - angles)
+    coupling = count * np.eye(count) - 1.0 - once
+    return np.asarray(total / count - stiffness / count * (late @ coupling))
+
+
+def plane_freedom(
+    paths: int, stiffness: float, bearings: tuple[float, float], pressure_angle: float
+) -> float:
+    """Part of a one-sided lateness of the paths that the central members' motion in their planes takes up.
+
+    Late paths on one side push the two members apart sideways, against both of their bearings in series.
+
+    Parameters
+    ----------
+    paths : int
+        Number of equal paths.
+    stiffness : float
+        Stiffness k_e of each path, N/m.
+    bearings : (2,) tuple of float
+        Radial stiffness of the bearing of each central member, N/m.
+    pressure_angle : float
+        Pressure angle, rad.
+
+    Returns
+    -------
+    float
+        Dimensionless: 1 where one member floats freely, 0 where both are held.
+    """
+    sideways = paths / _sideways(paths) * stiffness * np.cos(pressure_angle) ** 2
+    compliance = sum(sideways / bearing if bearing > 0.0 else np.inf for bearing in bearings)
+    return float(1.0 if np.isinf(compliance) else compliance / (1.0 + compliance))
+
+
+def _sideways(paths: int) -> int:
+    """Directions in which paths push a member sideways: two, but one where two paths oppose each other."""
+    return min(paths - 1, 2)
+
+
+def parting_number(paths: int, floating: bool) -> float:
+    """Number X_e = k_e e / W at which a path that alone is late by e loses contact.
+
+    Parameters
+    ----------
+    paths : int
+        Number of equal paths.
     floating : bool
         Whether one of the two central members moves freely in its plane.
 
     Returns
     -------
-    (paths,) array
-        Force of each path, N.
+    float
+        Dimensionless; infinite where a floating member lets up to three paths share evenly.
     """
-    count = len(errors)
-    angles = 2.0 * np.pi * np.arange(count) / count
-    coupling = count * np.eye(count) - 1.0
-    if floating:
-        coupling -= 2.0 * np.cos(angles[:, None] - angles)
-    return total / count - stiffness / count * (coupling @ np.asarray(errors, dtype=float))
+    free = paths - (3 if floating else 1)
+    return 1.0 / free if free > 0 else float("inf")
+
+
+def share_deviation(paths: int, number: float, freedom: float) -> float:
+    """Standard deviation of paths times the force of a path over W, of independent errors; dimensionless.
+
+    Parameters
+    ----------
+    paths : int
+        Number of equal paths.
+    number : float
+        X = k_e times the standard deviation of the errors over W, dimensionless.
+    freedom : float
+        `plane_freedom`, dimensionless.
+
+    Returns
+    -------
+    float
+        X sqrt(N (N - 3)) where a member floats, X sqrt(N (N - 1)) where both are held, while all paths carry.
+    """
+    left = paths - 1.0 - _sideways(paths) * (1.0 - (1.0 - freedom) ** 2)
+    return float(number * np.sqrt(paths * left))
+
+
+def k_gamma_samples(number: Array | float, draws: Array, freedom: float) -> Array:
+    """Load factor of the hardest loaded path for drawn errors, dimensionless.
+
+    Parameters
+    ----------
+    number : (...,) array or float
+        X = k_e times the standard deviation of the errors over W, dimensionless.
+    draws : (samples, paths) array
+        Errors over their standard deviation, dimensionless.
+    freedom : float
+        `plane_freedom`, dimensionless.
+
+    Returns
+    -------
+    (..., samples) array
+        1 + c X with c of each sample. It holds while all paths carry.
+    """
+    count = draws.shape[1]
+    uneven = count * path_forces(0.0, 1.0, draws, freedom).max(axis=1)
+    return np.asarray(1.0 + np.multiply.outer(np.asarray(number), uneven))

@@ -164,7 +164,3 @@ LOCAL_ARRAYS: dict[str, tuple[int | None, ...]] = {
     "speed_rad_per_s": (1,),
 }
 """A row for every loaded plane of a contact line, at the nominal speed."""
-LEFT_OUT = (
-    "windage, churning, squeezing of oil, bearings, seals and the rolling traction of the film are left out; "
-    "loss is of first order in friction"
-)

@@ -6,8 +6,13 @@ import numpy as np
 
 from facegear.arrays import Array, Arrays
 
-Held = Any
-"""A NamedTuple of any law, held at K phases."""
+
+class Held(Protocol):
+    """A law of M contacts at K phases: its field `stiffness` (K, M) bounds the slopes, N/m."""
+
+    @property
+    def stiffness(self) -> Array:
+        """Bounds of the slopes (K, M), N/m."""
 
 
 class MeshLaw(Protocol):
@@ -61,8 +66,8 @@ class MeshLaw(Protocol):
         """The law at one phase, whatever the phase."""
 
     def held(self, cycles: Array) -> Held:
-        """The law at K phases for `terms.held_force`, with a field `stiffness` (K, M): bounds of the slopes,
-        N/m.
+        """The law at K phases for statics. Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any
+        other, statics asks the law itself, position by position.
         """
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 from facegear._kernels import motion
 from facegear.arrays import Array, Arrays, Integers
 from facegear.harmonics.series import Harmonics, stacked, stacked_values
-from facegear.mesh_law.law import Held
+from facegear.mesh_law.laws_at_phases import LinearHeld
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,11 +132,9 @@ class LinearLaw:
         fourier[:, 1, 0] = self.stiffness(np.array([cycle]))[0]
         return LinearLaw(fourier, np.arange(self.contacts))
 
-    def held(self, cycles: Array) -> Held:
+    def held(self, cycles: Array) -> LinearHeld:
         """k at some phases."""
-        from facegear.mesh_law.linear_terms import LinearHeld  # compiled; modes do without
-
-        return LinearHeld(np.ascontiguousarray(self.stiffness(cycles)))
+        return LinearHeld(self.stiffness(cycles))
 
     @property
     def numbers(self) -> Arrays:

@@ -3,17 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array, Arrays, Integers
 from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
-from facegear.mesh_law.law import Held
-
-if TYPE_CHECKING:
-    from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
+from facegear.mesh_law.laws_at_phases import LoadDependentHeld
+from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,9 +81,7 @@ class LoadDependentLaw:
         return self._pieces.at(self.kind, cycles, beyond, slopes=True)
 
     @cached_property
-    def _pieces(self) -> "PiecewiseCubics":
-        from facegear.mesh_law.piecewise_cubics import PiecewiseCubics  # compiled
-
+    def _pieces(self) -> PiecewiseCubics:
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
@@ -113,10 +108,8 @@ class LoadDependentLaw:
         tables = zip(self.tables, series, strict=True)
         return LoadDependentLaw(tuple(ForceTable(table.levels, *both) for table, both in tables), kind)
 
-    def held(self, cycles: Array) -> Held:
+    def held(self, cycles: Array) -> LoadDependentHeld:
         """The law at some phases."""
-        from facegear.mesh_law.load_dependent_terms import LoadDependentHeld  # compiled
-
         angle = 2.0 * np.pi * np.outer(cycles, np.arange(self._coefficients.shape[-1]))
         return LoadDependentHeld(
             np.repeat(self.steepest[None], cycles.size, axis=0),

@@ -1,44 +1,14 @@
-"""Compiled: cubics in pieces at many amounts, whose coefficients are periodic series of the phase."""
+"""Cubics in pieces at many amounts, whose coefficients are periodic series of the phase."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
+from facegear._kernels import samples
 from facegear.arrays import Array, Integers
-from facegear.machine_code.compiler import FAST, compiler
 
 KEPT = 2
 """Sets of phases at which the coefficients of the pieces are kept."""
-
-
-@compiler(**FAST)
-def evaluate(
-    levels: Array, kind: Integers, coefficients: Array, beyond: Array, slopes: bool, values: Array
-) -> None:
-    """Write the odd cubics, or else their slopes, of contacts (M,) of some kinds at amounts (M, B, K).
-
-    levels (kinds, L): where the pieces begin, the first at zero; coefficients (kinds, L, K, 4): of the powers
-    of the amount since then. Zero where nothing is pressed in.
-    """
-    count = levels.shape[1]
-    for m in range(beyond.shape[0]):
-        own, piece = kind[m], 0
-        for b in range(beyond.shape[1]):
-            for k in range(beyond.shape[2]):
-                amount = abs(beyond[m, b, k])
-                if not amount > 0.0:
-                    values[m, b, k] = 0.0
-                    continue
-                while piece + 1 < count and levels[own, piece + 1] <= amount:
-                    piece += 1
-                while levels[own, piece] > amount:
-                    piece -= 1
-                ahead, four = amount - levels[own, piece], coefficients[own, piece, k]
-                if slopes:
-                    values[m, b, k] = four[1] + ahead * (2.0 * four[2] + 3.0 * ahead * four[3])
-                    continue
-                force = four[0] + ahead * (four[1] + ahead * (four[2] + ahead * four[3]))
-                values[m, b, k] = force if beyond[m, b, k] > 0.0 else -force
 
 
 class PiecewiseCubics:
@@ -57,7 +27,7 @@ class PiecewiseCubics:
         deepest = np.abs(amounts).max(axis=(1, 2), initial=0.0)
         table = self._at_phases(cycles).down_to(kind.tolist(), deepest.tolist())
         values = np.empty(amounts.shape)
-        evaluate(self.levels, kind, table, amounts, slopes, values)
+        samples.evaluate(self.levels, kind, table, amounts, slopes, values)
         return np.moveaxis(values.reshape(contacts.shape), 0, -1)
 
     def _at_phases(self, cycles: Array) -> "_AtPhases":

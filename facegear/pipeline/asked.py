@@ -24,6 +24,9 @@ LOADING = (
 )
 """Keys of section contact that say how the bodies are loaded, and nothing of how they give way."""
 
+DUTY_POINTS = 12
+"""Torques of a duty cycle that are marked on the load-sharing map: as many as are told apart."""
+
 TILTS = ("tilt", "hub_tilt", "body")
 """Keys of a gear whose teeth lean."""
 
@@ -125,11 +128,6 @@ def machine(case: Case) -> bool:
     return case.values["transmission"] is not None
 
 
-def contact_or_machine(case: Case) -> bool:
-    """Whether a contact analysis is made or section transmission is given."""
-    return contact(case) or machine(case)
-
-
 def side_by_side(case: Case) -> bool:
     """Whether section transmission is given, with a linear law of mesh forces and no friction in motion."""
     return machine(case) and not load_dependent(case) and not friction_in_motion(case)
@@ -218,14 +216,15 @@ def following(case: Case) -> bool:
 
 
 def turning_errors(case: Case) -> bool:
-    """Whether meshes are geometric, and something has a runout or a cumulative pitch deviation, or teeth
-    differ.
+    """Whether meshes are geometric, and something has a runout or a cumulative pitch deviation, teeth differ,
+    or a body has a periodic torque.
     """
     from facegear.config.notes import turns
 
     if not machine(case) or case.values["transmission"]["mesh_kinematics"] != "geometric":
         return False
-    return turns(case.values["transmission"]) or single_teeth(case)
+    section = case.values["transmission"]
+    return turns(section) or single_teeth(case) or bool(section["excitations"])
 
 
 def tolerances(case: Case) -> bool:
@@ -236,6 +235,42 @@ def tolerances(case: Case) -> bool:
 def load_map(case: Case) -> bool:
     """Whether `tolerances.load_map` is given."""
     return tolerances(case) and case.values["tolerances"]["load_map"] is not None
+
+
+def sharing_map(case: Case) -> bool:
+    """Whether section sharing_map is given.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True where its map is drawn.
+    """
+    return machine(case) and case.values["sharing_map"] is not None
+
+
+def duty_torques(case: Case) -> list[float]:
+    """Return the torques of the duty cycle at which the machine stands on the load-sharing map.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list of float
+        N m in each mesh of an input, rising, each once: DUTY_POINTS of them where there are more.
+    """
+    section = case.values["strength"]
+    torques = sorted({load["torque_n_m"] for load in section["duty"] if load["hours"] > 0}) if section else []
+    if len(torques) <= DUTY_POINTS:
+        return torques
+    return [torques[i * (len(torques) - 1) // (DUTY_POINTS - 1)] for i in range(DUTY_POINTS)]
 
 
 def search(case: Case) -> bool:

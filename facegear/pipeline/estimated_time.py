@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import ceil
 from typing import Any
 
+from facegear.number_format import count_noun
 from facegear.pipeline.needs import stages_before
 from facegear.pipeline.stage import Case, Stage
 
@@ -51,7 +52,7 @@ def outlook_in_words(case: Case, stages: Sequence[Stage]) -> str:
     seconds = estimated_seconds(case, stages)
     about = f"{ceil(seconds / 10.0) * 10:d} s" if seconds < 90.0 else f"{ceil(seconds / 60.0):d} min"
     return (
-        f"{len(stages)} stages, about {about} of processor time; a minute more the first time, "
+        f"{count_noun(len(stages), 'stage')}, about {about} of processor time; a minute more the first time, "
         "less where results are stored"
     )
 

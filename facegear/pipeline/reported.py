@@ -20,6 +20,7 @@ REPORTED = {
     "load_sharing": ["forces"],
     "load_sharing_summary": ["summary"],
     "hunting": ["groups"],
+    "sharing_map": ["curves", "inputs", "points", "advice", "reasons"],
     "following": ["groups"],
     "contact": ["ltca", "by_torque"],
     "root_stress": ["summary"],

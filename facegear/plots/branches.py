@@ -1,32 +1,44 @@
 """Figures of the branches of periodic motions."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from facegear.plots.style import styled
-from facegear.plots.sweep import select
+from facegear.arrays import Array
+from facegear.plots.colours import BLACK, BLUE, GREEN, PURPLE, RED, grey
+from facegear.plots.description import (
+    Axis,
+    Bars,
+    ColourScale,
+    Curve,
+    Figure,
+    Key,
+    Line,
+    LineStyle,
+    Look,
+    Panel,
+    Scatter,
+)
+from facegear.plots.sweep import rms_axis, select
 
-PERIOD_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
-"""Okabe and Ito's colours, which the colour-blind can distinguish; of period 1, 2, 4 and any other."""
+PERIOD_COLOURS = (BLUE, RED, GREEN, PURPLE)
+"""Colours of period 1, 2, 4 and any other."""
 NAMED = (1, 2, 4)
 MARKERS = {
-    "fold": ("^", "black"),
-    "period doubling": ("s", "black"),
-    "Neimark-Sacker": ("D", "black"),
-    "branch point": ("o", "black"),
+    "fold": "triangle-up",
+    "period doubling": "square",
+    "Neimark-Sacker": "diamond",
+    "branch point": "circle",
 }
-SWEEPS = {"up": ("1", "0.45"), "down": ("2", "0.7")}
-IRREGULAR = "0.55"
+SWEEPS = {"up": ("y-up", grey(0.45)), "down": ("y-down", grey(0.7))}
+IRREGULAR = grey(0.55)
 SHOWN = 0.06
 """Smallest fraction of a bar that has room for its number."""
+LOCI: Mapping[str, tuple[str, LineStyle]] = {"fold": (BLUE, "solid"), "period doubling": (RED, "dash")}
+UNIT_CIRCLE = 2.0 * np.pi * np.arange(361) / 360
 
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
@@ -49,76 +61,57 @@ def amplitudes(
     """
     low, high = branches["speed_rpm"].min(), branches["speed_rpm"].max()
     sweep = sweep[sweep["speed_rpm"].between(low, high)]
-    with styled():
-        figure, axes = plt.subplots(
-            len(meshes), 1, figsize=(7.5, 2.6 * len(meshes) + 0.8), sharex=True, squeeze=False
-        )
-        for axis, mesh in zip(axes[:, 0], meshes, strict=True):
-            for direction, (marker, colour) in SWEEPS.items():
-                curve = select(sweep, direction, "deflection_ac_rms_um", mesh)
-                axis.plot(curve["speed_rpm"], curve["value"], marker, ms=4, color=colour, zorder=1)
-            rows = branches[branches["mesh"] == mesh]
-            for number, branch in rows.groupby("branch"):
-                _line(axis, branch)
-                _points(axis, branch, special[special["branch"] == number])
-            axis.axvline(speed_rpm, color="0.5", lw=0.8, ls=":")
-            axis.set_title(f"mesh {mesh}", fontsize=9)
-            axis.set_ylabel("RMS of d (µm)")
-            axis.set_ylim(bottom=0)
-            axis.set_xlim(low - 0.02 * (high - low), high + 0.02 * (high - low))
-        axes[-1, 0].set_xlabel("pinion speed (rpm)")
-        figure.legend(
-            handles=_keys(branches, special), loc="outside lower center", ncols=4, fontsize=8, frameon=False
-        )
-        figure.suptitle("All periodic motions found: RMS of mesh deflections without their mean")
-    return figure
+    speed = Axis("Pinion speed", "rpm", low=low - 0.02 * (high - low), high=high + 0.02 * (high - low))
+    panels = []
+    for mesh in meshes:
+        marks: list[Curve | Line] = []
+        for direction, (marker, colour) in SWEEPS.items():
+            curve = select(sweep, direction, "deflection_ac_rms_um", mesh)
+            if len(curve):
+                look: Look = {"line": "none", "marker": marker, "size": 4.0}
+                marks.append(Curve(curve["speed_rpm"], curve["value"], f"sweep {direction}", colour, **look))
+        rows = branches[branches["mesh"] == mesh]
+        for number, branch in rows.groupby("branch"):
+            marks += _parts(branch)
+            marks += _points(branch, special[special["branch"] == number])
+        marks.append(Line(speed_rpm, name="nominal speed", line="dot"))
+        panels.append(Panel(speed, rms_axis(), marks, title=f"mesh {mesh}", height=2.0))
+    title = "All periodic motions found: RMS of mesh deflections without their mean"
+    return Figure(panels, title=title, width=7.5, keys=list(_keys(branches)))
 
 
-def _line(axis: Axes, branch: pd.DataFrame) -> None:
+def _parts(branch: pd.DataFrame) -> Iterator[Curve]:
+    """Stable and unstable parts of a branch."""
     colour = _colour(int(branch["period"].iloc[0]))
     speed, value = branch["speed_rpm"].to_numpy(), branch["deflection_ac_rms_um"].to_numpy()
     stable = branch["stable"].to_numpy(dtype=bool)
-    both = stable[:-1] & stable[1:]
-    cuts = np.flatnonzero(np.diff(both.astype(int))) + 1
-    for first, last in pairwise([0, *cuts.tolist(), both.size]):
-        solid = bool(both[first]) if first < both.size else False
+    stable_pairs = stable[:-1] & stable[1:]
+    cuts = np.flatnonzero(np.diff(stable_pairs.astype(int))) + 1
+    for first, last in pairwise([0, *cuts.tolist(), stable_pairs.size]):
+        solid = bool(stable_pairs[first]) if first < stable_pairs.size else False
         part = slice(first, last + 1)
-        style = {"ls": "-", "lw": 1.6} if solid else {"ls": (0, (4, 2)), "lw": 0.9}
-        axis.plot(speed[part], value[part], color=colour, zorder=3 if solid else 2, **style)
+        look: Look = {"line": "solid", "width": 1.6} if solid else {"line": "dash", "width": 0.9}
+        yield Curve(speed[part], value[part], colour=colour, **look)
 
 
-def _points(axis: Axes, branch: pd.DataFrame, special: pd.DataFrame) -> None:
-    for kind, (marker, colour) in MARKERS.items():
+def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
+    for kind, marker in MARKERS.items():
         rows = special[special["kind"] == kind]
-        height = np.interp(rows["arc"], branch["arc"], branch["deflection_ac_rms_um"])
-        axis.plot(rows["speed_rpm"], height, marker, ms=4.5, mfc="white", mec=colour, mew=0.9, zorder=4)
+        if len(rows):
+            height = np.interp(rows["arc"], branch["arc"], branch["deflection_ac_rms_um"])
+            yield Curve(rows["speed_rpm"], height, kind, line="none", marker=marker, hollow=True)
 
 
 def _colour(period: int) -> str:
     return PERIOD_COLOURS[NAMED.index(period) if period in NAMED else len(NAMED)]
 
 
-def _keys(branches: pd.DataFrame, special: pd.DataFrame) -> list[Line2D]:
-    keys = [
-        Line2D([], [], color=colour, lw=1.6, label=name)
-        for name, colour in dict.fromkeys(
-            _motion(f"period-{period}") for period in _by_size(branches["period"])
-        )
-    ]
-    keys += [
-        Line2D([], [], color="0.3", lw=1.6, label="stable"),
-        Line2D([], [], color="0.3", lw=0.9, ls=(0, (4, 2)), label="unstable"),
-    ]
-    keys += [
-        Line2D([], [], ls="", marker=marker, mfc="white", mec=colour, label=kind)
-        for kind, (marker, colour) in MARKERS.items()
-        if (special["kind"] == kind).any()
-    ]
-    keys += [
-        Line2D([], [], ls="", marker=marker, color=colour, label=f"sweep {direction}")
-        for direction, (marker, colour) in SWEEPS.items()
-    ]
-    return [*keys, Line2D([], [], color="0.5", lw=0.8, ls=":", label="nominal speed")]
+def _keys(branches: pd.DataFrame) -> Iterator[Key]:
+    for name, colour in dict.fromkeys(_motion(f"period-{period}") for period in _by_size(branches["period"])):
+        yield Key(name, colour, width=1.6)
+    yield Key("stable", grey(0.3), width=1.6)
+    if not branches["stable"].astype(bool).all():
+        yield Key("unstable", grey(0.3), "dash", width=0.9)
 
 
 def _by_size(periods: pd.Series) -> list[int]:
@@ -128,31 +121,24 @@ def _by_size(periods: pd.Series) -> list[int]:
 
 def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
     """Folds and period doublings in the plane of speed and each second parameter; the operating point."""
-    parameters = list(dict.fromkeys(table["parameter"])) or ["torque"]
-    styles = {"fold": ("#0072B2", "-"), "period doubling": ("#D55E00", "--")}
-    with styled():
-        figure, axes = plt.subplots(
-            len(parameters), 1, figsize=(7, 3.6 * len(parameters)), squeeze=False, sharex=True
-        )
-        for axis, parameter in zip(axes[:, 0], parameters, strict=True):
-            rows = table[table["parameter"] == parameter]
-            corner = rows["corner"].fillna("")
-            for _, locus in rows[corner == ""].groupby("locus"):
-                colour, line = styles[locus["kind"].iloc[0]]
-                axis.plot(locus["speed_rpm"], locus["factor"], line, color=colour, lw=1.4)
-            cusps = rows[corner == "cusp"]
-            axis.plot(cusps["speed_rpm"], cusps["factor"], "o", ms=5, mfc="white", mec="black")
-            axis.plot([speed_rpm], [1.0], "*", ms=12, color="black")
-            axis.set_ylabel(f"{parameter.replace('_', ' ')} over nominal")
-        axes[-1, 0].set_xlabel("pinion speed (rpm)")
-        keys = [Line2D([], [], color=c, ls=line, label=kind) for kind, (c, line) in styles.items()]
-        keys += [
-            Line2D([], [], ls="", marker="o", mfc="white", mec="black", label="cusp"),
-            Line2D([], [], ls="", marker="*", ms=10, color="black", label="operating point"),
-        ]
-        figure.legend(handles=keys, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
-        figure.suptitle("Where motions end or double their period")
-    return figure
+    panels = []
+    for parameter in list(dict.fromkeys(table["parameter"])) or ["torque"]:
+        rows = table[table["parameter"] == parameter]
+        corner = rows["corner"].fillna("")
+        marks = []
+        for _, locus in rows[corner == ""].groupby("locus"):
+            kind = locus["kind"].iloc[0]
+            colour, line = LOCI[kind]
+            marks.append(Curve(locus["speed_rpm"], locus["factor"], kind, colour, line, width=1.4))
+        cusps = rows[corner == "cusp"]
+        if len(cusps):
+            look: Look = {"line": "none", "marker": "circle", "size": 5.0, "hollow": True}
+            marks.append(Curve(cusps["speed_rpm"], cusps["factor"], "cusp", **look))
+        point = np.array([speed_rpm]), np.array([1.0])
+        marks.append(Curve(*point, "operating point", line="none", marker="star", size=12.0))
+        up = Axis(f"{parameter.replace('_', ' ').capitalize()} over nominal", "")
+        panels.append(Panel(Axis("Pinion speed", "rpm"), up, marks, height=2.8))
+    return Figure(panels, title="Where motions end or double their period", width=7.0)
 
 
 def fractions(table: pd.DataFrame) -> Figure:
@@ -161,30 +147,33 @@ def fractions(table: pd.DataFrame) -> Figure:
     Colours tell the period as in amplitudes(), numbers the branch.
     """
     speeds = sorted(table["speed_rpm"].unique())
-    used: dict[str, str] = {}
-    with styled():
-        figure, axis = plt.subplots(figsize=(7, 4))
-        for bar, speed in enumerate(speeds):
-            bottom = 0.0
-            for row in table[table["speed_rpm"] == speed].itertuples():
-                name, colour = _motion(str(row.motion))
-                used[name] = colour
-                axis.bar(bar, row.fraction, 0.7, bottom=bottom, color=colour, edgecolor="white")
-                if str(row.branch).isdigit() and row.fraction > SHOWN:
-                    middle = bottom + 0.5 * row.fraction
-                    axis.text(bar, middle, row.branch, ha="center", va="center", color="white", fontsize=8)
-                bottom += row.fraction
-                if 0.0 < row.fraction < 1.0 and bottom < 1.0 - 1e-9:
-                    axis.errorbar(bar, bottom, row.error, color="black", capsize=3, lw=0.8)
-        axis.set_xticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
-        axis.set_xlabel("pinion speed (rpm)")
-        axis.set_ylabel("fraction of random starts")
-        axis.set_ylim(0, 1.02)
-        axis.grid(False, axis="x")
-        keys = [plt.Rectangle((0, 0), 1, 1, color=used[name], label=name) for name in sorted(used)]
-        figure.legend(handles=keys, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
-        figure.suptitle("Which motion the machine is likely to be on; number: branch, bar: standard error")
-    return figure
+    bars = []
+    for position, speed in enumerate(speeds):
+        bottom = 0.0
+        for row in table[table["speed_rpm"] == speed].itertuples():
+            name, colour = _motion(str(row.motion))
+            top = bottom + row.fraction
+            has_number = str(row.branch).isdigit() and row.fraction > SHOWN
+            is_inner = 0.0 < row.fraction < 1.0 and top < 1.0 - 1e-9
+            ends: Look = (
+                {"low": _array_of(top - row.error), "high": _array_of(top + row.error)} if is_inner else {}
+            )
+            labels = (str(row.branch),) if has_number else ()
+            look: Look = {"width": 0.7, "base": _array_of(bottom), "labels": labels, **ends}
+            bars.append(Bars(_array_of(position), _array_of(row.fraction), name, colour, **look))
+            bottom = top
+    panel = Panel(
+        Axis("Pinion speed", "rpm", ticks=[(float(at), f"{speed:g}") for at, speed in enumerate(speeds)]),
+        Axis("Fraction of random starts", "", low=0.0, high=1.02),
+        bars,
+        height=2.8,
+    )
+    title = "Which motion the machine is likely to be on; number: branch, bar: standard error"
+    return Figure([panel], title=title, width=7.0)
+
+
+def _array_of(value: float) -> Array:
+    return np.array([float(value)])
 
 
 def _motion(label: str) -> tuple[str, str]:
@@ -200,22 +189,23 @@ def _motion(label: str) -> tuple[str, str]:
 def multipliers(table: pd.DataFrame, branch: int = 0) -> Figure:
     """The largest Floquet multipliers of a branch in the complex plane, coloured by speed."""
     rows = table[table["branch"] == branch]
-    angle = np.linspace(0.0, 2.0 * np.pi, 361)
-    with styled():
-        figure, axis = plt.subplots(figsize=(6, 5.2))
-        axis.plot(np.cos(angle), np.sin(angle), color="black", lw=0.9)
-        drawn = axis.scatter(
-            rows["real"], rows["imaginary"], c=rows["speed_rpm"], s=5, cmap="viridis", linewidths=0
-        )
-        axis.set_aspect("equal")
-        reach = 1.05 * float(np.clip(rows[["real", "imaginary"]].abs().to_numpy().max(), 1.0, 2.0))
-        axis.set_xlim(-reach, reach)
-        axis.set_ylim(-min(reach, 1.3), min(reach, 1.3))
-        axis.set_xlabel("real part")
-        axis.set_ylabel("imaginary part")
-        figure.colorbar(drawn, ax=axis, label="pinion speed (rpm)", shrink=0.8)
-        figure.suptitle(f"Floquet multipliers along branch {branch}; outside the circle: unstable")
-    return figure
+    reach = 1.05 * float(np.clip(rows[["real", "imaginary"]].abs().to_numpy().max(), 1.0, 2.0))
+    speeds = rows["speed_rpm"].to_numpy(float)
+    scale = ColourScale("Pinion speed", "rpm", float(speeds.min()), float(speeds.max()))
+    marks: list[Curve | Scatter] = [
+        Curve(np.cos(UNIT_CIRCLE), np.sin(UNIT_CIRCLE), colour=BLACK, width=0.9),
+        Scatter(rows["real"], rows["imaginary"], np.full(len(rows), 2.2), values=speeds, scale=scale),
+    ]
+    high = min(reach, 1.3)
+    panel = Panel(
+        Axis("Real part", "", low=-reach, high=reach),
+        Axis("Imaginary part", "", low=-high, high=high),
+        marks,
+        equal=True,
+        height=4.0,
+    )
+    title = f"Floquet multipliers along branch {branch}; outside the circle: unstable"
+    return Figure([panel], title=title, width=6.0)
 
 
 def figures(

@@ -1,20 +1,18 @@
 """Campbell diagram and waterfall."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from facegear.arrays import Array
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
-from facegear.plots.style import NARROW, styled
+from facegear.plots.colours import BLACK, BLUE, GREEN, ORANGE, grey
+from facegear.plots.description import Axis, ColourScale, Curve, Figure, Look, Map, Panel, Text, apart
 
 ORDER_LINES = (1.0, 2.0, 3.0)
 """Multiples of the mesh frequency that are always drawn, beside those of the marks."""
-CLASS_COLOURS = {"pinion": "tab:blue", "face gear": "tab:orange", "pinion coupled face gear": "tab:green"}
+CLASS_COLOURS = {"pinion": BLUE, "face gear": ORANGE, "pinion coupled face gear": GREEN}
 
 
 def campbell(
@@ -27,29 +25,27 @@ def campbell(
     top = 1.1 * elastic["frequency_hz"].max()
     marked = pd.concat([resonances["order"], jumps["order"]]).astype(float)
     lines = sorted(set(ORDER_LINES) | set(marked[_on_line(marked)]))
-    with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 5.4))
-        for name, modes in elastic.groupby("class", sort=False):
-            values = modes["frequency_hz"].drop_duplicates()
-            axis.hlines(values, 0, last_rpm, color=CLASS_COLOURS[name], lw=0.8, label=name)
-        speeds = np.array([0.0, last_rpm])
-        for order in lines:
-            axis.plot(speeds, order * teeth * speeds / 60.0, color="0.5", lw=0.8)
-            end = min(last_rpm, 60.0 * top / (order * teeth))
-            height = order * teeth * end / 60.0
-            beyond = (2, 0) if height < 0.99 * top else (0, 2)
-            axis.annotate(f"{order:g}x", (end, height), beyond, textcoords="offset points", color="0.3")
-        _mark(axis, resonances, "speed_rpm", teeth, "o", "peaks")
-        irregular = jumps["kind"] == JumpKind.IRREGULAR
-        _mark(axis, jumps[~irregular], "speed_after_rpm", teeth, "x", "jumps")
-        _mark(axis, jumps[irregular], "speed_after_rpm", teeth, "+", "irregular motion")
-        axis.set_xlim(0, last_rpm)
-        axis.set_ylim(0, top)
-        axis.set_xlabel("input rotation speed (rpm)")
-        axis.set_ylabel("frequency (Hz)")
-        figure.legend(loc="outside lower center", ncols=2, title="modes by class, and what the sweep found")
-        figure.suptitle("Campbell diagram; marks: frequency of the mode that moves most", fontsize=9)
-    return figure
+    marks: list[Curve | Text] = []
+    for name, modes in elastic.groupby("class", sort=False):
+        values = 1e-3 * modes["frequency_hz"].drop_duplicates().to_numpy()
+        across = apart(np.array([0.0, last_rpm]), np.stack([values, values], axis=1))
+        marks.append(Curve(*across, str(name), CLASS_COLOURS[name], width=0.8))
+    speeds = np.array([0.0, last_rpm])
+    for order in lines:
+        marks.append(Curve(speeds, 1e-3 * order * teeth * speeds / 60.0, colour=grey(0.5), width=0.8))
+        end = min(last_rpm, 60.0 * top / (order * teeth))
+        height = order * teeth * end / 60.0
+        beyond: Look = (
+            {"shift": (2.0, 0.0)} if height < 0.99 * top else {"shift": (0.0, 2.0), "upright": "bottom"}
+        )
+        marks.append(Text(end, 1e-3 * height, f"{order:g}x", colour=grey(0.3), **beyond))
+    irregular = jumps["kind"] == JumpKind.IRREGULAR
+    marks += _marks(resonances, "speed_rpm", teeth, "circle", "peaks")
+    marks += _marks(jumps[~irregular], "speed_after_rpm", teeth, "x", "jumps")
+    marks += _marks(jumps[irregular], "speed_after_rpm", teeth, "plus", "irregular motion")
+    speed = Axis("Input speed", "rpm", low=0.0, high=last_rpm)
+    panel = Panel(speed, Axis("Frequency", "kHz", low=0.0, high=1e-3 * top), marks, height=3.8)
+    return Figure([panel], legend_title="modes by class, and what the sweep found at the strongest mode")
 
 
 def _on_line(orders: pd.Series) -> pd.Series:
@@ -57,41 +53,31 @@ def _on_line(orders: pd.Series) -> pd.Series:
     return (2.0 * orders - (2.0 * orders).round()).abs() < 1e-9
 
 
-def _mark(axis: Axes, rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) -> None:
+def _marks(rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) -> Iterator[Curve]:
     """Marks where the strongest mode's response frequency lies at each row's speed; grey off all lines."""
     unique = rows.drop_duplicates([speed, "resonance"])
     on = _on_line(unique["order"].astype(float))
-    for chosen, colour, text in ((on, "black", label), (~on, "0.6", f"{label}, off lines")):
-        if chosen.any():
-            frequency = unique["order"][chosen] * teeth * unique[speed][chosen] / 60.0
-            axis.plot(unique[speed][chosen], frequency, symbol, color=colour, ms=4, label=text)
+    for mask, colour, text in ((on, BLACK, label), (~on, grey(0.6), f"{label}, off lines")):
+        if mask.any():
+            frequency = 1e-3 * unique["order"][mask] * teeth * unique[speed][mask] / 60.0
+            look: Look = {"line": "none", "marker": symbol, "size": 4.0}
+            yield Curve(unique[speed][mask], frequency, text, colour, **look)
 
 
 def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: int) -> Figure:
     """Spectra of one mesh deflection over speed, one panel for each direction; logarithmic colour."""
     directions = [name for name in ("up", "down") if f"{name}_speed_rpm" in spectra]
-    orders = spectra["orders"]
-    with styled():
-        figure, axes = plt.subplots(
-            len(directions), 1, figsize=(NARROW, 0.9 + 3.6 * len(directions)), sharex=True, squeeze=False
-        )
-        for axis, name in zip(axes[:, 0], directions, strict=True):
-            speeds = spectra[f"{name}_speed_rpm"]
-            rank = np.argsort(speeds)
-            values = 1e6 * spectra[f"{name}_amplitude_m"][rank, mesh, 1:]
-            image = axis.pcolormesh(
-                orders[1:],
-                speeds[rank],
-                np.log10(np.maximum(values, 1e-3 * values.max())),
-                cmap="viridis",
-                shading="nearest",
-                rasterized=True,
-            )
-            axis.set_ylabel("input rotation speed (rpm)")
-            axis.set_title(f"sweep {name}", fontsize=9, loc="left")
-        axes[-1, 0].set_xlabel("multiple of the mesh frequency")
-        figure.colorbar(image, ax=axes, label="log10 of the amplitude in µm")
-        figure.suptitle(
-            f"Spectrum of the deflection, {mesh_name}\n(mesh frequency {teeth} per pinion turn)", fontsize=9
-        )
-    return figure
+    orders = spectra["orders"][1:]
+    amplitudes = {name: 1e6 * spectra[f"{name}_amplitude_m"][:, mesh, 1:] for name in directions}
+    top = max(values.max() for values in amplitudes.values())
+    scale = ColourScale("Amplitude, log₁₀ of µm", "", float(np.log10(1e-3 * top)), float(np.log10(top)))
+    panels = []
+    for name in directions:
+        speeds = spectra[f"{name}_speed_rpm"]
+        rank = np.argsort(speeds)
+        log_amplitudes = np.log10(np.maximum(amplitudes[name][rank], 1e-3 * top))
+        amplitude_map = Map(orders, speeds[rank], log_amplitudes, scale)
+        across = Axis("Multiple of the mesh frequency", "", low=float(orders[0]), high=float(orders[-1]))
+        up = Axis("Input speed", "rpm", low=float(speeds.min()), high=float(speeds.max()))
+        panels.append(Panel(across, up, [amplitude_map], title=f"sweep {name}", height=3.0))
+    return Figure(panels, title=f"Spectrum of the deflection, {mesh_name}")

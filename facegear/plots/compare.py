@@ -1,10 +1,9 @@
 """A curve of two folders of results laid over each other."""
 
-import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.figure import Figure
 
-from facegear.plots.style import NARROW, legend_above, styled
+from facegear.plots.colours import BLACK, BLUE, RED, grey
+from facegear.plots.description import Axis, Curve, Figure, Line, Panel
 
 
 def curves_compared(
@@ -12,17 +11,40 @@ def curves_compared(
 ) -> Figure:
     """Above both curves `y` over `x`, below what the new one has more; both tables are of one series.
 
-    `labels`: `x` and `y` in words.
+    `labels`: `x` and `y` in words, with their units in brackets.
     """
     both = old[[x, y]].merge(new[[x, y]], on=x, suffixes=("_old", "_new"))
-    with styled():
-        figure, (top, bottom) = plt.subplots(2, 1, figsize=(NARROW, 4.6), sharex=True, height_ratios=(2, 1))
-        top.plot(old[x], old[y], "-", color="tab:blue", lw=2.2, alpha=0.6, label="old")
-        top.plot(new[x], new[y], "--", color="k", lw=1.1, label="new")
-        top.set(ylabel=labels[1])
-        legend_above(top, 2, right=True)
-        bottom.axhline(0.0, color="0.6", lw=0.8)
-        bottom.plot(both[x], both[f"{y}_new"] - both[f"{y}_old"], "-", color="tab:red", lw=1.2)
-        bottom.set(xlabel=labels[0], ylabel="new - old")
-        figure.suptitle(title, fontsize=9)
-    return figure
+    (across, across_unit), (up, unit) = (split_label(label) for label in labels)
+    top = [
+        Curve(old[x], old[y], "old", BLUE, width=2.2, opacity=0.6),
+        Curve(new[x], new[y], "new", BLACK, "dash", width=1.1),
+    ]
+    bottom: list[Curve | Line] = [
+        Line(0.0, "y", colour=grey(0.6)),
+        Curve(both[x], both[f"{y}_new"] - both[f"{y}_old"], colour=RED, width=1.2),
+    ]
+    axis = Axis(across, across_unit)
+    return Figure(
+        [
+            Panel(axis, Axis(up, unit), top, height=2.0, own_legend=True),
+            Panel(axis, Axis("New - old", unit), bottom, height=1.0),
+        ],
+        title=title,
+    )
+
+
+def split_label(label: str) -> tuple[str, str]:
+    """Part a label into quantity and unit.
+
+    Parameters
+    ----------
+    label : str
+        The quantity with its unit in brackets, as tables of the report name it.
+
+    Returns
+    -------
+    name, unit : str
+        The unit is empty where there is none.
+    """
+    name, bracket, unit = label.rpartition(" (")
+    return (name, unit.removesuffix(")")) if bracket and label.endswith(")") else (label, "")

@@ -2,27 +2,33 @@
 
 from collections.abc import Mapping
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.collections import QuadMesh
-from matplotlib.figure import Figure
 
 from facegear.arrays import Array, Arrays, Integers
 from facegear.contact.columns import EDGES, SHARES
 from facegear.contact.pattern import Pattern, pattern
-from facegear.plots.style import NARROW, legend_above, styled
+from facegear.number_format import format_number
+from facegear.plots.colours import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, grey, shades
+from facegear.plots.description import Axis, ColourScale, Curve, Figure, LineStyle, Map, Panel
 
 PAIR_NAMES = ("-2", "-1", "0", "1", "2")
 
 MARKS = (
-    (("pinion tip", "gear tip"), "s", "#0072b2", "tip edge: line load only"),
-    (("end",), "D", "#009e73", "end of the face: the same"),
+    (("pinion tip", "gear tip"), "square", BLUE, "tip edge: line load only"),
+    (("end",), "diamond", GREEN, "end of the face: the same"),
 )
 """Kinds of edges, marker, colour and legend: where a flank carries load and no pressure is known."""
-LEGEND_HEIGHT = 0.25
-"""Inches of the legend's one line of 9 pt with its gap, which a pattern without marks does not need."""
+UNLOADED_COLOUR = grey(0.92)
+"""Colour of a flank where it carries no load."""
+PAIR_LOOKS: tuple[tuple[str, LineStyle], ...] = (
+    (PURPLE, "dot"),
+    (RED, "dash"),
+    (BLACK, "solid"),
+    (BLUE, "dash"),
+    (ORANGE, "dot"),
+)
+"""Colour and line of each of PAIR_NAMES."""
 
 
 def contact_curves(ltca: pd.DataFrame) -> Figure:
@@ -30,29 +36,40 @@ def contact_curves(ltca: pd.DataFrame) -> Figure:
     largest.
     """
     torques = np.sort(ltca["torque_n_m"].unique())
-    colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, torques.size))
-    with styled():
-        figure, axes = plt.subplots(4, 1, figsize=(NARROW, 11), sharex=True)
-        error, stiffness = axes[:2]
-        for torque, colour in zip(torques, colours, strict=True):
-            rows = closed(ltca[ltca["torque_n_m"] == torque])
-            error.plot(rows["position"], rows["ste_um"], color=colour, label=f"{torque:g} N m")
-            stiffness.plot(rows["position"], 1e-6 * rows["k_average_n_per_m"], color=colour)
-            stiffness.plot(rows["position"], 1e-6 * rows["k_local_n_per_m"], "--", color=colour, lw=0.9)
-        unloaded = closed(ltca[ltca["torque_n_m"] == torques[0]])
-        error.plot(unloaded["position"], unloaded["unloaded_ste_um"], "k:", label="unloaded")
-        error.set(ylabel="Static transmission error (µm)")
-        legend_above(error, 3)
-        stiffness.set(ylabel="Stiffness (N/µm)\naverage solid, local dashed")
-        for axis, torque in zip(axes[2:], torques[[0, -1]], strict=True):
-            rows = closed(ltca[ltca["torque_n_m"] == torque])
-            for column, name in zip(SHARES, PAIR_NAMES, strict=True):
-                if (rows[column] > 0).any():
-                    axis.plot(rows["position"], rows[column], label=f"pair {name}")
-            axis.set(ylabel=f"Load share at {torque:g} N m", ylim=(-0.02, 1.05))
-            legend_above(axis, 5)
-        axes[-1].set(xlabel="Position (pitches)", xlim=(0, 1))
-    return figure
+    error, stiffness = [], []
+    for torque, colour in zip(torques, shades(torques.size), strict=True):
+        rows = closed(ltca[ltca["torque_n_m"] == torque])
+        at, name = rows["position"], f"{format_number(torque, 4)} N m"
+        error.append(Curve(at, rows["ste_um"], name, colour))
+        stiffness += [
+            Curve(at, 1e-6 * rows["k_average_n_per_m"], name, colour, in_legend=False),
+            Curve(
+                at,
+                1e-6 * rows["k_local_n_per_m"],
+                f"{name}, local",
+                colour,
+                "dash",
+                width=0.9,
+                in_legend=False,
+            ),
+        ]
+    unloaded = closed(ltca[ltca["torque_n_m"] == torques[0]])
+    error.append(Curve(unloaded["position"], unloaded["unloaded_ste_um"], "unloaded", BLACK, "dot"))
+    position = Axis("Position", "pitches", low=0.0, high=1.0)
+    panels = [
+        Panel(position, Axis("Static transmission error", "µm"), error, height=2.2, own_legend=True),
+        Panel(position, Axis("Stiffness", "N/µm", "average solid, local dashed"), stiffness, height=2.2),
+    ]
+    for torque in torques[[0, -1]] if torques.size > 1 else torques:
+        rows = closed(ltca[ltca["torque_n_m"] == torque])
+        pairs = [
+            Curve(rows["position"], rows[column], f"pair {name}", colour, line)
+            for column, name, (colour, line) in zip(SHARES, PAIR_NAMES, PAIR_LOOKS, strict=True)
+            if (rows[column] > 0).any()
+        ]
+        label = Axis(f"Load share\nat {format_number(torque, 4)} N m", "", low=-0.02, high=1.05)
+        panels.append(Panel(position, label, pairs, height=2.0, own_legend=True))
+    return Figure(panels)
 
 
 def closed(rows: pd.DataFrame) -> pd.DataFrame:
@@ -70,64 +87,56 @@ def contact_pattern(arrays: Arrays) -> Figure:
     return pattern_panels({_title(arrays, torque): (arrays, torque) for torque in torques})
 
 
-def pattern_panels(panels: Mapping[str, tuple[Arrays, float]]) -> Figure:
+def pattern_panels(panels: Mapping[str, tuple[Arrays, float]], title: str = "") -> Figure:
     """`contact_pattern` with panels by title: the arrays and the torque (N m) that each shows.
 
     All have one scale, which ends at their largest pressure; marks stand where only a line load is known.
     """
-    patterns = {title: (pattern(arrays), float(torque)) for title, (arrays, torque) in panels.items()}
-    top = max(np.nanmax(seen.pressure[torque], initial=0.0) for seen, torque in patterns.values())
-    rows = len(patterns)
-    with styled():
-        figure, axes = plt.subplots(
-            rows, 1, figsize=(NARROW, 1.3 + 1.7 * rows), sharex=True, sharey=True, squeeze=False
+    patterns = {name: (pattern(arrays), float(torque)) for name, (arrays, torque) in panels.items()}
+    top = max(
+        np.nanmax(flank_pattern.pressure[torque], initial=0.0) for flank_pattern, torque in patterns.values()
+    )
+    scale = ColourScale("Pressure", "MPa", 0.0, 1e-6 * top or 1.0, "inferno")
+    nodes = np.concatenate([1e3 * arrays["point_m"] for arrays, _ in panels.values()])
+    height = np.hypot(nodes[:, 0], nodes[:, 2])
+    across = Axis(
+        "Along the pinion's axis, from the gear's",
+        "mm",
+        low=float(nodes[:, 1].min()),
+        high=float(nodes[:, 1].max()),
+    )
+    up = Axis("Pinion\nradius", "mm", low=float(height.min()), high=float(height.max()))
+    drawn = [
+        Panel(
+            across, up, _marks(flank_pattern, torque, scale), title=name, height=1.1, ground=UNLOADED_COLOUR
         )
-        for axis, (title, (seen, torque)), (arrays, _) in zip(
-            axes.flat, patterns.items(), panels.values(), strict=True
-        ):
-            drawn = _panel(axis, seen, torque, 1e-6 * top or 1.0)
-            nodes = 1e3 * arrays["point_m"]
-            height = np.hypot(nodes[:, 0], nodes[:, 2])
-            axis.set(xlim=(nodes[:, 1].min(), nodes[:, 1].max()), ylim=(height.min(), height.max()))
-            axis.set_title(title)
-            axis.set_ylabel("Pinion\nradius (mm)")
-        axes[-1, 0].set_xlabel("Along the pinion's axis, from the gear's (mm)")
-        figure.colorbar(drawn, ax=axes, location="top", aspect=40, label="Pressure (MPa)")
-        marks = {
-            label: handle
-            for axis in axes.flat
-            for handle, label in zip(*axis.get_legend_handles_labels(), strict=True)
-        }
-        if marks:
-            figure.legend(marks.values(), marks.keys(), loc="outside lower center", ncols=2)
-        else:
-            figure.set_figheight(figure.get_figheight() - LEGEND_HEIGHT)
-    return figure
+        for name, (flank_pattern, torque) in patterns.items()
+    ]
+    return Figure(drawn, title=title)
 
 
-def _panel(axis: Axes, seen: Pattern, torque: float, top: float) -> QuadMesh:
-    """Pressures (MPa) up to `top` on the surface that the contact lines sweep, and marks at edges."""
-    width = 1e3 * seen.points[..., 1]
-    radius = 1e3 * np.hypot(seen.points[..., 0], seen.points[..., 2])
-    where = seen.where[torque]
-    field = np.ma.masked_invalid(1e-6 * _faded(seen.pressure[torque], where))
-    axis.set_facecolor("0.92")
-    axis.grid(visible=False)
+def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Map | Curve]:
+    """Pressures on the surface that the contact lines sweep, and marks at edges."""
+    width = 1e3 * flank_pattern.points[..., 1]
+    radius = 1e3 * np.hypot(flank_pattern.points[..., 0], flank_pattern.points[..., 2])
+    edge_kind = flank_pattern.where[torque]
+    marks: list[Map | Curve] = [
+        Map(width, radius, 1e-6 * _faded(flank_pattern.pressure[torque], edge_kind), scale, smooth=True)
+    ]
     for edges, marker, colour, name in MARKS:
-        on = np.isin(where, [EDGES.index(kind) for kind in edges])
+        on = np.isin(edge_kind, [EDGES.index(kind) for kind in edges])
         if on.any():
-            axis.plot(width[on], radius[on], marker, color=colour, ms=2.5, label=name, rasterized=True)
-    look = {"cmap": "inferno", "shading": "gouraud", "rasterized": True}
-    return axis.pcolormesh(width, radius, field, vmin=0, vmax=top, **look)
+            marks.append(Curve(width[on], radius[on], name, colour, line="none", marker=marker, size=2.5))
+    return marks
 
 
-def _faded(field: Array, where: Integers) -> Array:
+def _faded(field: Array, edge_kind: Integers) -> Array:
     """The pressures, with zeros in unloaded planes next to them, where the loaded length ends."""
     known = np.isfinite(field)
     beside = np.zeros_like(known)
     beside[:, 1:] |= known[:, :-1]
     beside[:, :-1] |= known[:, 1:]
-    return np.where(beside & (where < 0), 0.0, field)
+    return np.where(beside & (edge_kind < 0), 0.0, field)
 
 
 def _title(arrays: Arrays, torque: float) -> str:
@@ -137,8 +146,10 @@ def _title(arrays: Arrays, torque: float) -> str:
     pressure, error = (1e-6 * arrays[f"line_{name}_pa"][on][at] for name in ("pressure", "error"))
     tips = np.isin(arrays["line_where"][on], [EDGES.index("pinion tip"), EDGES.index("gear tip")])
     tip = 1e-3 * arrays["line_load_n_per_m"][on][tips].max(initial=0.0)
-    edge = f"; tip edges up to {tip:.0f} N/mm" if tip > 0 else ""
-    return f"{torque:g} N m: {pressure:.0f} ± {error:.0f} MPa{edge}"
+    edge = f"; tip edges up to {format_number(tip)} N/mm" if tip > 0 else ""
+    return (
+        f"{format_number(torque, 4)} N m: {format_number(pressure)} ± {format_number(round(error))} MPa{edge}"
+    )
 
 
 def figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:

@@ -3,37 +3,39 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.figure import Figure
 
 from facegear.arrays import Arrays
 from facegear.contact.studies import StudiedContact
+from facegear.plots.colours import COLOURS
 from facegear.plots.contact import closed, pattern_panels
-from facegear.plots.style import COLOURS, NARROW, styled
+from facegear.plots.description import Axis, Curve, Figure, Line, LineStyle, Panel
 
-LINES = ("-", "--", "-.", ":")
+LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
 
 
 def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:
     """Transmission error less its mean, average stiffness, contact radius over a pitch at a torque (N m)."""
-    with styled():
-        figure, axes = plt.subplots(3, 1, figsize=(NARROW, 7.8 + 0.22 * len(cases)), sharex=True)
-        error, stiffness, path = axes
-        for number, case in enumerate(cases):
-            rows = closed(case.over_pitch(torque))
-            look = {"color": COLOURS[number % len(COLOURS)], "ls": LINES[number // len(COLOURS) % len(LINES)]}
-            error.plot(rows["position"], _variation(rows["ste_um"]), label=case.label_at(torque), **look)
-            stiffness.plot(rows["position"], 1e-6 * rows["k_average_n_per_m"], **look)
-            path.plot(rows["position"], rows["path_radius_mm"], **look)
-            path.axhline(case.unloaded_path_mm, **{**look, "ls": ":"}, lw=0.9)
-        error.set(ylabel="Static transmission error\nless its mean (µm)")
-        stiffness.set(ylabel="Average stiffness (N/µm)")
-        path.set(ylabel="Radius of the contact (mm)\nloaded; dotted: unloaded, mean", xlim=(0, 1))
-        path.set_xlabel("Position (pitches)")
-        figure.legend(*error.get_legend_handles_labels(), loc="outside lower center", ncols=2)
-        figure.suptitle(f"{title}\nat {torque:g} N m on the pinion", fontsize=9)
-    return figure
+    error: list[Curve] = []
+    stiffness: list[Curve] = []
+    path: list[Curve | Line] = []
+    for number, case in enumerate(cases):
+        rows = closed(case.over_pitch(torque))
+        colour, line = COLOURS[number % len(COLOURS)], LINES[number // len(COLOURS) % len(LINES)]
+        at, name = rows["position"], case.label_at(torque)
+        error.append(Curve(at, _variation(rows["ste_um"]), name, colour, line))
+        stiffness.append(Curve(at, 1e-6 * rows["k_average_n_per_m"], name, colour, line))
+        path.append(Curve(at, rows["path_radius_mm"], name, colour, line))
+        path.append(Line(case.unloaded_path_mm, "y", colour=colour, line="dot", width=0.9))
+    position = Axis("Position", "pitches", low=0.0, high=1.0)
+    return Figure(
+        [
+            Panel(position, Axis("Transmission error\nless its mean", "µm"), error, height=2.0),
+            Panel(position, Axis("Average stiffness", "N/µm"), stiffness, height=2.0),
+            Panel(position, Axis("Contact radius", "mm", "dotted: unloaded"), path, height=2.0),
+        ],
+        title=title,
+    )
 
 
 def _variation(closed_curve: pd.Series) -> pd.Series:

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from facegear.plots.campbell import campbell, waterfall
+from facegear.plots.description import Figure
 from facegear.plots.response import deflections
 from facegear.plots.sweep import mesh_sweeps, translations
 
@@ -75,10 +75,9 @@ def figures(
     spectrum: pd.DataFrame,
     transmission: Mapping[str, Any],
     pinion_teeth: int,
-    speed_rpm: float,
     **swept: Any,
 ) -> list[Figure]:
     """Deflections at the nominal speed, and every figure of SWEEP_FIGURES from the tables `swept`."""
     machine = drawn_machine(transmission, pinion_teeth)
-    nominal = deflections(response, spectrum, machine.pinions, speed_rpm)
+    nominal = deflections(response, spectrum, machine.pinions)
     return [nominal, *(draw(swept, machine) for draw in SWEEP_FIGURES.values())]

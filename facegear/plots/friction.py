@@ -1,16 +1,19 @@
 """Friction and heat: along the path of contact, over the flank, over torque and speed, in the machine."""
 
-import matplotlib.pyplot as plt
+from collections.abc import Mapping
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from facegear.arrays import Array, Arrays, Mask
 from facegear.contact.pattern import passage, pattern
-from facegear.plots.style import NARROW, legend_above, styled
+from facegear.number_format import format_number
+from facegear.plots.colours import BLUE, ORANGE, RED, round_levels, shades
+from facegear.plots.contact import UNLOADED_COLOUR
+from facegear.plots.description import Axis, Bars, ColourScale, Curve, Figure, Levels, Look, Map, Panel
 
-FLANK_COLOURS = {"drive": "tab:blue", "back": "tab:orange"}
+FLANK_COLOURS = {"drive": BLUE, "back": ORANGE}
 
 
 def figures(local: Arrays, pressure: Arrays, map_table: pd.DataFrame) -> tuple[Figure, ...]:
@@ -24,22 +27,31 @@ def along_path(local: Arrays) -> Figure:
     Places beside an edge are left out of temperature and film, whose pressure there has no limit.
     """
     torques = np.unique(local["torque_n_m"])
-    colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, torques.size))
     stage, inside = passage(local["position"], local["tooth"]), local["inside"] > 0
-    with styled():
-        figure, axes = plt.subplots(3, 1, figsize=(NARROW, 7.4), sharex=True)
-        for torque, colour in zip(torques, colours, strict=True):
-            on = local["torque_n_m"] == torque
-            look = {"color": colour, "label": f"{torque:g} N m"}
-            axes[0].plot(*_extreme(stage, local["sliding_m_per_s"], on, 1.0), **look)
-            axes[1].plot(*_extreme(stage, local["flash_k"], on & inside, 1.0), **look)
-            axes[2].plot(*_extreme(stage, local["film_ratio"], on & inside, -1.0), **look)
-        axes[0].set(ylabel="Largest sliding\nvelocity (m/s)", ylim=(0, None))
-        axes[1].set(ylabel="Largest flash\ntemperature (K)", ylim=(0, None))
-        axes[2].set(ylabel="Smallest film over\nroughness λ", ylim=(0, None))
-        axes[2].set_xlabel("Passage of a tooth (pitches)")
-        legend_above(axes[0], 3)
-    return figure
+    curves: tuple[list[Curve], ...] = ([], [], [])
+    for torque, colour in zip(torques, shades(torques.size), strict=True):
+        on = local["torque_n_m"] == torque
+        name = f"{format_number(torque, 4)} N m"
+        for number, (values, mask, sign) in enumerate(
+            (
+                (local["sliding_m_per_s"], on, 1.0),
+                (local["flash_k"], on & inside, 1.0),
+                (local["film_ratio"], on & inside, -1.0),
+            )
+        ):
+            curves[number].append(Curve(*_extreme(stage, values, mask, sign), name, colour))
+    along = Axis("Passage of a tooth", "pitches")
+    axes = (
+        Axis("Largest sliding\nvelocity", "m/s", low=0.0),
+        Axis("Largest flash\ntemperature", "K", low=0.0),
+        Axis("Smallest film over\nroughness λ", "", low=0.0),
+    )
+    return Figure(
+        [
+            Panel(along, axis, panel_curves, height=1.8)
+            for axis, panel_curves in zip(axes, curves, strict=True)
+        ]
+    )
 
 
 def over_flank(local: Arrays, pressure: Arrays) -> Figure:
@@ -54,24 +66,30 @@ def over_flank(local: Arrays, pressure: Arrays) -> Figure:
     nodes = 1e3 * pressure["point_m"]
     height = np.hypot(nodes[:, 0], nodes[:, 2])
     fields = (
-        (1e-3 * local["loss_w_per_m"][on], "Friction loss (W/mm)", "viridis"),
-        (np.where(local["inside"][on] > 0, local["flash_k"][on], np.nan), "Flash temperature (K)", "inferno"),
+        (1e-3 * local["loss_w_per_m"][on], "Friction loss", "W/mm", "viridis"),
+        (
+            np.where(local["inside"][on] > 0, local["flash_k"][on], np.nan),
+            "Flash temperature",
+            "K",
+            "inferno",
+        ),
     )
-    with styled():
-        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 5.4), sharex=True)
-        for axis, (values, label, colours) in zip(axes, fields, strict=True):
-            field = np.full(width.shape, np.nan)
-            field[cells] = values
-            axis.set_facecolor("0.92")
-            axis.grid(visible=False)
-            look = {"cmap": colours, "shading": "gouraud", "rasterized": True, "vmin": 0.0}
-            drawn = axis.pcolormesh(width, radius, np.ma.masked_invalid(field), **look)
-            figure.colorbar(drawn, ax=axis, label=label)
-            axis.set(xlim=(nodes[:, 1].min(), nodes[:, 1].max()), ylim=(height.min(), height.max()))
-            axis.set_ylabel("Pinion radius (mm)")
-        axes[0].set_title(f"{torque:g} N m")
-        axes[1].set_xlabel("Along the pinion's axis, from the gear's (mm)")
-    return figure
+    along = Axis(
+        "Along the pinion's axis, from the gear's",
+        "mm",
+        low=float(nodes[:, 1].min()),
+        high=float(nodes[:, 1].max()),
+    )
+    up = Axis("Pinion radius", "mm", low=float(height.min()), high=float(height.max()))
+    panels = []
+    for values, name, unit, colours in fields:
+        field = np.full(width.shape, np.nan)
+        field[cells] = values
+        scale = ColourScale(name, unit, 0.0, float(np.nanmax(field, initial=0.0)) or 1.0, colours)
+        field_map = Map(width, radius, field, scale, smooth=True)
+        panels.append(Panel(along, up, [field_map], height=1.9, ground=UNLOADED_COLOUR))
+    panels[0] = replace(panels[0], title=f"{format_number(torque, 4)} N m")
+    return Figure(panels)
 
 
 def efficiency_map(table: pd.DataFrame) -> Figure:
@@ -79,51 +97,69 @@ def efficiency_map(table: pd.DataFrame) -> Figure:
 
     Left blank where a body would pass the flash point of the oil.
     """
-    shown = table.assign(loss_percent=100 * (1 - table["efficiency"]))
-    panels = (("loss_percent", "Loss (%)"), ("contact_temperature_c", "Contact temperature (°C)"))
-    with styled():
-        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 5.8), sharex=True)
-        for axis, (column, label) in zip(axes, panels, strict=True):
-            grid = shown.pivot(index="torque_n_m", columns="speed_rpm", values=column)
-            if min(grid.shape) < 2:
-                _lines(axis, shown, column, label)
-                continue
-            look = {"cmap": "viridis", "levels": 12}
-            drawn = axis.contourf(grid.columns, grid.index, np.ma.masked_invalid(grid.to_numpy()), **look)
-            figure.colorbar(drawn, ax=axis, label=label)
-            axis.set_ylabel("Torque on the pinion (N m)")
-        axes[-1].set_xlabel("Speed of the pinion (rpm)")
-    return figure
+    field_map = table.assign(loss_percent=100 * (1 - table["efficiency"]))
+    quantities = (("loss_percent", "Loss", "%"), ("contact_temperature_c", "Contact temperature", "°C"))
+    speed, torque = Axis("Speed of the pinion", "rpm"), Axis("Torque on the pinion", "N m")
+    panels = []
+    for column, name, unit in quantities:
+        grid = field_map.pivot(index="torque_n_m", columns="speed_rpm", values=column)
+        if min(grid.shape) < 2:
+            across, at = (
+                (speed, "speed_rpm") if field_map["torque_n_m"].nunique() == 1 else (torque, "torque_n_m")
+            )
+            curve = Curve(field_map[at], field_map[column], colour=BLUE, marker="circle")
+            panels.append(Panel(across, Axis(name, unit), [curve], height=2.0))
+            continue
+        values = grid.to_numpy(dtype=float)
+        levels = round_levels(float(np.nanmin(values)), float(np.nanmax(values)))
+        scale = ColourScale(name, unit, levels[0], levels[-1], levels=levels)
+        x, y = np.meshgrid(grid.columns.to_numpy(float), grid.index.to_numpy(float))
+        ends: Look = {"low": float(x.min()), "high": float(x.max())}
+        over = replace(torque, low=float(y.min()), high=float(y.max()))
+        panels.append(Panel(replace(speed, **ends), over, [Levels(x, y, values, scale)], height=2.0))
+    return Figure(panels)
 
 
 def machine_heat(meshes: pd.DataFrame, bodies: pd.DataFrame) -> Figure:
     """Loss of every mesh and heat of every body at the nominal load."""
     lost, heat = meshes[meshes["bin"] == 0], bodies[bodies["bin"] == 0]
-    with styled():
-        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 5.6))
-        for flank, colour in FLANK_COLOURS.items():
-            rows = lost[lost["flank"] == flank]
-            axes[0].barh(rows["mesh"], rows["loss_w"], color=colour, label=f"{flank} flank")
-        axes[0].set_yticks(lost["mesh"])
-        axes[0].set(xlabel="Friction loss of the mesh (W)")
-        axes[0].invert_yaxis()
-        legend_above(axes[0], 2)
-        axes[1].barh(heat["body"], heat["heat_w"], color="tab:red")
-        axes[1].set(xlabel="Heat that friction brings to the body (W)")
-        axes[1].invert_yaxis()
-    return figure
+    positions = {mesh: float(number) for number, mesh in enumerate(dict.fromkeys(lost["mesh"]))}
+    loss: list[Bars] = []
+    for flank, colour in FLANK_COLOURS.items():
+        rows = lost[lost["flank"] == flank]
+        if len(rows):
+            at, lengths = rows["mesh"].map(positions).to_numpy(float), rows["loss_w"].to_numpy(float)
+            loss.append(Bars(at, lengths, f"{flank} flank", colour, flat=True))
+    rows = np.arange(len(heat), dtype=float)
+    warm = Bars(rows, heat["heat_w"].to_numpy(float), colour=RED, flat=True)
+    return Figure(
+        [
+            Panel(
+                Axis("Friction loss of the mesh", "W"),
+                _names(positions),
+                loss,
+                height=0.4 + 0.2 * len(positions),
+            ),
+            Panel(
+                Axis("Heat that friction brings to the body", "W"),
+                _names(dict(zip(heat["body"], rows.tolist(), strict=True))),
+                [warm],
+                height=0.4 + 0.2 * len(heat),
+            ),
+        ],
+        shared_x=False,
+    )
 
 
-def _lines(axis: Axes, table: pd.DataFrame, column: str, label: str) -> None:
-    """A map of one torque or one speed."""
-    across = "speed_rpm" if table["torque_n_m"].nunique() == 1 else "torque_n_m"
-    axis.plot(table[across], table[column], "o-")
-    axis.set_ylabel(label)
+def _names(positions: Mapping[str, float]) -> Axis:
+    """Axis with the name of each place, the first above."""
+    ticks = [(at, name) for name, at in positions.items()]
+    return Axis("", "", low=-0.6, high=len(positions) - 0.4, is_falling=True, ticks=ticks)
 
 
 def _extreme(stage: Array, values: Array, on: Mask, sign: float) -> tuple[Array, Array]:
     """Places of the passage and the largest (sign 1) or smallest (-1) value at each."""
-    places, row = np.unique(stage[on], return_inverse=True)
-    extreme = np.full(places.size, -np.inf)
+    positions, row = np.unique(stage[on], return_inverse=True)
+    extreme = np.full(positions.size, -np.inf)
     np.maximum.at(extreme, row, sign * values[on])
-    return places, sign * extreme
+    return positions, sign * extreme

@@ -2,21 +2,21 @@
 
 import textwrap
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machine_layout import layout as layout_of
 from facegear.config.transmission import Transmission
-from facegear.plots.style import NARROW, styled
+from facegear.number_format import format_number
+from facegear.plots.colours import BLUE, GREEN, PURPLE, RED, grey
+from facegear.plots.description import Area, Arrow, Axis, Curve, Figure, Key, Look, Mark, Panel, Text
 from facegear.transmission.layout import Layout, Role, Side
 
-ROLE_COLOUR = {Role.INPUT: "tab:blue", Role.IDLER: "0.55", Role.TAIL: "tab:purple"}
-MESH, BEARING = "tab:red", "tab:green"
+ROLE_COLOUR = {Role.INPUT: BLUE, Role.IDLER: grey(0.55), Role.TAIL: PURPLE}
+OPACITY = 0.55
+"""Opacity of a drawn pinion."""
+MESH, BEARING = RED, GREEN
 ON_BEARINGS = "force on bearings, same scale"
 LONGEST = 0.55
 """Longest arrow over the mesh radius."""
@@ -49,95 +49,96 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
     """
     loads = meshes.set_index("mesh")
     forces = None if bearings is None else bearings.set_index("body")
-    cosine = np.cos(layout.pressure_angle)
-    pushed = loads["mean_n"].max() * cosine
+    pushed = loads["mean_n"].max() * np.cos(layout.pressure_angle)
     largest = (
         pushed if forces is None else max(pushed, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
     )
     order = sorted(range(len(layout.gears)), key=lambda g: -layout.gears[g].sign)
-    with styled():
-        figure, axes = plt.subplots(len(order), 1, figsize=(NARROW, 4.7 * len(order) + 1.0), squeeze=False)
-        for axis, g in zip(axes[:, 0], order, strict=True):
-            _panel(axis, layout, g, loads, forces, layout.mesh_radius * LONGEST / max(largest, 1e-300))
-        roles = {pinion.role for pinion in layout.pinions}
-        handles = [
-            plt.Line2D(
-                [], [], color=MESH, lw=2, label=f"tangential force on the gear, largest {_kilo(pushed)} kN"
-            ),
-            *([] if forces is None else [plt.Line2D([], [], color=BEARING, lw=2, label=ON_BEARINGS)]),
-            *(
-                plt.Line2D([], [], color=colour, lw=6, label=f"{role.value} pinion")
-                for role, colour in ROLE_COLOUR.items()
-                if role in roles
-            ),
-        ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=1)
-    return figure
+    metres = layout.mesh_radius * LONGEST / max(largest, 1e-300)
+    roles = {pinion.role for pinion in layout.pinions}
+    keys = [
+        Key(f"tangential force on the gear, largest {_kilo(pushed)} kN", MESH, width=2.0),
+        *([] if forces is None else [Key(ON_BEARINGS, BEARING, width=2.0)]),
+        *(
+            Key(f"{role.value} pinion", colour, area=True, opacity=OPACITY)
+            for role, colour in ROLE_COLOUR.items()
+            if role in roles
+        ),
+    ]
+    return Figure([_panel(layout, g, loads, forces, metres) for g in order], shared_x=False, keys=keys)
 
 
-def _panel(
-    axis: Axes, layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | None, metres: float
-) -> None:
+def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | None, metres: float) -> Panel:
     gear, radius = layout.gears[g], layout.mesh_radius
-    turns = gear.sign
-    for edge in (1.0 - HALF_FACE, 1.0 + HALF_FACE):
-        axis.add_patch(Circle((0.0, 0.0), edge * radius, fill=False, color="0.6", lw=1.0))
-    _turn_arrow(axis, 0.55 * radius, turns)
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)
+    marks: list[Mark] = [
+        Curve(edge * radius * np.cos(turn), edge * radius * np.sin(turn), colour=grey(0.6), width=1.0)
+        for edge in (1.0 - HALF_FACE, 1.0 + HALF_FACE)
+    ]
+    marks.append(_turn_arrow(0.55 * radius, gear.sign))
     half_width = 0.5 * layout.mesh_radius * layout.pinion_teeth / layout.gear_teeth
     for i, pinion in enumerate(layout.pinions):
         angle = layout.angles[i]
         along = np.array([np.cos(angle), np.sin(angle)])
         outwards = np.array([np.sin(angle), -np.cos(angle)])
         middle = radius * outwards
-        corners = [
-            middle + a * half_width * along + b * HALF_FACE * radius * outwards
-            for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-        ]
-        axis.add_patch(Polygon(corners, color=ROLE_COLOUR[pinion.role], alpha=0.55, lw=0))
+        corners = np.array(
+            [
+                middle + a * half_width * along + b * HALF_FACE * radius * outwards
+                for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+            ]
+        )
+        marks.append(Area(corners[:, 0], corners[:, 1], colour=ROLE_COLOUR[pinion.role], opacity=OPACITY))
         row = loads.loc[layout.mesh_names[layout.mesh_index(i, gear.side)]]
         drives = 1.0 if row["drive_fraction"] >= row["back_fraction"] else -1.0
-        force = turns * drives * row["mean_n"] * np.cos(layout.pressure_angle) * along
-        _arrow(axis, middle, metres * force, MESH)
+        force = gear.sign * drives * row["mean_n"] * np.cos(layout.pressure_angle) * along
+        marks += _arrow(middle, metres * force, MESH)
         if forces is not None and (gear.side is Side.UPPER or len(layout.gears) == 1):
             inside = (1.0 - 2.5 * HALF_FACE) * radius * outwards
-            _arrow(axis, inside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
+            marks += _arrow(inside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
         name = textwrap.fill(pinion.name, LETTERS)
-        _label(axis, radius, outwards, f"{name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN")
+        text = f"{name}\n{format_number(np.degrees(angle), 4)}°\n{_kilo(row['mean_n'])} kN"
+        marks.append(_label(radius, outwards, text))
     title = f"{gear.name.capitalize()}, seen from above"
     if forces is not None:
         own = forces.loc[gear.name]
-        _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
-        title += f"\naxial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
-    axis.text(0.0, TITLE * radius, title, ha="center", va="bottom", fontsize=10)
-    axis.set(xlim=(-REACH * radius, REACH * radius), aspect="equal")
-    axis.set_ylim(-BELOW * radius, (2.0 * REACH - BELOW) * radius)
-    axis.text(0.0, 0.3 * radius, f"mesh radius\n{1e3 * radius:.1f} mm", ha="center", va="center", fontsize=9)
-    axis.set_axis_off()
+        marks += _arrow(np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
+        title += f"\naxial on its bearing {_kilo(own['mean_z_n'])} kN"
+    marks.append(Text(0.0, TITLE * radius, title, across="center", upright="bottom"))
+    diameter = f"mesh diameter\n{format_number(2e3 * radius, 4)} mm"
+    marks.append(Text(0.0, 0.3 * radius, diameter, across="center"))
+    return Panel(
+        Axis("x", "m", low=-REACH * radius, high=REACH * radius),
+        Axis("y", "m", low=-BELOW * radius, high=(2.0 * REACH - BELOW) * radius),
+        marks,
+        height=4.5,
+        equal=True,
+        bare=True,
+    )
 
 
-def _label(axis: Axes, radius: float, outwards: np.ndarray, text: str) -> None:
+def _label(radius: float, outwards: np.ndarray, text: str) -> Text:
     """Text beside a pinion, outside the gear: it begins at the rim, whatever its length."""
     x, y = outwards
-    across = "center" if abs(x) < BESIDE else "left" if x > 0.0 else "right"
-    along = "center" if abs(y) < BESIDE else "bottom" if y > 0.0 else "top"
-    axis.text(*(LABEL * radius * outwards), text, ha=across, va=along, multialignment="center", fontsize=9)
+    look: Look = {
+        "across": "center" if abs(x) < BESIDE else "left" if x > 0.0 else "right",
+        "upright": "center" if abs(y) < BESIDE else "bottom" if y > 0.0 else "top",
+    }
+    at = LABEL * radius * outwards
+    return Text(float(at[0]), float(at[1]), text, **look)
 
 
-def _turn_arrow(axis: Axes, radius: float, turns: float) -> None:
+def _turn_arrow(radius: float, turns: float) -> Arrow:
     ends = np.radians([200.0, 250.0]) if turns > 0.0 else np.radians([250.0, 200.0])
     start, stop = ((radius * np.cos(a), radius * np.sin(a)) for a in ends)
-    bend = f"arc3,rad={0.25 * turns}"
-    arrow = FancyArrowPatch(start, stop, connectionstyle=bend, arrowstyle="-|>", mutation_scale=18, color="k")
-    axis.add_patch(arrow)
+    return Arrow(start, stop, width=1.0, bend=0.25 * turns)
 
 
-def _arrow(axis: Axes, start: np.ndarray, vector: np.ndarray, colour: str) -> None:
-    if np.hypot(*vector) > 0.0:
-        arrow = FancyArrowPatch(
-            start, start + vector, arrowstyle="-|>", mutation_scale=12, color=colour, lw=2
-        )
-        axis.add_patch(arrow)
+def _arrow(start: np.ndarray, vector: np.ndarray, colour: str) -> list[Arrow]:
+    """An arrow; none for a force of zero."""
+    end = start + vector
+    return [Arrow(tuple(start), tuple(end), colour)] if np.hypot(*vector) > 0.0 else []
 
 
 def _kilo(newtons: float) -> str:
-    return f"{newtons / 1e3:.1f}"
+    return format_number(newtons / 1e3)

@@ -1,22 +1,18 @@
 """Load-sharing coefficients over one mesh cycle, one line a point of a study."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
-import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from facegear.plots.style import NARROW, styled
+from facegear.number_format import format_number
+from facegear.plots.colours import colour_of
+from facegear.plots.description import Axis, Band, Curve, Figure, LineStyle, Panel
 
-LINES = ("-", "--", "-.", ":")
-COLOURS = ("black", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:orange")
-YLABEL = {
-    "inputs": "Load sharing coefficient of\n upper and lower face gear",
-    "idlers": "Load sharing coefficient of\n idler pinions and tail rotor idler",
+LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+LABEL = {
+    "inputs": "Load sharing coefficient\nof upper and lower face gear",
+    "idlers": "Load sharing coefficient\nof idlers and tail rotor idler",
 }
-ENTRY_HEIGHT = 0.2
-"""Inches by which a figure grows with each entry of its legend, 9 pt and its gap."""
 ENVELOPE = 0.02
 """An envelope narrower than this is a line, and not drawn."""
 
@@ -32,34 +28,34 @@ def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title
     rows = rows[rows["group"] == group]
     means = summary[(summary["group"] == group) & (summary["study"] == rows["study"].iloc[0])]
     means = means.set_index("point")
-    with styled():
-        points = rows["point"].nunique()
-        figure, axis = plt.subplots(figsize=(NARROW, 3.6 + ENTRY_HEIGHT * points))
-        for number, (point, curve) in enumerate(rows.groupby("point", sort=False)):
-            _draw(axis, curve, means.loc[point], number)
-        axis.set_xlim(0.0, 1e4 * rows["time_s"].max() * len(curve) / (len(curve) - 1))
-        top = max(2.0 if kind == "inputs" else 3.0, float(rows["envelope_high"].max()))
-        axis.set_ylim(0.95, top + 0.05)
-        axis.set_xlabel("Time over one mesh cycle (10$^{-4}$ s)")
-        axis.set_ylabel(YLABEL[kind])
-        axis.set_title(f"{title}: {group}", fontsize=9)
-        figure.legend(*axis.get_legend_handles_labels(), loc="outside lower center", ncols=1)
-    return figure
+    marks: list[Band | Curve] = []
+    for number, (point, curve) in enumerate(rows.groupby("point", sort=False)):
+        marks += _marks(curve, means.loc[point], number)
+    cycle = 1e3 * rows["time_s"].max() * len(curve) / (len(curve) - 1)
+    top = max(2.0 if kind == "inputs" else 3.0, float(rows["envelope_high"].max()))
+    panel = Panel(
+        Axis("Time over one mesh cycle", "ms", low=0.0, high=cycle),
+        Axis(LABEL[kind], "", low=0.95, high=top + 0.05),
+        marks,
+        title=f"{title}: {group}",
+        height=2.7,
+    )
+    return Figure([panel])
 
 
-def _draw(axis: Axes, curve: pd.DataFrame, mean: pd.Series, number: int) -> None:
-    """One point's curve, its envelope if it has one, and a legend line with mean and class of motion."""
-    colour = COLOURS[number % len(COLOURS)]
+def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band | Curve]:
+    """One point's curve, its envelope if it has one, and its name with mean and class of motion."""
+    colour = colour_of(number)
     if mean["motion"] == "period-1":
         curve = _closed(curve)
-    time = 1e4 * curve["time_s"]
+    time = 1e3 * curve["time_s"]
     if (curve["envelope_high"] - curve["envelope_low"]).max() > ENVELOPE:
-        axis.fill_between(time, curve["envelope_low"], curve["envelope_high"], color=colour, alpha=0.12, lw=0)
-    width = f" ± {mean['half_width']:.2f}" if mean["half_width"] > 0.005 else ""
-    label = f"{curve['label'].iloc[0]}: mean {mean['mean']:.2f}{width}, {mean['motion']}"
+        yield Band(time, curve["envelope_low"], curve["envelope_high"], colour=colour, opacity=0.12)
+    width = f" ± {format_number(mean['half_width'], 2)}" if mean["half_width"] > 0.005 else ""
+    name = f"{curve['label'].iloc[0]}: mean {format_number(mean['mean'])}{width}, {mean['motion']}"
     if mean["undefined_fraction"] > 0.005:
-        label += f", no load {100 * mean['undefined_fraction']:.0f} % of the time"
-    axis.plot(time, curve["coefficient"], LINES[number % len(LINES)], color=colour, lw=1.3, label=label)
+        name += f", no load {format_number(100 * mean['undefined_fraction'], 2)} % of the time"
+    yield Curve(time, curve["coefficient"], name, colour, LINES[number % len(LINES)], width=1.3)
 
 
 def _closed(curve: pd.DataFrame) -> pd.DataFrame:

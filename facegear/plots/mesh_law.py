@@ -2,21 +2,21 @@
 
 from collections.abc import Sequence
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from facegear.arrays import Arrays
-from facegear.plots.style import NARROW, styled
-from facegear.plots.sweep import select
+from facegear.number_format import format_number
+from facegear.plots.colours import BLUE, GREEN, ORANGE, PURPLE, RED, grey, shades
+from facegear.plots.description import Axis, Bars, Curve, Figure, Panel, Surface, Text, apart
+from facegear.plots.sweep import rms_axis, select, speed_axis
+from facegear.plots.sweeps_beside import LINES as SWEEP_LINES
 from facegear.stiffness.load_dependent import forces_over_pitch
 
 LINES = 8
 POSITIONS = 96
 DEPTHS = 60
-LAW_COLOURS = ("tab:red", "tab:blue", "tab:green", "tab:purple")
+LAW_COLOURS = (RED, BLUE, GREEN, PURPLE)
 
 
 def force_lines(law: Arrays) -> Figure:
@@ -25,16 +25,21 @@ def force_lines(law: Arrays) -> Figure:
     amounts = last * np.arange(1, LINES + 1) / LINES
     phases = np.linspace(0.0, 1.0, POSITIONS + 1)
     forces = 1e-3 * forces_over_pitch(law, 0, phases, amounts)
-    with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 3.8))
-        for n, (amount, line) in enumerate(zip(amounts, forces, strict=True)):
-            axis.plot(phases, line, color=plt.get_cmap("viridis")(0.9 * (1.0 - n / LINES)), lw=1.3)
-            text = f"{1e6 * amount:.3g} µm"
-            axis.annotate(text, (1.0, line[-1]), (3, 0), textcoords="offset points", va="center")
-        axis.set(xlabel="Mesh period", ylabel="Mesh force (kN)", xlim=(0, 1))
-        axis.set_ylim(bottom=0)
-        axis.set_title("Lines: deflection beyond first contact", fontsize=9, loc="left")
-    return figure
+    marks: list[Curve | Text] = []
+    for amount, force, colour in zip(amounts, forces, reversed(shades(LINES)), strict=True):
+        text = f"{format_number(1e6 * amount)} µm"
+        marks += [
+            Curve(phases, force, text, colour, width=1.3, in_legend=False),
+            Text(1.0, float(force[-1]), text, shift=(3.0, 0.0)),
+        ]
+    panel = Panel(
+        Axis("Mesh period", "", low=0.0, high=1.0),
+        Axis("Mesh force", "kN", low=0.0),
+        marks,
+        title="Lines: deflection, counted from first contact",
+        height=2.8,
+    )
+    return Figure([panel])
 
 
 def force_surface(law: Arrays) -> Figure:
@@ -42,16 +47,16 @@ def force_surface(law: Arrays) -> Figure:
     amounts = np.linspace(0.0, law["level_m"][0, -1], DEPTHS)
     phases = np.linspace(0.0, 1.0, POSITIONS + 1)
     forces = 1e-3 * forces_over_pitch(law, 0, phases, amounts)
-    with styled():
-        figure = plt.figure(figsize=(NARROW, 4.2))
-        axis = figure.add_subplot(projection="3d")
-        axis.plot_surface(
-            *np.meshgrid(phases, 1e6 * amounts), forces, cmap="viridis", rcount=DEPTHS, ccount=POSITIONS // 2
-        )
-        axis.set(xlabel="Mesh period", ylabel="Deflection (µm)", zlabel="Mesh force (kN)", xlim=(0, 1))
-        axis.set_box_aspect(None, zoom=0.85)
-        axis.view_init(elev=24, azim=-128)
-    return figure
+    surface = Surface(*np.meshgrid(phases, 1e6 * amounts), forces)
+    panel = Panel(
+        Axis("Mesh period", "", low=0.0, high=1.0),
+        Axis("Deflection", "µm", "from first contact"),
+        [surface],
+        height=3.7,
+        z=Axis("Mesh force", "kN"),
+        view=(24.0, -128.0),
+    )
+    return Figure([panel])
 
 
 def figures(law: Arrays) -> tuple[Figure, ...]:
@@ -61,54 +66,47 @@ def figures(law: Arrays) -> tuple[Figure, ...]:
 
 def loads_in_table(loads: pd.DataFrame) -> Figure:
     """Forces of every mesh at the nominal speed and in the sweep beside the levels of its law."""
-    with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 1.6 + 0.34 * len(loads)))
-        rows = np.arange(len(loads))[::-1]
-        nominal = loads[["smallest_n", "mean_n", "largest_n"]].to_numpy().T / 1e3
-        axis.barh(rows, 1e-3 * loads["last_level_n"], 0.8, color="0.92", label="in the table")
-        axis.plot(1e-3 * loads["sweep_largest_n"], rows, "k|", ms=9, mew=1.4, label="largest in the sweep")
-        axis.hlines(rows, nominal[0], nominal[2], color="tab:blue", lw=4, label="range, nominal speed")
-        axis.plot(nominal[1], rows, "o", color="tab:orange", ms=4, label="mean, nominal speed")
-        for row, load in zip(rows, loads.itertuples(), strict=True):
-            if (past := max(load.past_fraction, load.sweep_past_fraction)) > 0.0:
-                end = 1e-3 * max(load.sweep_largest_n, load.last_level_n)
-                text = f" {100 * past:.2g} % past"
-                axis.annotate(text, (end, row), (3, 0), textcoords="offset points", va="center")
-        axis.set_yticks(rows, loads["mesh"])
-        axis.set(xlabel="Mesh force (kN)", xlim=(0, None))
-        axis.grid(axis="y", visible=False)
-        figure.legend(loc="outside upper center", ncols=2)
-    return figure
+    rows = np.arange(len(loads))[::-1].astype(float)
+    smallest, mean, largest = loads[["smallest_n", "mean_n", "largest_n"]].to_numpy().T / 1e3
+    sweep_largest = 1e-3 * loads["sweep_largest_n"]
+    ranges = apart(np.stack([smallest, largest], axis=1), np.stack([rows, rows], axis=1))
+    marks: list[Bars | Curve | Text] = [
+        Bars(rows, 1e-3 * loads["last_level_n"].to_numpy(), "in the table", grey(0.9), flat=True),
+        Curve(sweep_largest, rows, "largest in the sweep", line="none", marker="line-ns", size=9.0),
+        Curve(*ranges, "range, nominal speed", BLUE, width=4.0),
+        Curve(mean, rows, "mean, nominal speed", ORANGE, line="none", marker="circle", size=4.0),
+    ]
+    for row, load in zip(rows, loads.itertuples(), strict=True):
+        if (past := max(load.past_fraction, load.sweep_past_fraction)) > 0.0:
+            end = 1e-3 * max(load.sweep_largest_n, load.last_level_n)
+            text = f"{format_number(100 * past, 2)} % of the time past it"
+            marks.append(Text(end, float(row), text, shift=(5.0, 0.0)))
+    top = 1e-3 * loads[["last_level_n", "sweep_largest_n"]].to_numpy().max()
+    margin = 1.6 if any(isinstance(mark, Text) for mark in marks) else 1.05
+    names = list(zip(rows.tolist(), loads["mesh"], strict=True))
+    panel = Panel(
+        Axis("Mesh force", "kN", low=0.0, high=float(margin * top)),
+        Axis("", "", low=-0.6, high=len(loads) - 0.4, ticks=names),
+        marks,
+        height=0.5 + 0.3 * len(loads),
+    )
+    return Figure([panel])
 
 
 def swept_laws(sweeps: Sequence[pd.DataFrame], labels: Sequence[str], meshes: Sequence[str]) -> Figure:
     """RMS of mesh deflections without their mean of the same machine with several laws laid over each
     other.
     """
-    with styled():
-        figure, axes = plt.subplots(
-            len(meshes), 1, figsize=(NARROW, 1.2 + 1.6 * len(meshes)), sharex=True, squeeze=False
-        )
-        for axis, mesh in zip(axes[:, 0], meshes, strict=True):
-            for sweep, label, colour in zip(sweeps, labels, LAW_COLOURS, strict=False):
-                for direction, line in (("up", "-"), ("down", "--")):
-                    curve = select(sweep, direction, "deflection_ac_rms_um", mesh)
-                    axis.plot(
-                        curve["speed_rpm"],
-                        curve["value"],
-                        line,
-                        color=colour,
-                        lw=1,
-                        label=f"{label}, {direction}",
-                    )
-            axis.set_title(mesh, fontsize=9, loc="left")
-            axis.set_ylabel("RMS of d (µm)")
-            axis.set_ylim(bottom=0)
-        axes[-1, 0].set_xlabel("input rotation speed (rpm)")
-        axes[-1, 0].set_xlim(0, sweeps[0]["speed_rpm"].max())
-        axes[-1, 0].xaxis.set_major_locator(MaxNLocator(5))
-        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    return figure
+    panels = []
+    for mesh in meshes:
+        curves = []
+        for sweep, label, colour in zip(sweeps, labels, LAW_COLOURS, strict=False):
+            for direction, line in SWEEP_LINES.items():
+                curve = select(sweep, direction, "deflection_ac_rms_um", mesh)
+                name = f"{label}, {direction}"
+                curves.append(Curve(curve["speed_rpm"], curve["value"], name, colour, line, width=1.0))
+        panels.append(Panel(speed_axis(sweeps[0]), rms_axis(), curves, title=mesh, height=1.2))
+    return Figure(panels, title="RMS of the deflection d along the line of action without its mean")
 
 
 def load_figures(

@@ -1,14 +1,13 @@
 """Mode shapes, one panel for each kind of mode."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from facegear.arrays import Array
-from facegear.plots.style import NARROW, styled
-
-COLOURS = {"pinion": "tab:blue", "face gear": "tab:orange", "pinion coupled face gear": "tab:green"}
+from facegear.number_format import format_number
+from facegear.plots.campbell import CLASS_COLOURS
+from facegear.plots.colours import BLACK, grey
+from facegear.plots.description import Axis, Bars, Figure, Line, Panel
 
 
 def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
@@ -38,33 +37,31 @@ def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
 
 def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
     """Bars over all DOF, relative to the largest in the mode (m and rad alike, as in the paper)."""
-    shown = typical_modes(frequencies)
     by_order = frequencies.set_index("order")
     dofs = shapes[shapes["order"] == shapes["order"].iloc[0]].reset_index(drop=True)
     bodies = dofs["body"].drop_duplicates()
-    with styled():
-        figure, axes = plt.subplots(
-            len(shown), 1, figsize=(NARROW, 1.6 + 1.35 * len(shown)), sharex=True, squeeze=False
-        )
-        for axis, orders in zip(axes[:, 0], shown, strict=True):
-            mode = by_order.loc[orders[0]]
-            axis.bar(dofs.index, amplitudes(shapes, orders), color=COLOURS[mode["class"]], width=0.8)
-            axis.axhline(0.0, color="black", lw=0.6)
-            axis.set_ylim(-1.1 if len(orders) == 1 else 0.0, 1.1)
-            axis.set_title(_title(orders, mode), fontsize=9, loc="left")
-            for edge in bodies.index[1:]:
-                axis.axvline(edge - 0.5, color="0.8", lw=0.6)
-            axis.grid(axis="x", visible=False)
-        axes[-1, 0].set_xticks(bodies.index + 1.5, bodies, rotation=90)
-        figure.supylabel("Amplitude relative to the largest", fontsize=9)
-        figure.supxlabel("Degrees of freedom: x, y, z, θ of each body", fontsize=9)
-    return figure
+    names = [(float(first) + 1.5, str(body)) for first, body in bodies.items()]
+    across = Axis("Degrees of freedom: x, y, z, θ of each body", "", ticks=names)
+    panels = []
+    for orders in typical_modes(frequencies):
+        mode = by_order.loc[orders[0]]
+        heights = amplitudes(shapes, orders)
+        marks: list[Bars | Line] = [
+            *(Line(edge - 0.5, colour=grey(0.8), width=0.6) for edge in bodies.index[1:]),
+            Line(0.0, "y", colour=BLACK, width=0.6),
+            Bars(dofs.index.to_numpy(dtype=float), heights, colour=CLASS_COLOURS[mode["class"]]),
+        ]
+        up = Axis("", "", low=-1.1 if len(orders) == 1 else 0.0, high=1.1)
+        panels.append(Panel(across, up, marks, title=_title(orders, mode), height=0.85))
+    return Figure(panels, y_label="Amplitude relative to the largest")
 
 
 def _title(orders: tuple[int, ...], mode: pd.Series) -> str:
     if len(orders) == 1:
-        return f"Mode {orders[0]}, {mode['frequency_hz']:.1f} Hz\n{mode['symbols']}"
-    which = f"Modes {orders[0]} to {orders[-1]} (x {len(orders)}), {mode['frequency_hz']:.1f} Hz"
+        return f"Mode {orders[0]}, {format_number(mode['frequency_hz'], 4)} Hz\n{mode['symbols']}"
+    which = (
+        f"Modes {orders[0]} to {orders[-1]} (x {len(orders)}), {format_number(mode['frequency_hz'], 4)} Hz"
+    )
     return f"{which}, root sum of squares\n{mode['symbols']}"
 
 

@@ -3,15 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.figure import Figure
 
-from facegear.plots.style import NARROW, legend_above, styled
+from facegear.plots.colours import BLACK, BLUE, RED, colour_of, grey
+from facegear.plots.description import Axis, Curve, Figure, LineStyle, Look, Panel
 
-GREY, BLUE, ORANGE = "#999999", "#0072B2", "#D55E00"
-COLOURS = (BLUE, ORANGE, "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-MARKERS = "sD^vP*"
+MARKERS = ("square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
 
 
 def front_figure(
@@ -19,44 +17,37 @@ def front_figure(
 ) -> Figure:
     """Every design by its first two objectives, by generation where there is but one; front and winners."""
     across, up = objectives[:2] if len(objectives) > 1 else ("generation", objectives[0])
-    with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 4.4))
-        known = designs[designs["error"] == ""]
-        axis.plot(known[across], known[up], ".", ms=3, color=GREY, label="designs tried", rasterized=True)
-        axis.plot(front[across], front[up], "o-", ms=4, lw=1, color=BLUE, label="front")
-        for number, row in enumerate(winners.itertuples() if len(objectives) > 1 else ()):
-            given = winners.loc[row.Index]
-            colour = ORANGE if row.design == "nominal" else "black"
-            label, marker = row.design.replace("_", " "), MARKERS[number % len(MARKERS)]
-            axis.plot(
-                given[f"{across}_searched"],
-                given[f"{up}_searched"],
-                marker,
-                ms=8,
-                mfc="none",
-                color=colour,
-                label=label,
-            )
-        axis.set_xlabel(across.replace("_", " "))
-        axis.set_ylabel(up.replace("_", " "))
-        legend_above(axis, 2)
-    return figure
+    known = designs[designs["error"] == ""]
+    dots: Look = {"line": "none", "marker": "dot", "size": 3.0}
+    marks = [
+        Curve(known[across], known[up], "designs tried", grey(0.6), **dots),
+        Curve(front[across], front[up], "front", BLUE, width=1.0, marker="circle", size=4.0),
+    ]
+    for number, row in enumerate(winners.itertuples() if len(objectives) > 1 else ()):
+        at = winners.loc[[row.Index], f"{across}_searched"], winners.loc[[row.Index], f"{up}_searched"]
+        colour = RED if row.design == "nominal" else BLACK
+        look: Look = {"line": "none", "marker": MARKERS[number % len(MARKERS)], "size": 8.0, "hollow": True}
+        marks.append(Curve(*at, row.design.replace("_", " "), colour, **look))
+    return Figure([Panel(_axis(across), _axis(up), marks, height=3.2)])
+
+
+def _axis(objective: str) -> Axis:
+    return Axis(objective.replace("_", " "), "", integer=objective == "generation")
 
 
 def hypervolume_figure(hypervolume: pd.DataFrame) -> Figure:
     """Share of the box of all fronts that each island has covered, over its generations."""
-    with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 3.0))
-        for number, (seed, rows) in enumerate(hypervolume.groupby("seed")):
-            colour, dash = COLOURS[number % len(COLOURS)], ("-", "--", ":", "-.")[number % 4]
-            axis.plot(
-                rows["generation"], 100.0 * rows["hypervolume"], dash, color=colour, label=f"seed {seed}"
-            )
-        axis.set_xlabel("Generation")
-        axis.set_ylabel("Hypervolume (%)")
-        if len(hypervolume):
-            legend_above(axis, 4)
-    return figure
+    curves = [
+        Curve(
+            rows["generation"],
+            100.0 * rows["hypervolume"],
+            f"seed {seed}",
+            colour_of(number + 1),
+            LINES[number % len(LINES)],
+        )
+        for number, (seed, rows) in enumerate(hypervolume.groupby("seed"))
+    ]
+    return Figure([Panel(Axis("Generation", "", integer=True), Axis("Hypervolume", "%"), curves, height=2.2)])
 
 
 def figures(

@@ -2,26 +2,22 @@
 
 from collections.abc import Mapping
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
 
 from facegear.arrays import Array
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.shafts import ShaftSection
 from facegear.config.transmission import Transmission
-from facegear.plots.style import NARROW, styled
+from facegear.number_format import format_number
+from facegear.plots.colours import BLUE, ORANGE, RED, WHITE, grey
+from facegear.plots.description import Area, Axis, Curve, Figure, Key, Line, LineStyle, Look, Panel, Text
 
-SHAFT, BORE, PINION = "0.75", "white", "#E69F00"
-CURVES = {
-    "x": ("tangential to the gear (x)", "#0072B2", "-"),
-    "y": ("along the gear's axis (y)", "#D55E00", "--"),
+SHAFT, BORE, PINION = grey(0.75), WHITE, ORANGE
+CURVES: Mapping[str, tuple[str, str, LineStyle]] = {
+    "x": ("tangential to the gear (x)", BLUE, "solid"),
+    "y": ("along the gear's axis (y)", RED, "dash"),
 }
-PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
 MARGIN = 0.06
 """Room beside a shaft, in its length."""
 
@@ -52,38 +48,34 @@ def shafts_figure(
     """Above: a shaft with its bearings and the forces on them; below: its deflections. Shafts alike in all
     of that share a pair of panels.
     """
-    groups = _alike(sections, bearings, deflections)
-    with styled():
-        figure, axes = plt.subplots(
-            2 * len(groups),
-            1,
-            figsize=(NARROW, 0.9 + 3.2 * len(groups)),
-            height_ratios=[1.3, 1.0] * len(groups),
+    panels = []
+    for names in _alike(sections, bearings, deflections):
+        section = sections[names[0]]
+        margin = MARGIN * section.length_mm + 0.5 * (width_mm or 0.0)
+        along = Axis(
+            "Along the shaft, from its inner end outwards", "mm", low=-margin, high=section.length_mm + margin
         )
-        for number, names in enumerate(groups):
-            side, below = axes[2 * number], axes[2 * number + 1]
-            section = sections[names[0]]
-            _side_view(side, section, bearings[bearings["pinion"] == names[0]], radius_mm, width_mm)
-            side.set_title(", ".join(names), loc="left")
-            own = deflections[deflections["pinion"] == names[0]]
-            for key, (words, colour, line) in CURVES.items():
-                below.plot(own["at_mm"], own[f"{key}_um"], line, color=colour, label=words)
-            below.set_ylabel("Deflection (µm)")
-            room = MARGIN * section.length_mm + 0.5 * (width_mm or 0.0)
-            for axis in (side, below):
-                for at in (section.pinion_mm, *(bearing.at_mm for bearing in section.bearings)):
-                    axis.axvline(at, color="0.6", lw=0.8, ls=":", zorder=0)
-                axis.set_xlim(-room, section.length_mm + room)
-        axes[-1].set_xlabel("Along the shaft, from its inner end outwards (mm)")
-        handles, labels = axes[1].get_legend_handles_labels()
-        handles += [Patch(color=PINION, alpha=0.7), Line2D([], [], ls="none", marker="^", color="k")]
-        figure.legend(
-            handles,
-            [*labels, "pinion", "bearing and radial force on it"],
-            loc="outside lower center",
-            ncols=2,
-        )
-    return figure
+        positions = [
+            Line(at, colour=grey(0.6), line="dot")
+            for at in (section.pinion_mm, *(bearing.at_mm for bearing in section.bearings))
+        ]
+        forces = bearings[bearings["pinion"] == names[0]]
+        side, reach = _side_view(section, forces, radius_mm, width_mm)
+        height = Axis("", "", low=-1.1 * reach, high=1.1 * reach)
+        own = deflections[deflections["pinion"] == names[0]]
+        curves = [
+            Curve(own["at_mm"], own[f"{key}_um"], words, colour, line)
+            for key, (words, colour, line) in CURVES.items()
+        ]
+        panels += [
+            Panel(along, height, [*positions, *side], title=", ".join(names), height=1.5, bare=True),
+            Panel(along, Axis("Deflection", "µm"), [*positions, *curves], height=1.2),
+        ]
+    keys = [
+        Key("pinion", PINION, area=True, opacity=0.7),
+        Key("bearing and radial force on it", line="none", marker="triangle-up"),
+    ]
+    return Figure(panels, shared_x=False, keys=keys)
 
 
 def _alike(
@@ -105,36 +97,40 @@ def _alike(
 
 
 def _side_view(
-    axis: Axes,
     section: ShaftSection,
     bearings: pd.DataFrame,
     radius_mm: float,
     width_mm: float | None,
-) -> None:
+) -> tuple[list[Area | Curve | Text], float]:
+    """Marks of a shaft with its pinion, bearings and forces, and how far (mm) it reaches from its axis."""
+    marks: list[Area | Curve | Text] = []
     begin = 0.0
     for segment in section.segments:
         for diameter, colour in ((segment.diameter_mm, SHAFT), (segment.bore_mm, BORE)):
             if diameter > 0.0:
-                corner = (begin, -0.5 * diameter)
-                axis.add_patch(
-                    Rectangle(corner, segment.length_mm, diameter, facecolor=colour, edgecolor="0.3", lw=0.7)
-                )
+                box = _box(begin, segment.length_mm, 0.5 * diameter)
+                marks.append(Area(*box, colour=colour, outline=grey(0.3)))
         begin += segment.length_mm
     width = width_mm or 0.0
-    look = {"facecolor": PINION, "edgecolor": PINION, "alpha": 0.7, "lw": 2.0}
-    axis.add_patch(Rectangle((section.pinion_mm - 0.5 * width, -radius_mm), width, 2.0 * radius_mm, **look))
+    pinion = _box(section.pinion_mm - 0.5 * width, width, radius_mm)
+    marks.append(Area(*pinion, colour=PINION, opacity=0.7, outline=PINION))
     outer = max(segment.diameter_mm for segment in section.segments) / 2.0
     forces = bearings.set_index("bearing")["radial_n"]
     for letter, bearing in zip(forces.index, section.bearings, strict=True):
         half = 0.5 * _diameter_at(section, bearing.at_mm)
-        axis.plot(bearing.at_mm, -half, "^", color="k", ms=9, clip_on=False)
-        axis.plot(bearing.at_mm, half, "v", color="k", ms=9, clip_on=False)
-        text = f"{letter}\n{1e-3 * forces[letter]:.2f} kN"
-        look = {"textcoords": "offset points", "ha": "center", "va": "top", "bbox": PAPER}
-        axis.annotate(text, (bearing.at_mm, -half), (0, -12), **look)
-    reach = max(outer, radius_mm)
-    axis.set_ylim(-1.1 * reach, 1.1 * reach)
-    axis.set_axis_off()
+        for height, marker in ((-half, "triangle-up"), (half, "triangle-down")):
+            at = np.array([bearing.at_mm]), np.array([height])
+            marks.append(Curve(*at, line="none", marker=marker, size=9.0))
+        text = f"{letter}\n{format_number(1e-3 * forces[letter])} kN"
+        look: Look = {"shift": (0.0, -12.0), "across": "center", "upright": "top", "paper": True}
+        marks.append(Text(bearing.at_mm, -half, text, **look))
+    return marks, max(outer, radius_mm)
+
+
+def _box(begin: float, length: float, half: float) -> tuple[Array, Array]:
+    """Corners of a rectangle about the axis."""
+    end = begin + length
+    return np.array([begin, end, end, begin, begin]), half * np.array([-1.0, -1.0, 1.0, 1.0, -1.0])
 
 
 def _diameter_at(section: ShaftSection, at: float) -> float:

@@ -1,19 +1,19 @@
 """Root stress, pressure and dynamic factor over speed, of every motion known at a speed."""
 
-import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
-from facegear.plots.style import NARROW, styled
+from facegear.plots.colours import grey
+from facegear.plots.description import Axis, Curve, Figure, Line, Look, Panel, Span
 from facegear.plots.sweep import DIRECTION_STYLES
 
 PANELS = {
-    "face_gear_mpa": "Face gear:\nroot stress (MPa)",
-    "pinion_mpa": "Pinion:\nroot stress (MPa)",
-    "pressure_mpa": "Pressure (MPa)",
-    "dynamic_factor": "Dynamic factor",
+    "face_gear_mpa": ("Face gear:\nroot stress", "MPa"),
+    "pinion_mpa": ("Pinion:\nroot stress", "MPa"),
+    "pressure_mpa": ("Pressure", "MPa"),
+    "dynamic_factor": ("Dynamic factor", ""),
 }
+BRANCH: Look = {"colour": grey(0.6), "line": "none", "marker": "dot", "size": 3.0}
+BEYOND = "beyond the torques of the contact analysis"
 
 
 def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
@@ -23,28 +23,24 @@ def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
     """
     followed = table[table["motion"].str.startswith("branch ")]
     solved = table[table["within_torques_solved"]]
-    with styled():
-        figure, axes = plt.subplots(len(PANELS), 1, figsize=(NARROW, 7.6), sharex=True)
-        for axis, (column, label) in zip(axes, PANELS.items(), strict=True):
-            if len(followed):
-                axis.plot(
-                    followed["speed_rpm"], followed[column], ".", color="0.6", ms=3, label="stable branch"
-                )
-            for direction, (colour, line) in DIRECTION_STYLES.items():
-                rows = table[table["motion"] == f"sweep {direction}"]
-                axis.plot(
-                    rows["speed_rpm"], rows[column], line, color=colour, lw=1, label=f"sweep {direction}"
-                )
-            axis.axvline(speed_rpm, color="0.3", lw=0.8, ls=":")
-            axis.set_ylabel(label)
-            axis.set_ylim(bottom=0)
-            if len(solved) < len(table):
-                first = solved[column].max() if len(solved) else 0.0
-                axis.axhspan(first, axis.get_ylim()[1], color="0.5", alpha=0.12, lw=0)
-        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
-        axes[-1].xaxis.set_major_locator(MaxNLocator(5))
-        axes[-1].set_xlabel("Input rotation speed (rpm)")
-    return figure
+    speed = Axis("Input speed", "rpm")
+    panels = []
+    for column, (name, unit) in PANELS.items():
+        marks: list[Curve | Line | Span] = []
+        if len(followed):
+            marks.append(Curve(followed["speed_rpm"], followed[column], "stable branch", **BRANCH))
+        for direction, (colour, line) in DIRECTION_STYLES.items():
+            rows = table[table["motion"] == f"sweep {direction}"]
+            if len(rows):
+                name_of = f"sweep {direction}"
+                marks.append(Curve(rows["speed_rpm"], rows[column], name_of, colour, line, width=1.0))
+        marks.append(Line(speed_rpm, name="nominal speed", colour=grey(0.3), line="dot"))
+        top = 1.05 * float(table[column].max())
+        if len(solved) < len(table):
+            first = float(solved[column].max()) if len(solved) else 0.0
+            marks.append(Span(first, top, "y", name=BEYOND, opacity=0.12))
+        panels.append(Panel(speed, Axis(name, unit, low=0.0, high=top), marks, height=1.5))
+    return Figure(panels)
 
 
 def figures(table: pd.DataFrame, speed_rpm: float) -> tuple[Figure, ...]:

@@ -1,15 +1,15 @@
 """Mean split of loads and largest forces of meshes over the numbers of a study."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any
 
-import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from facegear.plots.style import NARROW, mesh_looks, styled
+from facegear.plots.colours import mesh_looks
+from facegear.plots.compare import split_label
+from facegear.plots.description import Axis, Curve, Figure, Look, Panel
 
-MARKERS = "osD^vPX"
+MARKERS = ("circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "star")
 WIDE = 30.0
 """Ratio of the largest number to the smallest from which the axis is logarithmic."""
 PERIODIC = "period-1"
@@ -24,38 +24,50 @@ def figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:
 
 def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
     """Two panels for each label of the other axis: fraction of the group's load, largest force."""
-    cases = list(forces.groupby("beside", sort=False))
     looks = mesh_looks(dict.fromkeys(forces["mesh"]))
-    with styled():
-        figure, axes = plt.subplots(
-            2 * len(cases), 1, figsize=(NARROW, 1.7 + 2.4 * 2 * len(cases)), sharex=True, squeeze=False
-        )
-        for number, (beside, rows) in enumerate(cases):
-            split, largest = axes[2 * number : 2 * number + 2, 0]
-            _curves(split, rows[rows["group"] != ""], looks, "fraction", 100.0)
-            _curves(largest, rows, looks, "largest_n", 1e-3)
-            split.set(ylabel="Mean fraction of the\nload of its group (%)", title=str(beside))
-            largest.set(ylabel="Largest dynamic\nforce (kN)", ylim=(0.0, None))
-        numbers = forces["number"]
-        if numbers.min() > 0.0 and numbers.max() > WIDE * numbers.min():
-            axes[-1, 0].set_xscale("log")
-        axes[-1, 0].set_xlabel(str(forces["axis"].iloc[0]))
-        figure.legend(*axes[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-        figure.suptitle(title, fontsize=9)
-    return figure
+    numbers = forces["number"]
+    is_wide = numbers.min() > 0.0 and numbers.max() > WIDE * numbers.min()
+    across = Axis(*split_label(str(forces["axis"].iloc[0])), logarithmic=bool(is_wide))
+    panels = []
+    for beside, rows in forces.groupby("beside", sort=False):
+        group_rows = rows[rows["group"] != ""]
+        panels += [
+            Panel(
+                across,
+                Axis("Mean fraction of the\nload of its group", "%"),
+                list(_curves(group_rows, looks, "fraction", 100.0, in_legend=False)),
+                title=str(beside),
+                height=1.9,
+            ),
+            Panel(
+                across,
+                Axis("Largest dynamic\nforce", "kN", low=0.0),
+                list(_curves(rows, looks, "largest_n", 1e-3)),
+                height=1.9,
+            ),
+        ]
+    return Figure(panels, title=title)
 
 
 def _curves(
-    axis: Axes, rows: pd.DataFrame, looks: Mapping[str, Mapping[str, str]], column: str, scale: float
-) -> None:
+    rows: pd.DataFrame, looks: Mapping[str, Any], column: str, scale: float, in_legend: bool = True
+) -> Iterator[Curve]:
     """A curve a mesh; hollow marks where the motion does not repeat with the mesh cycle."""
-    colours = list(dict.fromkeys(look["color"] for look in looks.values()))
+    colours = list(dict.fromkeys(look["colour"] for look in looks.values()))
     for mesh, every in rows.groupby("mesh", sort=False):
         look = looks[str(mesh)]
-        mark = {"marker": MARKERS[colours.index(look["color"]) % len(MARKERS)], "ms": 4.5}
+        marker = MARKERS[colours.index(look["colour"]) % len(MARKERS)]
         own = every.sort_values("number")
-        axis.plot(own["number"], scale * own[column], lw=1.3, label=str(mesh), **look, **mark)
+        yield Curve(
+            own["number"],
+            scale * own[column],
+            str(mesh),
+            width=1.3,
+            marker=marker,
+            in_legend=in_legend,
+            **look,
+        )
         other = own[own["motion"] != PERIODIC]
         if len(other):
-            hollow = {**mark, "color": look["color"], "ls": "none", "markerfacecolor": "white"}
-            axis.plot(other["number"], scale * other[column], **hollow)
+            hollow: Look = {"colour": look["colour"], "line": "none", "marker": marker, "hollow": True}
+            yield Curve(other["number"], scale * other[column], str(mesh), in_legend=False, **hollow)

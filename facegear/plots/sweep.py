@@ -1,17 +1,21 @@
 """RMS over speed."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-import matplotlib.pyplot as plt
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
-from facegear.plots.style import NARROW, styled
+from facegear.plots.colours import BLUE, GREEN, RED
+from facegear.plots.description import Axis, Curve, Figure, Line, LineStyle, Panel
 
-DIRECTION_STYLES = {"up": ("tab:red", "-"), "down": ("tab:blue", "--")}
-AXIS_STYLES = {"x": ("tab:red", "-"), "y": ("tab:blue", "--"), "z": ("tab:green", ":")}
+DIRECTION_STYLES: Mapping[str, tuple[str, LineStyle]] = {"up": (RED, "solid"), "down": (BLUE, "dash")}
+AXIS_STYLES: Mapping[str, tuple[str, LineStyle]] = {
+    "x": (RED, "solid"),
+    "y": (BLUE, "dash"),
+    "z": (GREEN, "dot"),
+}
+RMS_HEIGHT = 1.3
+"""Inches of a panel of RMS over speed."""
 
 
 def select(sweep: pd.DataFrame, direction: str, quantity: str, item: str) -> pd.DataFrame:
@@ -22,30 +26,51 @@ def select(sweep: pd.DataFrame, direction: str, quantity: str, item: str) -> pd.
     return rows.sort_values("speed_rpm")
 
 
+def speed_axis(sweep: pd.DataFrame) -> Axis:
+    """Return the axis of the swept speeds.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Tidy table of a sweep.
+
+    Returns
+    -------
+    Axis
+        The axis, rpm.
+    """
+    return Axis("Input speed", "rpm", low=0.0, high=float(sweep["speed_rpm"].max()))
+
+
+def rms_axis() -> Axis:
+    """Return the axis of the RMS without mean of a mesh deflection.
+
+    Returns
+    -------
+    Axis
+        The axis, µm.
+    """
+    return Axis("RMS of d", "µm", low=0.0)
+
+
 def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Figure:
     """RMS (without mean) of translations, one panel for each body, first direction
     only.
     """
     direction = sweep["direction"].iloc[0]
-    with styled():
-        figure, axes = plt.subplots(
-            len(bodies), 1, figsize=(NARROW, 1.0 + 1.9 * len(bodies)), sharex=True, squeeze=False
+    panels = []
+    for body in bodies:
+        curves = []
+        for letter in letters:
+            curve = select(sweep, direction, f"{letter}_ac_rms_um", body)
+            colour, line = AXIS_STYLES[letter]
+            curves.append(
+                Curve(curve["speed_rpm"], curve["value"], f"{letter} direction", colour, line, width=1.0)
+            )
+        panels.append(
+            Panel(speed_axis(sweep), Axis("RMS", "µm", low=0.0), curves, title=body, height=RMS_HEIGHT)
         )
-        for axis, body in zip(axes[:, 0], bodies, strict=True):
-            for letter in letters:
-                curve = select(sweep, direction, f"{letter}_ac_rms_um", body)
-                colour, line = AXIS_STYLES[letter]
-                axis.plot(
-                    curve["speed_rpm"], curve["value"], line, color=colour, lw=1, label=f"{letter} direction"
-                )
-            axis.set_title(body, fontsize=9, loc="left")
-            axis.set_ylabel("RMS (µm)")
-            axis.set_ylim(bottom=0)
-        handles = axes[0, 0].get_legend_handles_labels()
-        figure.legend(*handles, loc="outside lower center", ncols=3)
-        axes[-1, 0].set_xlabel("input rotation speed (rpm)")
-        figure.suptitle(f"RMS of translations without their mean, sweep {direction}", fontsize=9)
-    return figure
+    return Figure(panels, title=f"RMS of translations without their mean, sweep {direction}")
 
 
 def mesh_sweeps(
@@ -54,36 +79,42 @@ def mesh_sweeps(
     """RMS (without mean) of mesh deflections up and down, a panel for each mesh; jumps are marked, and where
     irregular motion begins or ends.
     """
-    with styled():
-        rows = [(pinion, side) for side in sides for pinion in pinions]
-        figure, axes = plt.subplots(
-            len(rows), 1, figsize=(NARROW, 1.2 + 1.7 * len(rows)), sharex=True, squeeze=False
-        )
-        for axis, (pinion, side) in zip(axes[:, 0], rows, strict=True):
-            for direction, (colour, line) in DIRECTION_STYLES.items():
-                curve = select(sweep, direction, "deflection_ac_rms_um", f"{pinion}/{side}")
-                axis.plot(curve["speed_rpm"], curve["value"], line, color=colour, lw=1, label=direction)
-            mark_jumps(axis, jumps)
-            axis.set_title(f"{pinion} and {side} face gear", fontsize=9, loc="left")
-            axis.set_ylim(bottom=0)
-            axis.set_ylabel("RMS of d (µm)")
-        axes[-1, 0].set_xlabel("input rotation speed (rpm)")
-        handles = axes[0, 0].get_legend_handles_labels()
-        figure.legend(*handles, loc="outside lower center", ncols=2, title="sweep")
-        figure.suptitle(
-            "RMS of the displacement along the line of action without its mean\n"
-            "ticks: jumps; dotted: irregular motion begins or ends",
-            fontsize=9,
-        )
-    return figure
+    panels = []
+    for pinion, side in [(pinion, side) for side in sides for pinion in pinions]:
+        marks: list[Curve | Line] = []
+        for direction, (colour, line) in DIRECTION_STYLES.items():
+            curve = select(sweep, direction, "deflection_ac_rms_um", f"{pinion}/{side}")
+            marks.append(Curve(curve["speed_rpm"], curve["value"], direction, colour, line, width=1.0))
+        marks += jump_ticks(jumps)
+        title = f"{pinion} and {side} face gear"
+        panels.append(Panel(speed_axis(sweep), rms_axis(), marks, title=title, height=RMS_HEIGHT))
+    return Figure(
+        panels,
+        title="RMS of the deflection d along the line of action without its mean\n"
+        "ticks: jumps; dotted: irregular motion begins or ends"
+        if len(jumps)
+        else "RMS of the deflection d along the line of action without its mean",
+        legend_title="sweep",
+    )
 
 
-def mark_jumps(axis: Axes, jumps: pd.DataFrame) -> None:
-    """Short ticks on the speed axis where the response jumps, in the direction's colour; dotted ones where
-    irregular motion begins or ends.
+def jump_ticks(jumps: pd.DataFrame) -> Iterator[Line]:
+    """Mark on the speed axis where the response jumps, in the colour of the direction.
+
+    Parameters
+    ----------
+    jumps : DataFrame
+        Table of the jumps of a sweep.
+
+    Yields
+    ------
+    Line
+        A short tick; a dotted one where irregular motion begins or ends.
     """
     for jump in jumps.itertuples():
         colour, _ = DIRECTION_STYLES[jump.direction]
         irregular = jump.kind == JumpKind.IRREGULAR
-        style = {"ymax": 0.12, "lw": 1.2, "ls": ":"} if irregular else {"ymax": 0.04, "lw": 1.2}
-        axis.axvline(jump.speed_after_rpm, color=colour, **style)
+        line: LineStyle = "dot" if irregular else "solid"
+        yield Line(
+            jump.speed_after_rpm, colour=colour, line=line, width=1.2, part=0.12 if irregular else 0.04
+        )

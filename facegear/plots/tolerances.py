@@ -1,15 +1,23 @@
 """Samples of a machine with its tolerances: distributions, which errors decide them, and how."""
 
-import matplotlib.pyplot as plt
+from collections.abc import Iterator, Mapping
+
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from facegear.plots.style import NARROW, styled
+from facegear.arrays import Array
+from facegear.number_format import format_number
+from facegear.plots.colours import BLACK, BLUE, COLOURS, RED, shades
+from facegear.plots.description import Axis, Band, Bars, Curve, Figure, Line, LineStyle, Look, Panel, Span
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-PERCENTILE_LINES = {50.0: ":", 95.0: "--", 99.0: "-", 5.0: "--", 1.0: "-"}
+BAR_COLOURS = (*COLOURS[1:], BLACK)
+PERCENTILE_LINES: Mapping[float, LineStyle] = {
+    50.0: "dot",
+    95.0: "dash",
+    99.0: "solid",
+    5.0: "dash",
+    1.0: "solid",
+}
 SHOWN = 4
 """Worst paths that are drawn, beside what comes once a machine."""
 RUBBED = ("friction_loss_w", "contact_temperature_c", "smallest_film_um")
@@ -26,28 +34,46 @@ DECIDED = ("pressure_mpa", "root_stress_face_gear_mpa", "te_peak_to_peak_um", *R
 """Shown with the causes that decide them, beside the worst path; without them the largest mesh force is."""
 BARS = 12
 WORDS = {
-    "k_gamma": r"$K_\gamma$ of",
-    "k_v": "$K_v$ of",
-    "coefficient": "Mean coefficient,",
-    "peak_mesh_force_n": "Largest mesh force (N)",
-    "open_fraction": "Share of time with an open mesh",
-    "reversed_fraction": "Share of time on the other flank",
-    "bearing_mass": "Bearing mass (of one for 10 kN)",
-    "te_peak_to_peak_um": "Transmission error, peak to peak (µm)",
-    "te_first_harmonic_um": "Transmission error, mesh frequency (µm)",
-    "pressure_mpa": "Largest pressure (MPa)",
-    "root_stress_pinion_mpa": "Largest root stress, pinion (MPa)",
-    "root_stress_face_gear_mpa": "Largest root stress, face gear (MPa)",
-    "friction_loss_w": "Friction loss of all meshes (W)",
-    "contact_temperature_c": "Largest contact temperature (°C)",
-    "smallest_film_um": "Smallest film (µm)",
+    "k_gamma": ("Kᵧ of", ""),
+    "k_v": ("Kᵥ of", ""),
+    "coefficient": ("Mean coefficient,", ""),
+    "peak_mesh_force_n": ("Largest mesh force", "N"),
+    "open_fraction": ("Share of time with an open mesh", ""),
+    "reversed_fraction": ("Share of time on the other flank", ""),
+    "bearing_mass": ("Bearing mass over that of one for 10 kN", ""),
+    "te_peak_to_peak_um": ("Transmission error, peak to peak", "µm"),
+    "te_first_harmonic_um": ("Transmission error, mesh frequency", "µm"),
+    "pressure_mpa": ("Largest pressure", "MPa"),
+    "root_stress_pinion_mpa": ("Largest root stress, pinion", "MPa"),
+    "root_stress_face_gear_mpa": ("Largest root stress, face gear", "MPa"),
+    "friction_loss_w": ("Friction loss of all meshes", "W"),
+    "contact_temperature_c": ("Largest contact temperature", "°C"),
+    "smallest_film_um": ("Smallest film", "µm"),
 }
+"""Quantities and units of columns by their first word."""
 
 
 def in_words(quantity: str) -> str:
     """A column of the table of samples as an axis label."""
+    return axis_of(quantity).label
+
+
+def axis_of(quantity: str) -> Axis:
+    """Return the axis of a column of the table of samples.
+
+    Parameters
+    ----------
+    quantity : str
+        Name of the column.
+
+    Returns
+    -------
+    Axis
+        The axis, in the unit of the column.
+    """
     first, _, rest = quantity.partition(" ")
-    return f"{WORDS.get(first, first)} {rest}".strip()
+    name, unit = WORDS.get(first, (first.replace("_", " "), ""))
+    return Axis(f"{name} {rest}".strip(), unit)
 
 
 def worst_first(percentiles: pd.DataFrame) -> list[str]:
@@ -60,20 +86,23 @@ def worst_first(percentiles: pd.DataFrame) -> list[str]:
 def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Figure:
     """Share of the samples above each value, one panel a quantity, with its percentiles."""
     names = worst_first(percentiles)
-    with styled():
-        figure, axes = plt.subplots(
-            max(len(names), 1), 1, figsize=(NARROW, 0.8 + 1.55 * max(len(names), 1)), squeeze=False
+    up = Axis("Above", "% of samples", low=0.0, high=100.0)
+    panels = [
+        Panel(
+            axis_of(name),
+            up,
+            list(
+                _exceedance(
+                    samples[name].dropna().to_numpy(float), percentiles[percentiles["quantity"] == name]
+                )
+            ),
+            height=1.0,
         )
-        for axis, name in zip(axes[:, 0], names, strict=False):
-            _exceedance(
-                axis, samples[name].dropna().to_numpy(float), percentiles[percentiles["quantity"] == name]
-            )
-            axis.set_xlabel(in_words(name))
-            axis.locator_params(axis="x", nbins=6)
-        figure.supylabel("Share of samples above (%)", fontsize=9)
-        above = " (film: above)" if "smallest_film_um" in names else ""
-        figure.suptitle(f"Distributions; lines: 50 %, 95 % and 99 % stay below{above}", fontsize=9)
-    return figure
+        for name in names
+    ]
+    above = " (film: above)" if "smallest_film_um" in names else ""
+    title = f"Distributions; lines: 50 %, 95 % and 99 % stay below{above}"
+    return Figure(panels or [Panel(Axis("", ""), up, [])], title=title, shared_x=False)
 
 
 def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame) -> Figure:
@@ -85,24 +114,27 @@ def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indic
     names = list(dict.fromkeys((*quantities[:1], *force, *decided)))
     own = table[table["quantity"].isin(names)]
     causes = list(own.groupby("cause")["size"].max().sort_values(ascending=False).index[:BARS])[::-1]
-    with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 1.1 + 0.17 * len(names) * (1 + max(len(causes), 1))))
-        height = 0.76 / max(len(names), 1)
-        for number, (name, colour) in enumerate(zip(names, COLOURS, strict=False)):
-            rows = own[own["quantity"] == name].set_index("cause").reindex(causes)
-            ends = None
-            if value == "total":
-                ends = np.array([rows[value] - rows["total_low"], rows["total_high"] - rows[value]]).clip(0.0)
-            places = np.arange(len(causes)) + height * (0.5 * (len(names) - 1) - number)
-            axis.barh(places, rows[value], 0.95 * height, xerr=ends, color=colour, label=in_words(name))
-        axis.set_yticks(np.arange(len(causes)), [cause.replace("_", " ") for cause in causes])
-        axis.axvline(0.0, color="black", lw=0.6)
-        axis.set_xlabel("Total Sobol index" if value == "total" else "Rank correlation")
-        axis.grid(axis="y", visible=False)
-        if names:
-            figure.legend(loc="outside lower center")
-        figure.suptitle("Which tolerance matters", fontsize=9)
-    return figure
+    height = 0.76 / max(len(names), 1)
+    marks: list[Bars | Line] = [Line(0.0, colour=BLACK, width=0.6)]
+    for number, (name, colour) in enumerate(zip(names, BAR_COLOURS, strict=False)):
+        rows = own[own["quantity"] == name].set_index("cause").reindex(causes)
+        lengths = rows[value].to_numpy(float)
+        ends: Look = {}
+        if value == "total":
+            ends = {
+                "low": np.minimum(rows["total_low"].to_numpy(float), lengths),
+                "high": np.maximum(rows["total_high"].to_numpy(float), lengths),
+            }
+        positions: Array = np.arange(float(len(causes))) + height * (0.5 * (len(names) - 1) - number)
+        marks.append(Bars(positions, lengths, in_words(name), colour, 0.95 * height, flat=True, **ends))
+    ticks = [(float(position), cause.replace("_", " ")) for position, cause in enumerate(causes)]
+    panel = Panel(
+        Axis("Total Sobol index" if value == "total" else "Rank correlation", ""),
+        Axis("", "", low=-0.6, high=max(len(causes), 1) - 0.4, ticks=ticks),
+        marks,
+        height=0.5 + 0.17 * max(len(names), 1) * max(len(causes), 1),
+    )
+    return Figure([panel], title="Which tolerance matters")
 
 
 def scatter_figure(
@@ -112,18 +144,18 @@ def scatter_figure(
     name = (worst_first(percentiles) or [""])[0]
     table, _ = _sizes(importance, indices)
     own = table[table["quantity"] == name].sort_values("size", ascending=False)
-    causes = list(own["cause"][:2])
-    rows = max(len(causes), 1)
-    with styled():
-        figure, axes = plt.subplots(rows, 1, figsize=(NARROW, 0.6 + 2.3 * rows), squeeze=False)
-        for axis, cause in zip(axes[:, 0], causes, strict=False):
-            axis.plot(
-                samples[cause], samples[name], ".", ms=2.5, color=COLOURS[0], alpha=0.5, rasterized=True
-            )
-            axis.set_xlabel(f"{cause.replace('_', ' ')} (units of the cause)")
-            axis.set_ylabel(in_words(name))
-        figure.suptitle("Every sample, against the two tolerances that matter most", fontsize=9)
-    return figure
+    dots: Look = {"line": "none", "marker": "dot", "size": 2.5, "opacity": 0.5}
+    panels = [
+        Panel(
+            Axis(f"{cause.replace('_', ' ')}, in units of the cause", ""),
+            axis_of(name),
+            [Curve(samples[cause], samples[name], colour=BLUE, **dots)],
+            height=1.8,
+        )
+        for cause in own["cause"][:2]
+    ]
+    title = "Every sample, against the two tolerances that matter most"
+    return Figure(panels or [Panel(Axis("", ""), Axis("", ""), [])], title=title, shared_x=False)
 
 
 def load_map_figure(table: pd.DataFrame) -> Figure:
@@ -137,22 +169,32 @@ def load_map_figure(table: pd.DataFrame) -> Figure:
     over, lines = "torque_factor", "speed_rpm"
     if own["speed_rpm"].nunique() > 1:
         over, lines = lines, over
-    label = {"torque_factor": "{:g} x torque", "speed_rpm": "{:.0f} rpm"}[lines]
-    with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 3.4))
-        colours = plt.cm.viridis(np.linspace(0.0, 0.85, max(own[lines].nunique(), 1)))
-        for (value, rows), colour in zip(own.groupby(lines), colours, strict=False):
-            for level, style in ((50.0, ":"), (99.0, "-")):
-                at = rows[rows["percentile"] == level].sort_values(over)
-                entry = label.format(value) if level == 99.0 else None
-                axis.plot(at[over], at["value"], style, marker=".", ms=4, color=colour, label=entry)
-                axis.fill_between(at[over], at["low"], at["high"], color=colour, alpha=0.15, lw=0)
-        axis.set_xlabel({"torque_factor": "Torque (of the nominal)", "speed_rpm": "Pinion speed (rpm)"}[over])
-        axis.set_ylabel(in_words(name))
-        if own[lines].nunique() > 1:
-            figure.legend(loc="outside lower center", ncols=3)
-        figure.suptitle("Solid: 99 % stay below; dotted: half; shaded: confidence interval", fontsize=9)
-    return figure
+    unit = {"torque_factor": "x torque", "speed_rpm": "rpm"}[lines]
+    has_several = own[lines].nunique() > 1
+    marks: list[Band | Curve] = []
+    styles: tuple[tuple[float, LineStyle], ...] = ((50.0, "dot"), (99.0, "solid"))
+    for (value, rows), colour in zip(own.groupby(lines), shades(own[lines].nunique()), strict=True):
+        for level, line in styles:
+            at = rows[rows["percentile"] == level].sort_values(over)
+            words = f"{format_number(value, 4)} {unit}"
+            look: Look = {"marker": "dot", "size": 4.0, "in_legend": has_several and level == 99.0}
+            marks += [
+                Band(at[over], at["low"], at["high"], colour=colour, opacity=0.15),
+                Curve(
+                    at[over],
+                    at["value"],
+                    f"{words}, {level:g} %" if level == 50.0 else words,
+                    colour,
+                    line,
+                    **look,
+                ),
+            ]
+    across = {
+        "torque_factor": Axis("Torque over the nominal one", ""),
+        "speed_rpm": Axis("Pinion speed", "rpm"),
+    }
+    panel = Panel(across[over], axis_of(name), marks, height=2.4)
+    return Figure([panel], title="Solid: 99 % stay below; dotted: half; shaded: confidence interval")
 
 
 def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFrame, str]:
@@ -161,16 +203,14 @@ def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFram
     return table.assign(size=table[value].abs()), value
 
 
-def _exceedance(axis: Axes, values: np.ndarray, percentiles: pd.DataFrame) -> None:
+def _exceedance(values: Array, percentiles: pd.DataFrame) -> Iterator[Curve | Line | Span]:
     ordered = np.sort(values)
-    axis.step(
-        ordered, 100.0 * (1.0 - np.arange(1, ordered.size + 1) / ordered.size), where="post", color=COLOURS[0]
-    )
-    axis.set_ylim(0.0, 100.0)
+    above = 100.0 * (1.0 - np.arange(1, ordered.size + 1) / ordered.size)
     for row in percentiles.itertuples():
-        axis.axvline(row.value, color=COLOURS[1], lw=1.0, ls=PERCENTILE_LINES[row.percentile])
         if np.isfinite([row.low, row.high]).all():
-            axis.axvspan(row.low, row.high, color=COLOURS[1], alpha=0.15, lw=0)
+            yield Span(row.low, row.high, colour=RED)
+        yield Line(row.value, colour=RED, line=PERCENTILE_LINES[row.percentile], width=1.0)
+    yield Curve(ordered, above, colour=BLUE, steps=True)
 
 
 def figures(

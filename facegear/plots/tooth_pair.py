@@ -4,50 +4,45 @@ from collections.abc import Mapping
 from math import pi
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, LightSource, to_rgb
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
-from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from facegear.arrays import Array
-from facegear.plots.style import NARROW, styled
+from facegear.number_format import format_number
+from facegear.plots.colours import RED, channels, grey
+from facegear.plots.description import (
+    Area,
+    Axis,
+    ColourScale,
+    Curve,
+    Figure,
+    Levels,
+    LineStyle,
+    Look,
+    Panel,
+    Solid,
+    Text,
+)
 
 PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
+AZIMUTH, ALTITUDE = np.radians([150.0, 50.0])
+LIGHT = np.array([np.cos(AZIMUTH) * np.cos(ALTITUDE), np.sin(AZIMUTH) * np.cos(ALTITUDE), np.sin(ALTITUDE)])
+"""Direction from which the pair in mesh is lit."""
 LABEL_GAP = 0.1
 """Least distance of two radius labels, in whole depths of the tooth."""
+GAPS = (0.0, 0.1, 0.3, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0, 200.0)
+"""Levels of the separation, µm."""
+RADII: Mapping[str, LineStyle] = {
+    "pinion_tip": "solid",
+    "pinion_pitch": "dashdot",
+    "pinion_fillet_start": "dot",
+    "pinion_base": "dash",
+    "pinion_root": "solid",
+}
+"""Radii that the section of a pinion's tooth shows."""
 
 
 def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
     """Pinion and gear in mesh, from `geometry/pair.json` and `flanks.npz`."""
-    with styled():
-        figure = plt.figure(figsize=(NARROW, 4.0))
-        _in_mesh(figure.add_subplot(projection="3d"), record, flanks)
-    return figure
-
-
-def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
-    """Sections of both teeth with limits and radii, from `geometry/pair.json` and `flanks.npz`."""
-    with styled():
-        figure, (pinion, gear) = plt.subplots(2, 1, figsize=(NARROW, 7.6))
-        _pinion_section(pinion, record, flanks)
-        _gear_sections(gear, record, flanks)
-    return figure
-
-
-def separation(
-    record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
-) -> Figure:
-    """Gap of the unloaded pair over the gear's flank, with the contact path, from all of `geometry/`."""
-    with styled():
-        figure, axes = plt.subplots(figsize=(NARROW, 4.2))
-        _contours(axes, record, flanks, contact)
-    return figure
-
-
-def _in_mesh(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
     design = record["design_si"]
     pinion_teeth, gear_teeth = design["pinion"]["teeth"], design["face_gear"]["teeth"]
     pinion = np.concatenate([_quads(grid) for grid in _pinion_skin(flanks, design["pinion"]["bore_radius"])])
@@ -58,22 +53,26 @@ def _in_mesh(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array])
     names = [PINION_COLOUR] * pinion_teeth + [GEAR_COLOUR] * 13
     faces = np.concatenate(parts) * 1e3
     colours = np.concatenate(
-        [np.tile(to_rgb(name), (len(part), 1)) for name, part in zip(names, parts, strict=True)]
+        [np.tile(channels(name), (len(part), 1)) for name, part in zip(names, parts, strict=True)]
     )
     normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
     area = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, area, where=area > 0, out=np.zeros_like(normals))
-    brightness = 0.4 + 0.6 * np.abs(normals @ LightSource(azdeg=300, altdeg=50).direction)
-    shaded = colours * brightness[:, None]
-    look = {"facecolors": shaded, "edgecolors": shaded, "linewidths": 0.2, "rasterized": True}
-    axes.add_collection3d(Poly3DCollection(faces, **look))
+    brightness = 0.4 + 0.6 * np.abs(normals @ LIGHT)
     low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=1.0)
-    axes.view_init(elev=22, azim=-62)
-    axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="z (mm)", title="Pinion and face gear in mesh")
-    axes.yaxis.set_major_locator(MaxNLocator(2))
-    axes.tick_params(labelsize=9)
+    x, y, z = (
+        Axis(letter, "mm", low=float(first), high=float(last))
+        for letter, first, last in zip("xyz", low, high, strict=True)
+    )
+    solid = Solid(faces, colours * brightness[:, None])
+    panel = Panel(x, y, [solid], z=z, equal=True, title="Pinion and face gear in mesh", height=3.1)
+    return Figure([panel])
+
+
+def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
+    """Sections of both teeth with limits and radii, from `geometry/pair.json` and `flanks.npz`."""
+    panels = [_pinion_section(record, flanks), _gear_sections(record, flanks)]
+    return Figure(panels, shared_x=False, legend_title="section of the face gear's tooth at a radius of")
 
 
 def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
@@ -114,35 +113,27 @@ def _quads(grid: Array) -> Array:
     return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 3)
 
 
-def _pinion_section(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
+def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
     half = 1e3 * flanks["pinion_section"]
     tooth = np.concatenate([half[::-1], half * [-1, 1]])
-    axes.fill(
-        np.append(tooth[:, 0], [tooth[-1, 0], tooth[0, 0]]),
-        np.append(tooth[:, 1], [half[:, 1].min() - 1.5] * 2),
-        color=PINION_COLOUR,
-        alpha=0.35,
-    )
-    axes.plot(tooth[:, 0], tooth[:, 1], color=PINION_COLOUR)
+    foot = half[:, 1].min() - 1.5
+    body = np.append(tooth[:, 0], [tooth[-1, 0], tooth[0, 0]]), np.append(tooth[:, 1], [foot, foot])
+    marks: list[Area | Curve | Text] = [
+        Area(*body, colour=PINION_COLOUR, opacity=0.35),
+        Curve(tooth[:, 0], tooth[:, 1], colour=PINION_COLOUR),
+    ]
     reach = 1.2 * np.abs(tooth[:, 0]).max()
     x = np.linspace(-reach, reach, 101)
-    styles = {
-        "pinion_tip": "-",
-        "pinion_pitch": "-.",
-        "pinion_fillet_start": ":",
-        "pinion_base": "--",
-        "pinion_root": "-",
-    }
-    radii = {name: record["radii_mm"][name] for name in styles}
+    radii = {name: record["radii_mm"][name] for name in RADII}
     apart = LABEL_GAP * (radii["pinion_tip"] - radii["pinion_root"])
     height = np.inf
     for name, radius in sorted(radii.items(), key=lambda item: -item[1]):
-        axes.plot(x, np.sqrt(radius**2 - x**2), styles[name], color="0.4", lw=0.8)
+        marks.append(Curve(x, np.sqrt(radius**2 - x**2), colour=grey(0.4), line=RADII[name], width=0.8))
         label = name.removeprefix("pinion_").replace("_", " ")
         height = min(np.sqrt(radius**2 - reach**2), height - apart)
-        axes.annotate(f"{label} {radius:.3f}", (reach, height), fontsize=9, va="center")
-    axes.set_aspect("equal")
-    axes.set(xlabel="across (mm)", ylabel="radius (mm)", title="Pinion tooth", xlim=(-reach, 1.75 * reach))
+        marks.append(Text(reach, height, f"{label} {radius:.3f}"))
+    across = Axis("Across", "mm", low=-reach, high=1.75 * reach)
+    return Panel(across, Axis("Radius", "mm"), marks, title="Pinion tooth", equal=True, height=2.9)
 
 
 def path_text(record: Mapping[str, Any]) -> str:
@@ -153,63 +144,65 @@ def path_text(record: Mapping[str, Any]) -> str:
     return text if np.abs(path - nominal).max() < 0.005 else f"{text}, nominal {nominal:.3f} mm"
 
 
-def _gear_sections(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
+def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
     right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
     width = right.shape[1]
     radius = np.hypot(right[0, :, 0], right[0, :, 1])
-    for column, style in ((0, "-"), (width // 2, "--"), (width - 1, ":")):
+    styles: tuple[tuple[int, LineStyle], ...] = ((0, "solid"), (width // 2, "dash"), (width - 1, "dot"))
+    marks = []
+    for column, line in styles:
         arc = radius[column] * np.arctan2(right[:, column, 0], right[:, column, 1])
         across = np.concatenate([-arc[::-1], arc])
         height = np.concatenate([right[::-1, column, 2], right[:, column, 2]])
-        axes.plot(across, height, style, color=GEAR_COLOUR, label=f"{radius[column]:.1f}")
+        name = f"{format_number(radius[column], 4)} mm"
+        marks.append(Curve(across, height, name, GEAR_COLOUR, line))
     limits, radii = record["limits_mm"], record["radii_mm"]
-    text = (
-        f"undercut below {limits['inner_undercut']:.3f} mm\nface {radii['gear_inner']:.1f} to "
-        f"{radii['gear_outer']:.1f} mm\npointed above {limits['outer_pointing']:.3f} mm\n"
-        f"{path_text(record)}"
+    inner, outer = (format_number(radii[f"gear_{end}"], 4) for end in ("inner", "outer"))
+    note = (
+        f"undercut below {limits['inner_undercut']:.3f} mm, face {inner} to {outer} mm,\n"
+        f"pointed above {limits['outer_pointing']:.3f} mm, {path_text(record)}"
     )
-    axes.margins(y=0.12)
-    axes.set_aspect("equal")
-    axes.set_xlim(right=1.55 * across.max())
-    axes.legend(loc="upper right", title="gear radius\n(mm)")
-    axes.set(xlabel=f"arc (mm)\n{text}", ylabel="z (mm)", title="Face gear tooth")
+    return Panel(
+        Axis("Arc", "mm", note), Axis("z", "mm"), marks, title="Face gear tooth", equal=True, height=2.4
+    )
 
 
-def _contours(
-    axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
-) -> None:
-    facing = contact["contour_facing"].astype(bool)
-    gap = np.ma.masked_where(~facing, 1e6 * contact["contour_gap"])
-    # places outside the flank are masked, yet a contour plot wants coordinates everywhere
-    radius = np.where(facing, 1e3 * contact["contour_radius"], 1e3 * contact["contour_y"])
-    height = np.where(facing, 1e3 * contact["contour_height"], np.nan)
+def separation(
+    record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
+) -> Figure:
+    """Gap of the unloaded pair over the gear's flank, with the contact path, from all of `geometry/`."""
+    is_facing = contact["contour_facing"].astype(bool)
+    gap = np.where(is_facing, 1e6 * contact["contour_gap"], np.nan)
+    # places outside the flank have no gap, yet a map wants coordinates everywhere
+    radius = np.where(is_facing, 1e3 * contact["contour_radius"], 1e3 * contact["contour_y"])
+    height = np.where(is_facing, 1e3 * contact["contour_height"], np.nan)
     height = np.where(np.isnan(height), np.nanmean(height), height)
-    levels = [0, 0.1, 0.3, 1, 2, 5, 10, 20, 30, 40, 60, 80, 120, 200]
-    levels = [level for level in levels if level <= gap.max()] + [float(np.ceil(gap.max() + 1e-9))]
-    colours = BoundaryNorm(levels, plt.get_cmap("viridis_r").N)
-    filled = axes.contourf(radius, height, gap, levels=levels, norm=colours, cmap="viridis_r", extend="min")
-    axes.figure.colorbar(filled, ax=axes, label="separation (um)", ticks=levels)
+    largest = np.nanmax(gap)
+    levels = (*(level for level in GAPS if level <= largest), float(np.ceil(largest + 1e-9)))
+    scale = ColourScale("Separation", "µm", levels[0], levels[-1], "viridis_r", levels)
+    marks: list[Levels | Curve | Text] = [Levels(radius, height, gap, scale)]
     top, flank = 1e3 * flanks["gear_flank"][0], 1e3 * flanks["gear_flank"][-1]
     for line, label, point, points in (
-        (top, "tip edge", -1, 2),
-        (flank, "end of the flank", len(flank) // 2, -3),
+        (top, "tip edge", -1, 2.0),
+        (flank, "end of the flank", len(flank) // 2, -3.0),
     ):
-        out, side = np.hypot(line[:, 0], line[:, 1]), "bottom" if points > 0 else "top"
-        axes.plot(out, line[:, 2], color="0.2", lw=0.8)
-        options = {"xytext": (0, points), "textcoords": "offset points", "va": side, "ha": "right"}
-        axes.annotate(label, (out[point], line[point, 2]), fontsize=9, **options)
+        out = np.hypot(line[:, 0], line[:, 1])
+        marks.append(Curve(out, line[:, 2], colour=grey(0.2), width=0.8))
+        look: Look = {"across": "right", "upright": "bottom" if points > 0 else "top"}
+        marks.append(Text(out[point], line[point, 2], label, shift=(0.0, points), **look))
     path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
     rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
-    axes.plot(1e3 * contact["path_y"], height[rows, height.shape[1] // 2], "r.", ms=4, label="contact path")
+    path = 1e3 * contact["path_y"], height[rows, height.shape[1] // 2]
+    marks.append(Curve(*path, "contact path", RED, line="none", marker="dot"))
     gap_record = record["smallest_gap"]
-    axes.set(
-        xlabel="gear radius (mm)",
-        ylabel="z (mm)",
-        title=f"Drive flank of the gear; smallest gap elsewhere\n{gap_record['gap_um']:.1f} um at "
-        f"{gap_record['gear_radius_mm']:.1f} mm (gear {gap_record['gear_part']},\n"
-        f"pinion {gap_record['pinion_part']})",
+    title = (
+        f"Drive flank of the gear; smallest gap elsewhere\n{format_number(gap_record['gap_um'])} µm at "
+        f"{format_number(gap_record['gear_radius_mm'], 4)} mm (gear {gap_record['gear_part']}, "
+        f"pinion {gap_record['pinion_part']})"
     )
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.16), borderaxespad=0.0)
+    ends = np.hypot(top[[0, -1], 0], top[[0, -1], 1])
+    across = Axis("Gear radius", "mm", low=float(ends.min()), high=float(ends.max()))
+    return Figure([Panel(across, Axis("z", "mm"), marks, title=title, height=3.0)])
 
 
 def figures(

@@ -1,20 +1,18 @@
 """Flank charts as measuring rooms draw them: the nominal flank as a flat grid, deviations standing on it."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
-from facegear.plots.style import NARROW, styled
+from facegear.arrays import Array
+from facegear.number_format import format_number
+from facegear.plots.colours import BLUE, RED, grey
+from facegear.plots.description import Area, Axis, Curve, Figure, Panel, Text, apart
 
 AXES = {
-    "pinion": ("From the middle of the face (mm)", "Length of roll (mm)"),
-    "face_gear": ("Gear radius (mm)", "Depth below the tip plane (mm)"),
+    "pinion": (("From the middle of the face", "mm"), ("Length of roll", "mm")),
+    "face_gear": (("Gear radius", "mm"), ("Depth below the tip plane", "mm")),
 }
-ADDED, MISSING = "#D55E00", "#0072B2"
+ADDED, MISSING = RED, BLUE
 HEIGHT = 0.14
 """Height of the largest deviation, in parts of the profile."""
 
@@ -23,43 +21,56 @@ def topography_figure(points: pd.DataFrame, body: str) -> Figure:
     """Left and right flank of a gear, of `points` of stage topography; the mean of all teeth."""
     own = points[points["body"] == body]
     largest = float(own["deviation_um"].abs().max())
-    with styled():
-        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 6.0), sharex=True)
-        for axis, (side, flank) in zip(axes, own.groupby("flank", sort=False), strict=True):
-            _chart(axis, flank, largest)
-            axis.set_title(f"{body.replace('_', ' ')}, {side} flank: {_range(flank)}")
-            axis.set_ylabel(AXES[body][1])
-            if body == "face_gear":
-                axis.invert_yaxis()
-        axes[-1].set_xlabel(AXES[body][0])
-        handles = [
-            Line2D([], [], color="0.6", lw=0.8, label="nominal"),
-            Patch(color=ADDED, alpha=0.4, label="material added"),
-            Patch(color=MISSING, alpha=0.4, label="material missing"),
-        ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=3)
-    return figure
+    (across, width_unit), (up, unit) = AXES[body]
+    face = own["face_mm"]
+    margin = 0.2 * np.ptp(face)
+    panels = []
+    for side, flank in own.groupby("flank", sort=False):
+        title = f"{body.replace('_', ' ')}, {side} flank: {_range(flank)}"
+        panels.append(
+            Panel(
+                Axis(across, width_unit, low=face.min() - 0.25 * margin, high=face.max() + margin),
+                Axis(up, unit, is_falling=body == "face_gear"),
+                _chart(flank, largest),
+                title=title,
+                height=2.1,
+            )
+        )
+    return Figure(panels)
 
 
-def _chart(axis: Axes, flank: pd.DataFrame, largest: float) -> None:
-    """Grid lines of one flank, lifted by what they deviate; dots where they stand on the nominal flank."""
+def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
+    """Grid lines of one flank, lifted by what they deviate."""
     table = flank.pivot_table(index="profile_mm", columns="face_mm", values="deviation_um")
-    face, profile, values = table.columns.to_numpy(), table.index.to_numpy(), table.to_numpy()
-    up = HEIGHT * np.ptp(profile) * (-1.0 if flank["body"].iloc[0] == "face_gear" else 1.0)
-    lifted = profile[:, None] + up * values / (largest or 1.0)
-    for row, at in enumerate(profile):
-        axis.plot(face, np.full(face.size, at), color="0.6", lw=0.8)
-        axis.plot(face, lifted[row], color="0.25", lw=0.7)
-        axis.fill_between(face, at, lifted[row], where=values[row] >= 0, color=ADDED, alpha=0.4, lw=0)
-        axis.fill_between(face, at, lifted[row], where=values[row] <= 0, color=MISSING, alpha=0.4, lw=0)
-    for column, at in enumerate(face):
-        axis.plot(np.full(profile.size, at), lifted[:, column], color="0.25", lw=0.4)
-    axis.grid(visible=False)
+    face, profile, values = table.columns.to_numpy(float), table.index.to_numpy(float), table.to_numpy()
+    up = HEIGHT * np.ptp(profile) * (-1.0 if flank["body"].iloc[0] == "face_gear" else 1.0) / (largest or 1.0)
+    lifted = profile[:, None] + up * values
+    flat = np.broadcast_to(profile[:, None], lifted.shape)
+    marks: list[Area | Curve | Text] = [
+        Area(*_between(face, flat, flat + up * part), name, colour, opacity=0.4)
+        for part, name, colour in (
+            (np.maximum(values, 0.0), "material added", ADDED),
+            (np.minimum(values, 0.0), "material missing", MISSING),
+        )
+        if np.nanmax(np.abs(part)) > 0.0
+    ]
     bar = _round_below(largest or 1.0)
     beside = face.max() + 0.05 * np.ptp(face)
-    foot = profile.mean() - 0.5 * up * bar / (largest or 1.0)
-    axis.plot([beside] * 2, [foot, foot + up * bar / (largest or 1.0)], color="k", lw=2.0, clip_on=False)
-    axis.annotate(f"{bar:g} µm", (beside, profile.mean()), (4, 0), textcoords="offset points", va="center")
+    ends = profile.mean() + up * bar * np.array([-0.5, 0.5])
+    return [
+        *marks,
+        Curve(*apart(face, flat), "nominal", grey(0.6), width=0.8),
+        Curve(*apart(face, lifted), "measured", grey(0.25), width=0.7),
+        Curve(*apart(np.broadcast_to(face[:, None], lifted.T.shape), lifted.T), colour=grey(0.25), width=0.4),
+        Curve(np.array([beside, beside]), ends, width=2.0),
+        Text(beside, float(profile.mean()), f"{format_number(bar)} µm", shift=(4.0, 0.0)),
+    ]
+
+
+def _between(face: Array, flat: Array, lifted: Array) -> tuple[Array, Array]:
+    """Rings between each flat line and the lifted one, parted by nan."""
+    across = np.concatenate([face, face[::-1]])
+    return apart(across, np.concatenate([flat, lifted[:, ::-1]], axis=1))
 
 
 def _round_below(value: float) -> float:
@@ -70,7 +81,7 @@ def _round_below(value: float) -> float:
 
 def _range(flank: pd.DataFrame) -> str:
     values = flank["deviation_um"]
-    return f"{values.min():+.1f} to {values.max():+.1f} µm"
+    return f"{format_number(values.min())} to {format_number(values.max())} µm"
 
 
 def figures(points: pd.DataFrame) -> tuple[Figure, ...]:

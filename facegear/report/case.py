@@ -15,6 +15,7 @@ from facegear.report.contents import (
     POSES,
     SHAFTS,
     SHARING,
+    SHARING_MAP,
     STUDIED_CONTACT,
     caption_of,
 )
@@ -23,6 +24,7 @@ from facegear.report.inputs import inputs_caption
 from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, View, render
 from facegear.report.poses import pose_tables, pose_text
+from facegear.report.sharing_map import sharing_map_tables, sharing_map_text
 from facegear.report.table import Table
 from facegear.ties import first_largest_rows
 
@@ -185,6 +187,8 @@ def case_report(
         own = _tables(title, tables, values["dynamics"]["speed_rpm"])
         seen = {"Loaded contact": view, "Modes": bodies}.get(title)
         said = pose_text(tables) if title == POSES else ""
+        if title == SHARING_MAP:
+            said = sharing_map_text(tables)
         if title == SHARING and values["transmission"] is not None:
             published = any(study["figures"] is not None for study in values["studies"])
             said = f"{inputs_caption(values, published)}."
@@ -264,6 +268,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         return [*held, Table(words, rows, is_folded=len(rows) > LONG_TABLE)]
     if title == POSES:
         return pose_tables(tables)
+    if title == SHARING_MAP:
+        return sharing_map_tables(tables)
     if title == SHAFTS:
         listed = [Table(words, tables[name]) for name, words in SHAFT_TABLES.items() if name in tables]
         return [table for table in listed if len(table.frame)]

@@ -69,6 +69,9 @@ CAPTIONS = {
     "tolerance_map": "Median and 99th percentile of the worst path over torque and, in motion, speed.",
     "search_front": "Designs tried, the front that none beats, and its winners beside the nominal design.",
     "search_hypervolume": "How much of the box between best and worst of the front each seed has covered.",
+    "sharing_map": "K_gamma of idlers over k_e sigma / W (stiffness of a path, standard deviation of its "
+    "lateness, load of all paths), and of inputs over 2 b k / W (backlash, mesh stiffness, load of the "
+    "input); grey: closed forms, where they hold.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
 }
 
@@ -111,6 +114,7 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 FRICTION = "Friction and heat"
 SHAFTS = "Shafts"
 SHARING = "Load sharing"
+SHARING_MAP = "Load-sharing map"
 POSES = "Teeth where forces put them"
 STUDIED_CONTACT = "Studies of the contact"
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
@@ -137,8 +141,8 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         FRICTION,
         "Friction of the loaded contact to first order: sliding velocities of the exact flanks, a "
         "coefficient by the model that stands beside each number, flash temperature after Blok and Jaeger, "
-        "film after Dowson and Higginson. Windage, churning, squeezing of oil, bearings and seals are left "
-        "out.",
+        "film after Dowson and Higginson. Windage, churning, squeezing of oil, bearings, seals and the "
+        "rolling traction of the film are left out.",
         ("friction_path", "friction_flank", "efficiency_map"),
     ),
     (
@@ -189,6 +193,13 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Every position of the hunting cycle as one contact problem with gaps, clearances and all errors. "
         "K_gamma is the largest mean of a mesh cycle over the nominal even share; it falls with torque.",
         ("layout", "hunting", "bearing_stiffness", "sensitivity"),
+    ),
+    (
+        SHARING_MAP,
+        "The machine at rest under its mean torques, many times over with idlers whose paths are late by "
+        "drawn errors. K_gamma is the load of the hardest loaded mesh of a group over the nominal even "
+        "share.",
+        ("sharing_map",),
     ),
     (
         "Tolerances",

@@ -192,8 +192,9 @@ def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> st
     if "e_peak_to_peak_um" not in table:
         return ""
     size, cut = (float(table[name].iloc[0]) for name in ("e_peak_to_peak_um", "e_truncation_error_um"))
+    orders = count_noun(len(table) - 1, "order")
     words = (
-        f"{size:.3g} µm peak to peak, the {len(table) - 1} orders kept within {cut:.2g} µm of it"
+        f"{size:.3g} µm peak to peak, the {orders} kept within {cut:.2g} µm of it"
         if size > 0.0
         else "constant, so e(t) from contact is zero"
     )
@@ -215,10 +216,11 @@ def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
             f"{text} Friction is not in these torques and powers. It takes {loss:.3g} % of the power brought "
             "in at the nominal load, so that the output gives this much less."
         )
+    relation = "larger" if missing < 0.0 else "smaller"
     return (
-        f"\n\nThe power brought in, less the power taken out, is {100 * missing:.3g} % of the larger. Bodies "
-        "turn as their teeth say, but the lever arms of equation (13) as printed are not those of the teeth; "
-        "geometric meshes are in balance."
+        f"\n\nThe power taken out is {relation} than the power brought in, by {100 * abs(missing):.3g} % of "
+        "the larger of both. Bodies turn as their teeth say, but the lever arms of equation (13) as printed "
+        "are not those of the teeth; geometric meshes are in balance."
     )
 
 

@@ -196,7 +196,7 @@ def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
     subject, limit = "Load sharing", values["load_sharing"]["required_k_gamma"]
     groups = known_k_gamma(tables)
     if groups.empty:
-        return Verdict(subject, GREY, NOT_COMPUTED if limit else "No K_gamma is known of this machine.")
+        return Verdict(subject, GREY, NOT_COMPUTED if limit else _why_no_k_gamma(values))
     worst = first_largest_row(groups, "k_gamma")
     cycles = f" over {count_noun(int(worst['mesh_cycles']), 'mesh cycle')}" if "mesh_cycles" in worst else ""
     state = "running" if "k_v" in worst else "at rest"
@@ -207,6 +207,16 @@ def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
         return Verdict(subject, GREEN, f"{k_gamma_text}, {limit:g} allowed.")
     failure = f"K_gamma is {worst['k_gamma']:.2f} of {limit:g} allowed"
     return Verdict(subject, RED, f"{k_gamma_text}, {limit:g} allowed.", failure=failure)
+
+
+def _why_no_k_gamma(values: Mapping[str, Any]) -> str:
+    machine = values["transmission"]
+    roles = [] if machine is None else [pinion["role"] for pinion in machine["pinions"]]
+    if len(roles) == len(set(roles)):
+        return "No pinions share a load."
+    if machine["mesh_kinematics"] != "geometric":
+        return "K_gamma is not defined for lever arms as printed (transmission.mesh_kinematics)."
+    return "K_gamma was not computed."
 
 
 def known_k_gamma(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
@@ -238,9 +248,11 @@ def _power(tables: Mapping[str, pd.DataFrame]) -> Iterator[Verdict]:
     numbers = dict(tables["ratings"].itertuples(index=False))
     imbalance, power = numbers["power_imbalance"], numbers["power_in_kw"]
     if abs(imbalance) > ROUNDING_OF_POWER:
-        share = f"{format_number(100 * imbalance)} % of the larger"
-        reason = f"In less out is {share}: lever arms as printed are not those of the teeth."
-        yield Verdict("Power balance", RED, reason, failure=f"power in less power out is {share}")
+        apart = f"{format_number(100 * abs(imbalance))} %"
+        powers = f"{format_number(power, 4)} kW in, {format_number(numbers['power_out_kw'], 4)} kW out"
+        reason = f"{powers}, {apart} apart: lever arms as printed are not those of the teeth."
+        failure = f"power in and power out differ by {apart} of the larger"
+        yield Verdict("Power balance", RED, reason, failure=failure)
         return
     text = f"{format_number(power, 4)} kW in equals out"
     if "machine_loss" in tables:

@@ -245,4 +245,6 @@ def _torques(rows: pd.DataFrame, every: pd.DataFrame) -> str:
         return "at every torque"
     if torques.to_list() == every["torque_n_m"].to_list()[-len(rows) :]:
         return f"from {torques.iloc[0]:g} N m on"
-    return f"at {len(rows)} of {len(every)} torques, {torques.min():g} to {torques.max():g} N m,"
+    return (
+        f"at {len(rows)} of {count_noun(len(every), 'torque')}, {torques.min():g} to {torques.max():g} N m,"
+    )

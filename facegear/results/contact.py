@@ -12,7 +12,7 @@ from facegear.results.paper_figure import fit_for_paper
 if TYPE_CHECKING:
     import xarray as xr
 
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class ContactResult(Result):

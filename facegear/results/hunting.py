@@ -9,7 +9,7 @@ from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class HuntingResult(Result):
@@ -52,7 +52,7 @@ class HuntingResult(Result):
         """Share of each mesh in its group's load over the hunting cycle."""
         from facegear.plots.hunting import hunting_figure
 
-        return hunting_figure(self.content["cycles"], self.content["meshes"], _torque(self))
+        return hunting_figure(self.content["cycles"], self.content["meshes"])
 
 
 class SensitivityResult(Result):
@@ -79,7 +79,7 @@ class SensitivityResult(Result):
         """The errors that matter most."""
         from facegear.plots.hunting import sensitivity_figure
 
-        return sensitivity_figure(self.content["sensitivity"], _torque(self))
+        return sensitivity_figure(self.content["sensitivity"])
 
 
 class FollowingResult(Result):

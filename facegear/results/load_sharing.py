@@ -10,7 +10,7 @@ from facegear.results.base import Result, require_answers
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 STUDY = "compared"
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from facegear.errors import FacegearError
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
+    from facegear.plots.draw_matplotlib import MplFigure
 
 KEYWORDS_TEXT = """
 
@@ -18,18 +19,18 @@ KEYWORDS_TEXT = """
         """
 
 
-def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "Figure"]:
-    """Give a method that draws a figure the keywords `size` and `labels`.
+def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "MplFigure"]:
+    """Give a method that describes a figure the keywords `size` and `labels`, and draw what it describes.
 
     Parameters
     ----------
     plot : callable
-        Method of an answer that returns a figure.
+        Method of an answer that returns the description of a figure.
 
     Returns
     -------
     callable
-        The method with two more keywords.
+        A method with two more keywords that returns a figure of matplotlib; `described` is the given one.
     """
 
     @wraps(plot)
@@ -39,23 +40,24 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "Figure"]:
         size: tuple[float, float] | None = None,
         labels: Mapping[str, str] | None = None,
         **keywords: Any,
-    ) -> "Figure":
+    ) -> "MplFigure":
+        from facegear.plots.draw_matplotlib import draw, rename_texts
+
         if size is not None and not _is_size(size):
             raise FacegearError(f"size = {size!r}: must be width and height in inches, both above 0")
-        figure = plot(self, *arguments, **keywords)
-        if size is not None:
-            figure.set_size_inches(*size)
+        mpl_figure = draw(plot(self, *arguments, **keywords), size)
         if labels:
-            from facegear.plots.style import rename_texts
-
-            rename_texts(figure, labels)
-        return figure
+            rename_texts(mpl_figure, labels)
+        return mpl_figure
 
     plot_signature = signature(plot)
     extra = [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in ("size", "labels")]
     parameters = sorted([*plot_signature.parameters.values(), *extra], key=lambda parameter: parameter.kind)
-    drawn_to_size.__signature__ = plot_signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    drawn_to_size.__signature__ = plot_signature.replace(  # type: ignore[attr-defined]
+        parameters=parameters, return_annotation="matplotlib.figure.Figure"
+    )
     drawn_to_size.__doc__ = (plot.__doc__ or "").rstrip() + KEYWORDS_TEXT
+    drawn_to_size.describe = plot  # type: ignore[attr-defined]
     return drawn_to_size
 
 

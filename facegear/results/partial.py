@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from facegear.errors import CorruptFile
 from facegear.io import documents
+from facegear.io.atomic import require_writable
 from facegear.io.files import write_part
 from facegear.pipeline.stage import File
 from facegear.pipeline.table import STAGES
@@ -37,6 +38,17 @@ class PartialResults:
     """
 
     folder: Path
+
+    def require_usable(self) -> None:
+        """Check before work is done that stages can be kept.
+
+        Raises
+        ------
+        FacegearError
+            Where a file stands in the place of the folder, or nothing can be written to it.
+        """
+        if self.folder.exists():
+            require_writable(self.folder)
 
     def output(
         self, stages: list[str], key: str, compute: Callable[[], "Outcome"]

@@ -8,7 +8,7 @@ from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class ResponseResult(Result):
@@ -43,5 +43,4 @@ class ResponseResult(Result):
         from facegear.plots.response import deflections
 
         pinions = [pinion["name"] for pinion in self.values["transmission"]["pinions"]]
-        speed = self.values["dynamics"]["speed_rpm"]
-        return deflections(self.content["response"], self.content["spectrum"], pinions, speed)
+        return deflections(self.content["response"], self.content["spectrum"], pinions)

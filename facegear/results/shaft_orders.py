@@ -9,7 +9,7 @@ from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class ShaftOrdersResult(Result):
@@ -31,6 +31,18 @@ class ShaftOrdersResult(Result):
         """
         return self.content["over_speed"].copy()
 
+    def excited(self) -> pd.DataFrame:
+        """Return what each periodic torque of `transmission.excitations` does, linearised.
+
+        Returns
+        -------
+        pd.DataFrame
+            One row a speed (the nominal one first), torque and part: amplitude of the force of a mesh (N) or
+            of the torque of the spring before a turning mass (N m). Columns: speed_rpm, body, order, of_mesh,
+            frequency_hz, part, force_n, torque_n_m.
+        """
+        return self.content["excited"].copy()
+
     @fit_for_paper
     def plot(self) -> "Figure":
         """Forces at all orders at the nominal speed, and the largest orders over speed.
@@ -42,5 +54,4 @@ class ShaftOrdersResult(Result):
         if self.content["orders"].empty:
             message = "no runout, pitch deviation or single tooth is given, there is nothing to draw"
             raise FacegearError(f"{self.values['case']}: {message}")
-        speed = self.values["dynamics"]["speed_rpm"]
-        return shaft_order_figure(self.content["orders"], self.content["over_speed"], speed)
+        return shaft_order_figure(self.content["orders"], self.content["over_speed"])

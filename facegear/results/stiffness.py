@@ -11,7 +11,7 @@ from facegear.results.paper_figure import fit_for_paper
 from facegear.stiffness.tables import series_of
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class StiffnessResult(Result):

@@ -8,7 +8,7 @@ from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class StressOverSpeedResult(Result):

@@ -18,7 +18,7 @@ from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 Changes = Mapping[str, Mapping[str, Any]]
 """Changed keys and their values by the label of a machine."""
@@ -102,7 +102,8 @@ class Study:
         if answer not in ("load_sharing", "sweep"):
             raise FacegearError(f"answer = {answer!r}: must be one of load_sharing, sweep")
         results_by_words = {self._words(name): result for name, result in others}
-        return first.plot(label=self._words(label), beside=results_by_words, **(plot or {}))  # type: ignore[attr-defined]
+        describe = type(first).plot.describe  # type: ignore[attr-defined]
+        return describe(first, label=self._words(label), beside=results_by_words, **(plot or {}))
 
     def _words(self, label: str) -> str:
         """Return the changes of a machine in words where its label holds their keys."""

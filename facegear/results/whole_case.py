@@ -18,7 +18,7 @@ from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, sho
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
-from facegear.plots.style import save
+from facegear.plots.save import save
 from facegear.provenance.manifest import versions
 from facegear.report.omissions import with_omissions
 from facegear.results.base import StageOutput
@@ -57,8 +57,9 @@ class WholeCase:
         if path.suffix != ".html":
             raise FacegearError(f"{path}: must end in .html")
         require_writable_file(path)
-        self.on_stage("report", self.outlook())
         partial = PartialResults(path.with_suffix(".partial"))
+        partial.require_usable()
+        self.on_stage("report", self.outlook())
         store = replace(self.chain.store, partial=partial, failures={})
         going_on = replace(self, chain=replace(self.chain, store=store))
         with extras_named(), TemporaryDirectory() as folder:

@@ -7,6 +7,7 @@ import numpy as np
 
 from facegear.arrays import AnyArray, Array
 from facegear.errors import InvalidInput
+from facegear.number_format import count_noun
 from facegear.shafts.beam import MOTIONS, Elasticity, Segment, carried, clamped_compliance
 
 HELD = 1e-9
@@ -59,7 +60,7 @@ class Shaft:
         softest, *_, stiffest = np.linalg.eigvalsh(held / np.outer(scale, scale))
         if softest <= HELD * stiffest:
             allowed = "such that they hold it along its axis and against tilting"
-            raise InvalidInput("bearings of a shaft", f"{len(self.bearings)} bearings", allowed)
+            raise InvalidInput("bearings of a shaft", count_noun(len(self.bearings), "bearing"), allowed)
 
 
 @dataclass(frozen=True, eq=False)

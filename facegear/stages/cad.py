@@ -9,6 +9,7 @@ from facegear.errors import FacegearError, chosen
 from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.solids import solid, teeth_of, triangles
 from facegear.io.cad import write_step, write_stl
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 
 
@@ -26,7 +27,7 @@ def cad(body: Body, tooth_pair: ToothPair, mesh: Mesh, case: str) -> Outcome:
         volume = write_step(step, patches, product_name(case, body))
         write_stl(stl, triangles(patches))
         content = {"step": step.read_bytes(), "stl": stl.read_bytes()}
-    return Outcome(content, f"{len(patches)} surfaces around {1e9 * volume:.2f} mm3")
+    return Outcome(content, f"{count_noun(len(patches), 'surface')} around {1e9 * volume:.2f} mm3")
 
 
 def product_name(case: str, body: Body) -> str:

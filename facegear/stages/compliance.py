@@ -6,6 +6,7 @@ from facegear.config.mesh import Mesh
 from facegear.config.tooth_pair import ToothPair
 from facegear.contact.gear_flank import to_arrays
 from facegear.contact.pair import gear_flank
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 
 
@@ -16,5 +17,6 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
     """
     setup = contact_setup(tooth_pair, mesh, contact)
     flank = gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
-    summary = f"{len(flank.compliance.own)} flank nodes, {len(flank.compliance.others)} teeth coupled"
+    teeth = count_noun(len(flank.compliance.others), "tooth", "teeth")
+    summary = f"{count_noun(len(flank.compliance.own), 'flank node')}, {teeth} coupled"
     return Outcome({"arrays": to_arrays(flank)}, summary)

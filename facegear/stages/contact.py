@@ -11,6 +11,7 @@ from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.gear_flank import from_arrays
+from facegear.number_format import format_number
 from facegear.stages.outcome import Outcome
 
 
@@ -46,7 +47,7 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
 def _mean_stiffness(table: pd.DataFrame) -> str:
     """The mean, or why there is none, and what fillets carry from FILLET_CONTACT on."""
     mean, row = table["k_average_n_per_m"].mean(skipna=False), table.loc[table["fillet_share"].idxmax()]
-    text = f"mean stiffness {mean:.4g} N/m"
+    text = f"mean stiffness {format_number(1e-6 * mean)} N/um"
     if np.isnan(mean):
         depth = table["interference_um"].max()
         text = f"no mean stiffness as the teeth interfere, by {depth:.3g} um along the line of action"

@@ -7,6 +7,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.contact.studies import StudiedContact, study_table
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 
 
@@ -26,4 +27,6 @@ def contact_studies(
     table = study_table(cases)
     shift = table.loc[table["path_shift_mm"].abs().idxmax()]
     largest = f"{shift['path_shift_mm']:.2f} mm ({shift['label']})"
-    return Outcome({"table": table}, f"{len(cases) - 1} cases; largest shift of the contact path {largest}")
+    return Outcome(
+        {"table": table}, f"{count_noun(len(cases) - 1, 'case')}; largest shift of the contact path {largest}"
+    )

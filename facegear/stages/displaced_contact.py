@@ -14,6 +14,7 @@ from facegear.config.transmission import Transmission
 from facegear.contact.gear_flank import from_arrays
 from facegear.contact.posed import met_contacts
 from facegear.errors import ConfigError, chosen
+from facegear.number_format import count_noun
 from facegear.poses.displaced import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
 from facegear.stages.outcome import Outcome
 
@@ -122,4 +123,4 @@ def loaded_displaced_contact(
         name: table[["flank", *(column for column in table.columns if column != "flank")]]
         for name, table in tables.items()
     }
-    return Outcome(content, f"contact of both flanks at {len(torques)} torques")
+    return Outcome(content, f"contact of both flanks at {count_noun(len(torques), 'torque')}")

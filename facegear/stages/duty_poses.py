@@ -11,6 +11,7 @@ from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.flank_errors import FLANKS
+from facegear.number_format import count_noun
 from facegear.poses.fixed_point import operating_pose
 from facegear.poses.surface import PoseSurface
 from facegear.stages.outcome import Outcome
@@ -58,4 +59,4 @@ def duty_poses(
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     loaded_paths = table.loc[table["force_n"] > 0.0, "unloaded_path_mm"]
     between = f"{loaded_paths.min():.1f} to {loaded_paths.max():.1f} mm" if len(loaded_paths) else "no load"
-    return Outcome({"duty_poses": table}, f"{len(strength.duty)} bins, contact at {between}")
+    return Outcome({"duty_poses": table}, f"{count_noun(len(strength.duty), 'bin')}, contact at {between}")

@@ -10,6 +10,7 @@ from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import to_arrays
 from facegear.dynamics.sweeps.sweep import run_chunk
+from facegear.number_format import count_noun
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
 
@@ -34,5 +35,5 @@ def dynamics_sweep_chunk(
         wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
     before, own = run_chunk(model, plan, direction, number, progress.step)
-    summary = f"{len(own.speeds)} speeds {direction}, {len(before.speeds)} for overlap"
+    summary = f"{count_noun(len(own.speeds), 'speed')} {direction}, {len(before.speeds)} for overlap"
     return Outcome({"chunk": to_arrays(before, own)}, summary)

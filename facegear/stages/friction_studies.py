@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from facegear.lubrication.columns import FRICTION_STUDY_COLUMNS
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 
 
@@ -27,4 +28,7 @@ def friction_studies(
         rows.append((*point, *of_machine, *of_mesh, at_rest["smallest_film_ratio"].min(), solved))
     table = pd.DataFrame(rows, columns=list(FRICTION_STUDY_COLUMNS))
     min_loss, max_loss = table["loss_percent"].min(), table["loss_percent"].max()
-    return Outcome({"table": table}, f"{len(table) - 1} cases; loss from {min_loss:.3f} to {max_loss:.3f} %")
+    return Outcome(
+        {"table": table},
+        f"{count_noun(len(table) - 1, 'case')}; loss from {min_loss:.3f} to {max_loss:.3f} %",
+    )

@@ -17,6 +17,7 @@ from facegear.gear_body import tables
 from facegear.gear_body.body import SolvedBody, solve_body
 from facegear.gear_body.reduced import ReducedBody
 from facegear.gear_body.reduction import reduced_body
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 from facegear.transmission.layout import Layout
 
@@ -129,7 +130,7 @@ def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
         own = modes[modes["gear"] == row.gear]
         first = f"from {own['frequency_hz'].min():.1f} Hz" if len(own) else "none"
         parts.append(
-            f"{row.gear}: {row.mass_kg:.4g} kg, {len(own)} modes {first} "
+            f"{row.gear}: {row.mass_kg:.4g} kg, {count_noun(len(own), 'mode')} {first} "
             f"(+-{100 * row.frequency_change:.2g} %), {1e9 * row.own_compliance_m_per_n:.4g} nm/N at a mesh, "
             f"of which the modes hold {100 * row.modal_fraction:.1f} %"
         )

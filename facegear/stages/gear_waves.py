@@ -8,6 +8,7 @@ from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 from facegear.transmission.loaded_modes import wedged_motion_text
 from facegear.transmission.machine import Machine
@@ -42,7 +43,7 @@ def gear_waves(
     all_modes = machine_at_speeds(machine, speeds)
     modes = all_modes[speeds.index(float(speed_rpm))]
     growing = modes.frequencies[modes.damping_ratios < -GROWS]
-    summary = f"{modes.frequencies.size} modes at {speed_rpm:g} rpm"
+    summary = f"{count_noun(modes.frequencies.size, 'mode')} at {speed_rpm:g} rpm"
     if growing.size:
         named = ", ".join(f"{frequency:.1f}" for frequency in growing)
         summary = f"{summary}; the damping that turns with the gears makes those grow at {named} Hz"

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.number_format import format_number
 from facegear.stages.outcome import Outcome
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.tables import load_dependence as table_of
@@ -11,5 +12,6 @@ def load_dependence(ltca: pd.DataFrame) -> Outcome:
     """`table` from the table of stage contact."""
     table = table_of(load_table(ltca))
     means = table.loc[table["definition"] == "average", "mean_n_per_m"]
-    summary = f"mean average stiffness {means.min():.3g} to {means.max():.3g} N/m over the torques solved"
+    least, largest = (format_number(1e-6 * mean) for mean in (means.min(), means.max()))
+    summary = f"mean average stiffness {least} to {largest} N/um over the torques solved"
     return Outcome({"table": table}, summary)

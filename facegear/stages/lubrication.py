@@ -16,7 +16,6 @@ from facegear.lubrication.assessment import (
     map_table,
     position_table,
 )
-from facegear.lubrication.columns import LEFT_OUT
 from facegear.lubrication.excitation import excitation_table
 from facegear.lubrication.machine_loss import LoadedPair
 from facegear.stages.outcome import Outcome
@@ -51,7 +50,7 @@ def lubrication(
     last = table.iloc[-1]
     summary = (
         f"mesh efficiency {last['efficiency']:.4f} at {last['torque_n_m']:g} N m and {speed_rpm:g} rpm, "
-        f"contact up to {last['contact_temperature_c']:.0f} C ({last['friction_model']} friction); {LEFT_OUT}"
+        f"contact up to {last['contact_temperature_c']:.0f} C ({last['friction_model']} friction)"
     )
     return Outcome(content, summary)
 

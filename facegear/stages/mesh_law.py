@@ -14,6 +14,7 @@ from facegear.contact.pair import contact_model
 from facegear.contact.position import LoadedPosition
 from facegear.errors import FacegearError
 from facegear.geometry.flank_errors import distinct_pairs
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.load_dependent import (
@@ -54,7 +55,7 @@ def mesh_law(
     levels = level_table(tables, errors, numbers, design.pinion_base_radius)
     rms, largest = (100.0 * max(getattr(error, name) for error in errors) for name in ("rms", "largest"))
     summary = (
-        f"{tables[0].levels.size - 1} levels up to {1e6 * tables[0].levels[-1]:.3g} um, "
+        f"{count_noun(tables[0].levels.size - 1, 'level')} up to {1e6 * tables[0].levels[-1]:.3g} um, "
         f"{tables[0].forces.shape[2] - 1} orders, times {scale:.4f}; against contact between the levels "
         f"{rms:.2g} % rms, {largest:.2g} % at most of the largest mean force"
     )

@@ -9,6 +9,7 @@ from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
+from facegear.number_format import count_noun, format_number
 from facegear.stages.outcome import Outcome
 from facegear.transmission.loaded_modes import vibrating_machine
 from facegear.transmission.modal_tables import contact_table, frequency_table, shape_table
@@ -51,10 +52,11 @@ def modal(
         "contacts": contacts,
     }
     closed = contacts.loc[contacts["state"].isin(["drive", "back", "wedged"]), "stiffness_n_per_m"]
-    size = f"{mean:.4g}" if law is None else f"{closed.min():.4g} to {closed.max():.4g}"
+    sizes = [mean] if law is None else [closed.min(), closed.max()]
+    size = " to ".join(format_number(1e-6 * stiffness) for stiffness in sizes)
     summary = (
-        f"{rigid} rigid body modes, {elastic.size} from {elastic[0]:.1f} to {elastic[-1]:.1f} Hz, with a "
-        f"mesh stiffness of {size} N/m ({source_text})"
+        f"{count_noun(rigid, 'rigid body mode')}, {elastic.size} elastic from {elastic[0]:.1f} to "
+        f"{elastic[-1]:.1f} Hz, with a mesh stiffness of {size} N/um ({source_text})"
     )
     return Outcome(content, summary + _remarks(contacts, vibration.decided))
 

@@ -15,6 +15,7 @@ from facegear.errors import FacegearError
 from facegear.geometry.bodies import BODIES
 from facegear.geometry.conjugate import PairNumbers, contact_at, without_modifications
 from facegear.geometry.design import PairDesign
+from facegear.number_format import count_noun
 from facegear.poses.surface import QUANTITIES, RADIUS, STIFFNESS, Nodes, PoseSurface, surface_nodes
 from facegear.stages.outcome import Outcome
 from facegear.strength.passage import passing
@@ -50,7 +51,8 @@ def pose_surface(
     errors = error_table(surface)
     worst = errors[errors["quantity"] == STIFFNESS]["largest"].max()
     summary = (
-        f"{len(assemblies)} poses, paths {1e3 * nodes.paths[0]:.1f} to {1e3 * nodes.paths[-1]:.1f} mm, up to "
+        f"{count_noun(len(assemblies), 'pose')}, paths {1e3 * nodes.paths[0]:.1f} to "
+        f"{1e3 * nodes.paths[-1]:.1f} mm, up to "
         f"{nodes.torques[-1]:g} N m; stiffness misses a node that is left out by at most {100 * worst:.2g} %"
     )
     table = node_table(nodes, values, [errors.offset for errors in assemblies])

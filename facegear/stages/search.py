@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.config.changes import movable, nominal
+from facegear.number_format import count_noun
 from facegear.scenarios.evolution import Task, front, hypervolumes
 from facegear.stages.outcome import Outcome
 from facegear.variants.designs import SearchedMachine, assessor, task
@@ -30,7 +31,7 @@ def search(islands: Sequence[pd.DataFrame], **given: Any) -> Outcome:
             "hypervolume": covered,
             "winners": _winners(best, asked, machine),
         },
-        f"front of {len(best)} designs out of {len(every)}; {_spread(covered)}",
+        f"front of {count_noun(len(best), 'design')} out of {len(every)}; {_spread(covered)}",
     )
 
 
@@ -39,7 +40,7 @@ def _spread(covered: pd.DataFrame) -> str:
         return "none of them holds every limit"
     last = covered.groupby("seed")["hypervolume"].last()
     percent = 100.0 * (last.max() - last.min()) / last.mean()
-    return f"hypervolume of {len(last)} seeds within {percent:.2g} %"
+    return f"hypervolume of {count_noun(len(last), 'seed')} within {percent:.2g} %"
 
 
 def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine) -> pd.DataFrame:

@@ -4,6 +4,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from facegear.number_format import count_noun
 from facegear.progress import Progress
 from facegear.scenarios.evolution import Effort, evolve
 from facegear.stages.outcome import Outcome
@@ -27,5 +28,6 @@ def search_island(seed: int, partial: str | Path | None = None, code: str = "", 
         designs = evolve(task(section), lambda design: assess(design)[0], effort, kept, same, progress.step)
     failed = int((designs["error"] != "").sum())
     return Outcome(
-        {"designs": designs}, f"{len(designs)} designs, {failed} of them cannot be built or computed"
+        {"designs": designs},
+        f"{count_noun(len(designs), 'design')}, {failed} of them cannot be built or computed",
     )

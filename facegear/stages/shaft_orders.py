@@ -1,5 +1,7 @@
 """Vibration of the machine at the orders of its gears' turns."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
@@ -9,8 +11,14 @@ from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.ties import first_largest, first_largest_row
-from facegear.transmission.machine import mesh_frequency
-from facegear.transmission.shaft_orders import TurnOrders, loaded_machine, mesh_amplitudes, turn_orders
+from facegear.transmission.machine import Machine, mesh_frequency
+from facegear.transmission.shaft_orders import (
+    LoadedMachine,
+    TurnOrders,
+    loaded_machine,
+    mesh_amplitudes,
+    turn_orders,
+)
 
 SPEEDS = 61
 """At which the largest orders are followed over speed."""
@@ -19,6 +27,10 @@ FOLLOWED = 4
 COLUMNS = (
     *("turning", "order", "of_mesh", "frequency_hz", "mesh"),
     *("error_um", "force_n", "force_at_rest_n"),
+)
+EXCITED = (
+    *("speed_rpm", "body", "order", "of_mesh", "frequency_hz", "part"),
+    *("force_n", "torque_n_m"),
 )
 OVER_SPEED = ("speed_rpm", "turning", "order", "of_mesh", "frequency_hz", "mesh", "force_n")
 
@@ -36,7 +48,8 @@ def shaft_orders(
     tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """`orders` (table at the nominal speed), `over_speed` (table, the mesh with the largest force of each of
-    the largest orders). Raises NotConverged.
+    the largest orders), `excited` (table: amplitudes of mesh forces and of torques of springs under each
+    periodic torque, at the nominal speed and over speed). Raises NotConverged.
     """
     machine = wired_machine(
         transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies, tooth_errors=tooth_errors
@@ -61,8 +74,34 @@ def shaft_orders(
             key = _key(largest, row, mesh_frequency(layout, speed))
             over_speed.append((speed, *key, names[first_largest(forces)], float(forces.max())))
     table = pd.DataFrame(rows, columns=list(COLUMNS))
-    content = {"orders": table, "over_speed": pd.DataFrame(over_speed, columns=list(OVER_SPEED))}
+    excited = _excited(machine, loaded, [speed_rpm, *np.linspace(first_rpm, last_rpm, SPEEDS).tolist()])
+    content = {
+        "orders": table,
+        "over_speed": pd.DataFrame(over_speed, columns=list(OVER_SPEED)),
+        "excited": excited,
+    }
     return Outcome(content, _summary(table, speed_rpm))
+
+
+def _excited(machine: Machine, model: LoadedMachine, speeds: Sequence[float]) -> pd.DataFrame:
+    """Amplitudes at each speed: forces of meshes, torques of torsional springs by the mass behind them."""
+    layout, line = machine.layout, machine.drive_line
+    springs = [] if line is None else line.springs()
+    rows: list[tuple[object, ...]] = []
+    for speed in speeds:
+        for excitation in machine.excitations:
+            frequency = excitation.of_mesh * mesh_frequency(layout, speed)
+            name = layout.body_names[excitation.body]
+            key = (speed, name, excitation.order, excitation.of_mesh, frequency)
+            motion = model.excited_motion(machine, excitation, speed)
+            forces = mesh_amplitudes(model.flank_forces(motion), model.closed)
+            rows += [(*key, *row, np.nan) for row in zip(layout.mesh_names, forces.tolist(), strict=True)]
+            for spring in springs:
+                twist = motion[spring.second] - motion[spring.first]
+                dynamic = spring.stiffness + 2j * np.pi * frequency * spring.damping
+                label = machine.linear.labels[spring.second]
+                rows.append((*key, label, np.nan, float(abs(dynamic * twist))))
+    return pd.DataFrame(rows, columns=list(EXCITED))
 
 
 def _key(orders: TurnOrders, row: int, frequency: float) -> tuple[str, int, float, float]:

@@ -16,6 +16,7 @@ from facegear.load_sharing.quantity_names import (
     SIMPLIFIED,
     UNSOLVED,
 )
+from facegear.number_format import count_noun
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.summary import (
     fraction_table,
@@ -75,7 +76,7 @@ def tolerances(
             "indices": index_table(design, causes, tolerances.confidence),
             "sampling": sampling,
         },
-        f"{len(every)} samples, {failed} failed; {summary}",
+        f"{count_noun(len(every), 'sample')}, {failed} failed; {summary}",
     )
 
 
@@ -92,7 +93,9 @@ def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
     cycles = [part for part in parts if part.partition(" ")[0] in MISSED]
     places = sampling.loc[~sampling["quantity"].isin(list(MISSED)), "largest_missed"]
     missed = (
-        [f"the mesh cycles taken miss at most {', '.join(cycles)} ({max_samples} samples)"] if cycles else []
+        [f"the mesh cycles taken miss at most {', '.join(cycles)} ({count_noun(max_samples, 'sample')})"]
+        if cycles
+        else []
     )
     return missed + (
         [f"the places that friction is taken at miss at most {places.max():.1e}"] if len(places) else []

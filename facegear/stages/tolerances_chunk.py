@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from facegear.config.tolerances import Design
+from facegear.number_format import count_noun
 from facegear.scenarios.sampling import index_samples, samples
 from facegear.stages.outcome import Outcome
 from facegear.variants.sampled import CHECKED, SampledMachine
@@ -50,4 +51,6 @@ def chunk_of(
     for column, name in enumerate(machine.causes.names):
         frame.insert(1 + column, name, values[:, column])
     failed = int((frame["error"] != "").sum())
-    return Outcome({"chunk": frame}, f"{len(frame)} samples, {failed} of them cannot be built or computed")
+    return Outcome(
+        {"chunk": frame}, f"{count_noun(len(frame), 'sample')}, {failed} of them cannot be built or computed"
+    )

@@ -8,6 +8,7 @@ import pandas as pd
 
 from facegear.config.tolerances import LoadMap
 from facegear.load_sharing.quantity_names import BETTER_LARGE
+from facegear.number_format import count_noun
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.sampling import samples
 from facegear.scenarios.summary import fraction_table, percentile_table, sampling_table
@@ -70,7 +71,8 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
             "load_fractions": pd.concat(fractions, ignore_index=True),
             "load_sampling": pd.concat(sampling, ignore_index=True),
         },
-        f"{len(loads)} loads of {asked.samples} samples each, {failed} machines failed",
+        f"{count_noun(len(loads), 'load')} of {count_noun(asked.samples, 'sample')} each, "
+        f"{count_noun(failed, 'machine')} failed",
     )
 
 

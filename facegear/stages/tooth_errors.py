@@ -12,6 +12,7 @@ from facegear.contact.teeth import ContactSide
 from facegear.contact.tooth_errors import loaded_curves, located_range, orders, pair_gaps, unloaded_errors
 from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.flank_errors import FLANKS, pair_at
+from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 
 ORDERS = 6
@@ -62,7 +63,7 @@ def tooth_errors(
     loaded_range = sum(np.ptp(curves[f"{body}_drive_m"]) for body in BODIES)
     summary = (
         f"tooth to tooth {1e6 * peak_to_peak:.4g} um (within {1e6 * left:.1g}) without load over "
-        f"{len(unloaded)} mesh cycles, {1e6 * loaded_range:.3g} um at {torque:g} N m"
+        f"{count_noun(len(unloaded), 'mesh cycle')}, {1e6 * loaded_range:.3g} um at {torque:g} N m"
     )
     return Outcome({"curves": curves, "orders": table}, summary)
 

@@ -7,8 +7,9 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.errors import InvalidInput
-from facegear.harmonics.fit import LEVELS, Fit, fit_harmonics
+from facegear.harmonics.fit import Fit, fit_harmonics
 from facegear.harmonics.series import Harmonics
+from facegear.number_format import format_number
 from facegear.stiffness.curve import LoadTable, load_table
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.tables import curve_table, harmonics_table, with_unloaded_error
@@ -89,13 +90,10 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     curve = curve_from_contact(ltca, request)
     assert request.torque is not None
     table, fit, scale, torque = curve.table, curve.fit, curve.scale, request.torque
-    reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
-    between = table.interpolation_error(torque, request.definition)
-    loads = "" if np.isnan(between) else f"interpolation between loads {100 * between:.2g} %; "
+    scale_text = "" if scale == 1.0 else f", scaled by {scale:.4f}"
     summary = (
-        f"{request.definition} stiffness at {torque:g} N m, mean {fit.series.mean:.4g} N/m "
-        f"times {scale:.4f}; orders for an error of the peak-to-peak of {reach}; "
-        f"{loads}unloaded transmission error {1e6 * peak_to_peak(curve.error):.3g} um peak to peak"
+        f"{request.definition} stiffness at {torque:g} N m: mean {format_number(1e-6 * fit.series.mean)} N/um"
+        f"{scale_text}; transmission error without load {1e6 * peak_to_peak(curve.error):.3g} um peak to peak"
     )
     harmonics = with_unloaded_error(
         harmonics_table(curve.series, fit, scale * request.variation), curve.error, curve.error_cut
@@ -120,7 +118,7 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
         curve_table(positions, whole(positions), series),
         harmonics_table(series, None),
         harmonics_table(whole, None),
-        f"given harmonics, {series.order} kept, mean {series.mean:.4g} N/m",
+        f"given harmonics, {series.order} kept, mean {format_number(1e-6 * series.mean)} N/um",
     )
 
 

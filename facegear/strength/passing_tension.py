@@ -12,15 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from facegear._kernels import strength
 from facegear.arrays import Array, Arrays, Integers
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.nodal_loads import loads_by_tooth
 from facegear.errors import InvalidInput
-from facegear.machine_code.compiler import compiler
 from facegear.strength.between_torques import scale
 from facegear.strength.root_stress import LONE, down_the_fillet
-
-compiled = compiler()
 
 FIRST = 16
 """Places whose stress is superposed first, those with the largest bounds."""
@@ -75,7 +73,7 @@ class PassingTension:
             first = int(np.clip(np.searchsorted(torques, torque) - 1, 0, max(torques.size - 2, 0)))
             near = range(first, min(first + 2, torques.size))
             ends = [force(row) for row in near]
-            bounds = [_bounded(*_forces(end, teeth), self.bounds) for end in ends]
+            bounds = [_bounded(end, teeth, self.bounds) for end in ends]
             stress = np.array(
                 [
                     self._largest(end, teeth, bound, splined=False)
@@ -96,21 +94,18 @@ class PassingTension:
 
         bounds: no stress is larger, by tooth, position and plane as `_bounded` has them.
         """
-        forces, left, largest = _forces(force, teeth), bounds.ravel().copy(), -np.inf
+        left, largest = bounds.ravel().copy(), -np.inf
         while (above := np.flatnonzero(left > largest)).size:
             if above.size > FIRST:
                 above = above[np.argpartition(-left[above], FIRST)[:FIRST]]
             places = np.stack(np.unravel_index(above, bounds.shape), axis=1)
-            stress = _superposed(*forces, self.readings, places)
+            stress = np.empty((len(places), self.readings.shape[2]))
+            forces = force.indptr, force.indices, force.data, teeth
+            strength.superpose(*forces, self.readings, places, stress)
             if splined:
                 stress = down_the_fillet(stress[:, :, None])[..., 0]
             largest, left[above] = max(largest, float(stress.max())), -np.inf
         return largest
-
-
-def _forces(force: sp.csr_matrix, teeth: Integers) -> tuple[Array, Array, Array, Integers, int]:
-    """Forces (teeth positions, c) N as the kernels take them."""
-    return force.indptr, force.indices, force.data, teeth, force.shape[0] // teeth.size
 
 
 def _bounds(stress: Array) -> Array:
@@ -121,54 +116,16 @@ def _bounds(stress: Array) -> Array:
     return np.ascontiguousarray(largest.reshape(-1, largest.shape[-1]).T)
 
 
-@compiled
-def _bounded(
-    starts: Integers, nodes: Integers, force: Array, teeth: Integers, positions: int, bounds: Array
-) -> Array:
+def _bounded(force: sp.csr_matrix, teeth: Integers, bounds: Array) -> Array:
     """Bounds (t, positions, 2 b) of the stress of all teeth from the one before the first of the loaded
-    `teeth` to the one after the last.
+    `teeth` to the one after the last, by forces (teeth positions, c) N.
     """
-    reach, first = bounds.shape[1] // 2, teeth[0] - 1
-    limits = np.zeros((teeth[-1] + 2 - first, positions, bounds.shape[3]))
-    for read in range(limits.shape[0]):
-        for loaded in range(teeth.size):
-            apart = read + first - teeth[loaded] + reach
-            if apart < 0 or apart > 2 * reach:
-                continue
-            for position in range(positions):
-                row = loaded * positions + position
-                for entry in range(starts[row], starts[row + 1]):
-                    size, sign = abs(force[entry]), 0 if force[entry] > 0.0 else 1
-                    of_node, limit = bounds[sign, apart, nodes[entry]], limits[read, position]
-                    for plane in range(limit.size):
-                        limit[plane] += size * of_node[plane]
+    reach, forces = bounds.shape[1] // 2, force.toarray().reshape(teeth.size, -1, force.shape[1])
+    pushes, pulls = np.maximum(forces, 0.0), np.maximum(-forces, 0.0)
+    limits = np.zeros((teeth[-1] - teeth[0] + 3, forces.shape[1], bounds.shape[3]))
+    for read, limit in enumerate(limits, teeth[0] - 1):
+        for tooth, push, pull in zip(teeth, pushes, pulls, strict=True):
+            if abs(read - tooth) <= reach:
+                apart = read - tooth + reach
+                limit += push @ bounds[0, apart] + pull @ bounds[1, apart]
     return limits
-
-
-@compiled
-def _superposed(
-    starts: Integers,
-    nodes: Integers,
-    force: Array,
-    teeth: Integers,
-    positions: int,
-    readings: Array,
-    places: Integers,
-) -> Array:
-    """Stress (n, a) down the fillet at places (n, 3): tooth, position and plane of `_bounded`."""
-    reach, first = readings.shape[0] // 2, teeth[0] - 1
-    stress = np.zeros((places.shape[0], readings.shape[2]))
-    for number in range(places.shape[0]):
-        read, position, plane = places[number]
-        fillet, along = plane // readings.shape[3], plane % readings.shape[3]
-        for loaded in range(teeth.size):
-            apart = read + first - teeth[loaded] + reach
-            if apart < 0 or apart > 2 * reach:
-                continue
-            row = loaded * positions + position
-            for entry in range(starts[row], starts[row + 1]):
-                for gauge in range(stress.shape[1]):
-                    stress[number, gauge] -= (
-                        force[entry] * readings[apart, fillet, gauge, along, nodes[entry]]
-                    )
-    return stress

@@ -2,7 +2,7 @@
 
 Contacts may have an edge on either side, as the meshes of equation (13) as printed, where one deflection of
 either sign passes a dead zone; stiffness may couple any coordinates. Where each pinion has a bearing of its
-own and contacts push, facegear.transmission.contact_kernel is far faster.
+own and contacts push, facegear.transmission.block_statics is far faster.
 """
 
 from collections.abc import Callable

@@ -13,7 +13,9 @@ from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.law import MeshLaw
+from facegear.number_format import count_noun
 from facegear.transmission.drive_line import DriveLine
+from facegear.transmission.excitation import Excitation, rigid_rotation, without_rigid_rotation
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.linear_model import Bodies, LinearModel
@@ -104,6 +106,8 @@ class Machine:
         Shafts of pinions that bend, and turning masses behind torsional springs.
     directions
         What turns the forces of the meshes from the normals of the ideal contact; nothing by default.
+    excitations
+        Periodic torques beside the mean ones; nothing at rest.
     """
 
     layout: Layout
@@ -123,6 +127,7 @@ class Machine:
     softening: Array | None = None
     drive_line: DriveLine | None = None
     directions: Bodies | None = None
+    excitations: tuple[Excitation, ...] = ()
 
     def __post_init__(self) -> None:
         if self.imperfections is None:
@@ -137,7 +142,9 @@ class Machine:
             ("softening of the meshes", self.softening),
         ):
             if given is not None and len(given) != meshes:
-                raise InvalidInput(quantity, f"{len(given)} meshes", f"one for each of {meshes}")
+                raise InvalidInput(
+                    quantity, count_noun(len(given), "mesh", "meshes"), f"one for each of {meshes}"
+                )
         minimum = self.stiffness.minimum
         if minimum <= 0.0:
             raise InvalidInput(
@@ -219,7 +226,29 @@ class Machine:
             pushes.append(linear.forces[None] / np.linalg.norm(linear.forces))
         if self.friction is not None:
             pushes.append(linear.over_all(friction_rows(self.layout)).reshape(-1, linear.size))
+        for excitation in self.excitations:
+            force = self.straining_torque(excitation.body)
+            if (size := float(np.linalg.norm(force))) > 0.0:
+                pushes.append(force[None] / size)
         return np.concatenate(pushes)
+
+    def straining_torque(self, body: int) -> Array:
+        """Return the force of a unit torque on a body, without what turns all bodies together.
+
+        Parameters
+        ----------
+        body : int
+            Number of the body in the layout.
+
+        Returns
+        -------
+        (n,) array
+            N and N m for 1 N m.
+        """
+        torque = np.zeros(self.linear.size)
+        torque[self.torque_coordinates[body]] = 1.0
+        rotation = rigid_rotation(self.layout, self.linear, self.drive_line)
+        return without_rigid_rotation(torque, self.linear, rotation)
 
     @cached_property
     def phases(self) -> Array:

@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, ComplexArray, Integers, Mask
+from facegear.transmission.excitation import Excitation
 from facegear.transmission.flanks import flank_dampers, slow_errors
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_modes import pressed_springs
@@ -131,20 +132,62 @@ class LoadedMachine:
 
     def forces(self, orders: TurnOrders, speed_rpm: float, pinion_teeth: int) -> ComplexArray:
         """Elastic forces (n, 2 meshes) N of the flanks that carry, at a speed of the pinions."""
-        linear, rows, speed = self.linear, self.linear.rows, speed_rpm * np.pi / 30.0
+        rows, speed = self.linear.rows, speed_rpm * np.pi / 30.0
+        forces = np.zeros_like(orders.error)
+        for row, of_mesh in enumerate(orders.of_mesh):
+            omega = speed * pinion_teeth * of_mesh
+            flank = self.springs + 1j * omega * np.diag(self.dampers)
+            moved = np.linalg.solve(self._dynamic(speed, omega), rows.T @ (flank @ orders.error[row]))
+            forces[row] = self.springs @ (rows @ moved - orders.error[row])
+        return forces
+
+    def excited_motion(self, machine: Machine, excitation: Excitation, speed_rpm: float) -> ComplexArray:
+        """Complex amplitudes of all coordinates under one periodic torque.
+
+        Parameters
+        ----------
+        machine : Machine
+            The machine of this model.
+        excitation : Excitation
+            The torque.
+        speed_rpm : float
+            Of the pinions, rpm.
+
+        Returns
+        -------
+        (n,) complex array
+            m and rad; the common rotation of all bodies is left out.
+        """
+        speed = speed_rpm * np.pi / 30.0
+        omega = speed * machine.layout.pinion_teeth * excitation.of_mesh
+        force = excitation.amplitude * np.exp(1j * excitation.phase)
+        torque = force * machine.straining_torque(excitation.body)
+        return np.asarray(np.linalg.solve(self._dynamic(speed, omega), torque))
+
+    def flank_forces(self, motion: ComplexArray) -> ComplexArray:
+        """Elastic forces of the flanks that carry.
+
+        Parameters
+        ----------
+        motion : (n,) complex array
+            Amplitudes of all coordinates, m and rad.
+
+        Returns
+        -------
+        (2 meshes,) complex array
+            N, drive flanks first.
+        """
+        return np.asarray(self.springs @ (self.linear.rows @ motion))
+
+    def _dynamic(self, speed: float, omega: float) -> ComplexArray:
+        """Dynamic stiffness (n, n) at a speed of the pinions and a frequency, both in rad/s."""
+        linear, rows = self.linear, self.linear.rows
         stiffness = linear.stiffness + rows.T @ self.springs @ rows
         damping = linear.damping + (self.dampers * rows.T) @ rows
         if linear.spin is not None:
             stiffness = stiffness + speed * linear.spin.circulatory + speed**2 * linear.spin.centrifugal
             damping = damping + speed * linear.spin.gyroscopic
-        forces = np.zeros_like(orders.error)
-        for row, of_mesh in enumerate(orders.of_mesh):
-            omega = speed * pinion_teeth * of_mesh
-            flank = self.springs + 1j * omega * np.diag(self.dampers)
-            dynamic = stiffness + 1j * omega * damping - omega**2 * linear.mass
-            moved = np.linalg.solve(dynamic, rows.T @ (flank @ orders.error[row]))
-            forces[row] = self.springs @ (rows @ moved - orders.error[row])
-        return forces
+        return np.asarray(stiffness + 1j * omega * damping - omega**2 * linear.mass)
 
     def at_rest(self, orders: TurnOrders) -> ComplexArray:
         """The same turned slowly."""

@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.transmission.contact_energy import Springs
+from facegear.transmission.block_statics import Springs
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
 
@@ -34,8 +34,8 @@ def has_blocks(machine: Machine) -> bool:
 def static_springs(machine: Machine) -> Springs:
     """The compiled problem in the unknowns of `unknowns`."""
     frame, linear = _frame_of(machine), machine.linear
-    applied = linear.loads[frame.kept] * frame.scale
-    return frame.springs._replace(clearance=machine.imperfections.bearing_clearance, applied=applied)
+    loads = linear.loads[frame.kept] * frame.scale
+    return frame.springs._replace(clearance=machine.imperfections.bearing_clearance, loads=loads)
 
 
 def unknowns(machine: Machine) -> tuple[Integers, Array]:
@@ -89,10 +89,10 @@ def _springs(layout: Layout, kept: Integers, scale: Array, bearing: Array, rows:
         gear=touched[:, 1].copy(),
         pinion_bearing=np.stack([bearing[x, x], bearing[x, y], bearing[y, y]], axis=1),
         clearance=np.zeros(len(layout.pinions)),
-        core_row=row.copy(),  # with strides, as np.nonzero gives them, the kernel would be compiled anew
+        core_row=row.copy(),  # np.nonzero gives them with strides, and every call would copy them
         core_column=column.copy(),
         core_value=core[row, column],
-        applied=np.zeros(kept.size),
+        loads=np.zeros(kept.size),
     )
 
 

@@ -13,7 +13,7 @@ from facegear.arrays import Array
 from facegear.harmonics.series import stacked, stacked_values
 from facegear.mesh_law.law import Held, MeshLaw
 from facegear.transmission.balance import balance, bearing_loads
-from facegear.transmission.contact_kernel import settle_all
+from facegear.transmission.block_statics import has_kernel, settle_all
 from facegear.transmission.dense_statics import RESIDUAL, Contacts, dense_equilibrium
 from facegear.transmission.flanks import (
     constant_errors,
@@ -111,11 +111,11 @@ def mean_equilibrium(machine: Machine) -> Equilibria:
 def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: list[str]) -> Equilibria:
     """Equilibrium with the law of the flanks at `cycles` (K,) and errors (K, 2 meshes) of theirs.
 
-    Where every pinion has a bearing of its own the compiled solver takes all positions together. Raises
-    NotConverged.
+    Where every pinion has a bearing of its own and the law has a kernel, the compiled solver takes all
+    positions together. Raises NotConverged.
     """
     held, gaps = law.held(cycles), errors + flank_gaps(machine)
-    if has_blocks(machine.resting):
+    if has_blocks(machine.resting) and has_kernel(held):
         displacements, forces = _by_blocks(machine.resting, held, gaps)
         if machine.drive_line is not None and machine.resting is not machine:
             displacements = machine.drive_line.extended(machine.lumped, displacements)
@@ -131,7 +131,7 @@ def _by_blocks(machine: Machine, held: Held, gaps: Array) -> tuple[Array, Array]
     """Displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
     kept, scale = unknowns(machine)
     springs, start = static_springs(machine), np.zeros(kept.size)
-    solution, forces, _ = settle_all(springs, held, np.ascontiguousarray(gaps), TOLERANCE, start)
+    solution, forces, _ = settle_all(springs, held, gaps, TOLERANCE, start)
     displacements = np.zeros((len(gaps), machine.linear.size))
     np.add.at(displacements.T, kept, (solution * scale).T)
     return displacements, forces

@@ -1,5 +1,6 @@
 """Criteria on natural frequencies and mode classes; table `frequencies`."""
 
+from facegear.number_format import count_noun
 from paper.scorecard.outcome import ClaimOutcome, Tables, number, statement
 
 EQUAL_HZ = 1e-6
@@ -40,4 +41,4 @@ def coupled_share(tables: Tables, lower: float) -> ClaimOutcome:
     frame = tables["frequencies"]
     symbols = frame.loc[frame["frequency_hz"] > 0.0, "symbols"]
     coupled = symbols.str.contains(r"T(?:\([xy]\))?-R")
-    return statement(coupled.mean() > lower, f"{coupled.sum()} of {coupled.size} modes")
+    return statement(coupled.mean() > lower, f"{coupled.sum()} of {count_noun(coupled.size, 'mode')}")

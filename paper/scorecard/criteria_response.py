@@ -25,7 +25,7 @@ def not_synchronous(tables: Tables, a: str, b: list[str], upper: float) -> Claim
     values = {
         other: min(_correlation(tables, f"{a}/{side}", f"{other}/{side}") for side in SIDES) for other in b
     }
-    shown = ", ".join(f"with {other} {value:.2f}" for other, value in values.items())
+    shown = ", ".join(f"with {other} {value:z.2f}" for other, value in values.items())
     return statement(max(values.values()) <= upper, shown)
 
 
@@ -33,7 +33,7 @@ def sides_not_synchronous(tables: Tables, upper: float) -> ClaimOutcome:
     """The deflections of a pinion's lower and upper mesh correlate below the value, for every pinion."""
     pinions = dict.fromkeys(mesh.rsplit("/", 1)[0] for mesh in _meshes(tables))
     values = {name: _correlation(tables, f"{name}/lower", f"{name}/upper") for name in pinions}
-    shown = ", ".join(f"{name} {value:.2f}" for name, value in values.items())
+    shown = ", ".join(f"{name} {value:z.2f}" for name, value in values.items())
     return statement(max(values.values()) <= upper, shown)
 
 
@@ -126,5 +126,5 @@ def _correlation(tables: Tables, first: str, second: str) -> float:
 
 
 def _sides(values: list[float] | list[str]) -> str:
-    shown = [f"{value:.2f}" if isinstance(value, float) else value for value in values]
+    shown = [f"{value:z.2f}" if isinstance(value, float) else value for value in values]
     return f"lower {shown[0]}, upper {shown[1]}"

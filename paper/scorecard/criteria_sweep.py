@@ -8,6 +8,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.sweeps.maxima import local_maxima
+from facegear.number_format import count_noun
 from paper.scorecard.outcome import ClaimOutcome, Tables, nearest, number, statement
 
 PROMINENCE = 0.1
@@ -96,7 +97,8 @@ def _leaning(more: Integers, lean: str) -> ClaimOutcome:
     if not more.any():
         return statement(False, "up and down sweeps agree")
     lean_of_sweep = "hardening" if more.sum() > 0 else "softening" if more.sum() < 0 else "neither"
-    counts = f"{(more > 0).sum()} speeds higher upward, {(more < 0).sum()} higher downward"
+    upward = count_noun(int((more > 0).sum()), "speed")
+    counts = f"{upward} higher upward, {(more < 0).sum()} higher downward"
     return statement(lean_of_sweep == lean, f"{lean_of_sweep} ({counts})")
 
 

@@ -6,7 +6,8 @@ import pandas as pd
 
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
-from facegear.plots.style import save
+from facegear.number_format import count_noun
+from facegear.plots.save import save
 from facegear.provenance.stage import stage
 from facegear.report.inputs import inputs_in_words
 from paper.figures.claims_of import NUMBERS, claims_of
@@ -32,4 +33,4 @@ with stage(snakemake) as run:
     page = render(snakemake.wildcards.case, inputs_in_words(snakemake.params.values), claims, scorecard, sets)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
-    run.summary(f"{len(NUMBERS)} figures")
+    run.summary(f"{count_noun(len(NUMBERS), 'figure')}")

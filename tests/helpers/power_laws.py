@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from facegear.machine_code.fourier import fourier_terms
 
 from facegear.machine_code.compiler import FAST, for_callers
-from facegear.machine_code.fourier import fourier_terms
 from facegear.machine_code.lanes import LANES, load, multiply_add, splat, take
 from facegear.machine_code.memory import aligned
 from facegear.machine_code.records import Record
@@ -45,13 +45,9 @@ class PowerSeries(NamedTuple):
 
 
 class PowerHeld(NamedTuple):
+    """No kernel of statics knows it."""
+
     stiffness: np.ndarray
-    factor: np.ndarray
-    size: float
-    exponent: float
-    level: float
-    a: float
-    b: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +107,7 @@ class PowerLaw:
         return replace(self, depth=0.0, size=self.size * float(self.factor(cycle)))
 
     def held(self, cycles):
-        stiffness = np.full((cycles.size, self.contacts), self.steepest[0])
-        return PowerHeld(stiffness, self.factor(cycles), self.size, self.exponent, self.level, *self.start)
+        return PowerHeld(np.full((cycles.size, self.contacts), self.steepest[0]))
 
     def terms(self, frequency, width):
         fourier = np.zeros((2, 2, LANES))
@@ -211,13 +206,3 @@ def piece_of(law, m, amount):
 @terms.piece_ends.of(PowerTerms)
 def piece_ends(law, m, piece):
     return (0.0, law.level) if piece == 1 else (law.level, np.inf)
-
-
-@terms.held_force.of(PowerHeld)
-def held_force(held, k, m, amount):
-    size = held.factor[k] * held.size
-    if amount < held.level:
-        slope = amount * (2.0 * held.a + 3.0 * held.b * amount)
-        return size * amount**2 * (held.a + held.b * amount), size * slope
-    force = size * amount**held.exponent
-    return force, held.exponent * force / amount

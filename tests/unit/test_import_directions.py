@@ -11,7 +11,7 @@ pytestmark = pytest.mark.xdist_group("import_directions")  # a module is parsed 
 PACKAGE = Path(__file__).parents[2] / "facegear"
 FOUNDATION = {
     *("arrays", "blas_threads", "by_content", "errors", "progress", "io", "machine_code", "number_format"),
-    "ties",
+    *("_kernels", "ties"),
 }
 MAY_IMPORT = {
     "arrays": set(),

@@ -130,6 +130,18 @@ def test_a_mistake_ends_new_in_one_line_and_writes_nothing(folder, monkeypatch, 
     assert [path.name for path in folder.iterdir()] == ["there.yaml"]
 
 
+def test_a_folder_that_new_makes_is_said_and_a_refused_wish_makes_none(folder, monkeypatch, capsys):
+    """A misspelt folder was made without a word."""
+    monkeypatch.setattr("sys.stdin", io.StringIO())
+    wishes = (*GIVEN, "--speed-rpm=7500", "--coarse")
+    assert command_line.main(("new", "there/own.yaml", *wishes, "--rim-thickness-mm=-1")) == 1
+    assert not (folder / "there").exists() and "there" not in capsys.readouterr().err
+    assert command_line.main(("new", "there/own.yaml", *wishes)) == 0
+    assert capsys.readouterr().err == "there: new folder\n"
+    assert command_line.main(("new", "there/two.yaml", *wishes)) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_the_command_says_its_version(capsys):
     with pytest.raises(SystemExit) as ended:
         command_line.main(("--version",))

@@ -70,6 +70,14 @@ def test_a_report_that_was_stopped_goes_on_from_there(tmp_path, computed):
     assert [path.name for path in tmp_path.iterdir()] == ["own.html"]
 
 
+def test_a_file_in_the_place_of_what_is_kept_is_said_before_any_work(tmp_path, computed):
+    """It was noticed when the first stage was done."""
+    (tmp_path / "own.partial").write_text("mine")
+    with pytest.raises(FacegearError, match=r"own\.partial: is a file, not a folder"):
+        gearbox().report(tmp_path / "own.html", lambda *_: pytest.fail("work has begun"))
+    assert computed.names == [] and (tmp_path / "own.partial").read_text() == "mine"
+
+
 def test_a_changed_config_takes_nothing_from_a_stopped_report_that_it_changes(tmp_path, computed):
     computed.failing["dynamics_response"] = KeyboardInterrupt()
     with pytest.raises(KeyboardInterrupt):

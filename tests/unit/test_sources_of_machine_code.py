@@ -71,6 +71,6 @@ def test_every_stored_function_names_the_files_of_all_that_is_compiled_into_it()
     (done,) = run_together([PROGRAM], {"PYTHONPATH": os.pathsep.join(sys.path)})
     assert done.returncode == 0, done.stderr
     lines = [line.split() for line in done.stdout.splitlines()]
-    assert {"touching", "run_periods"} <= {name for _, name, *_ in lines}
+    assert "run_periods" in {name for _, name, *_ in lines}
     assert sum(int(count) for _, _, count, *_ in lines) > len(lines)
     assert [line for line in lines if len(line) > 3] == []

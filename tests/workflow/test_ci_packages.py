@@ -20,9 +20,10 @@ case " $* " in *" update "*) exit 0;; esac
 if [ -e "$STATE/interrupted" ]; then echo "E: dpkg was interrupted" >&2; exit 100; fi
 for word; do
     case "$word" in
-        calculix-ccx | chromium | slurm-wlm) [ ! -e "$STATE/absent" ] || exit 100;;
+        g++ | calculix-ccx | chromium | slurm-wlm) [ ! -e "$STATE/absent" ] || exit 100;;
     esac
     case "$word" in
+        g++) set -- g++;;
         calculix-ccx) set -- ccx;;
         chromium) set -- chromium;;
         slurm-wlm) set -- slurmctld slurmd sbatch munged;;
@@ -71,14 +72,18 @@ def test_a_machine_gets_what_it_lacks_whatever_became_of_its_last_installation(c
     """After a killed apt-get, `dpkg was interrupted` left CI without Slurm, and its tests were skipped."""
     printed, found = ci(*wrong)
     assert printed == ["make ci"]
-    assert {"libglu1-mesa", "ccx", "chromium", "slurmctld", "slurmd", "munged"} <= found
+    assert {"libglu1-mesa", "g++", "ccx", "chromium", "slurmctld", "slurmd", "munged"} <= found
 
 
 def test_half_a_slurm_is_completed(ci):
     assert "slurmd" in ci(programs_there=["slurmctld", "munged"])[1]
 
 
+def test_a_machine_with_clang_gets_no_second_compiler(ci):
+    assert "g++" not in ci(programs_there=["clang++"])[1]
+
+
 def test_without_the_packages_the_checks_run_and_say_what_is_skipped(ci):
     printed, found = ci("absent")
     assert printed[-1] == "make ci" and "libglu1-mesa" in found
-    assert [line.split()[0] for line in printed[:-1]] == ["CalculiX", "Chromium", "Slurm"]
+    assert [line.split()[0] for line in printed[:-1]] == ["A", "CalculiX", "Chromium", "Slurm"]

@@ -5,16 +5,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.contact.averages import Hats
 from facegear.contact.candidates import Candidates
+from facegear.contact.position_solver import PositionContact
 from facegear.contact.solver import solve_contact
-from facegear.contact.touching import Touching
 
 
-def touching(
+def solve_candidates(
     pairs: Sequence[Candidates], influence: Callable[[], Array], torques: Array, where: str
-) -> Touching:
-    """Contact of candidates under torques (t,) N m, the largest first, as `facegear.contact.touching` has it.
+) -> PositionContact:
+    """Solve for the contact of candidates under torques (t,) N m, the largest first.
 
     `influence` (m, m) of all of them, m/N. Raises NotConverged naming `where`.
     """
@@ -32,19 +31,18 @@ def touching(
     on_pinion, on_gear = (
         np.array(
             [
-                [pair.loads(side, False).by(row[number == order]) for order, pair in enumerate(pairs)]
+                [pair.loads(side, False).T @ row[number == order] for order, pair in enumerate(pairs)]
                 for row in force
             ]
         )
         for side in range(2)
     )
     ends = np.cumsum([0, *(len(pair.hats) for pair in pairs)])
-    none = np.zeros(0, np.int64)
     rotation, slope, residual = (
         np.array([getattr(contact, name) for contact in contacts])
         for name in ("rotation", "slope", "residual")
     )
-    return Touching(
+    return PositionContact(
         teeth=np.array([pair.tooth for pair in pairs], dtype=np.int64),
         rotation=rotation,
         slope=slope,
@@ -54,9 +52,10 @@ def touching(
         forward=int(forward.sum()),
         sought=int(ends[-1]),
         overlap=float(np.max(-gap[forward] / lever_arm[forward], initial=0.0)),
-        hats=Hats(
-            number, node.astype(np.int64), gap, lever_arm, fillet.astype(bool), (none, none, np.zeros(0))
-        ),
+        pair=number,
+        node=node.astype(np.int64),
+        lever_arm=lever_arm,
+        fillet=fillet.astype(bool),
         force=force,
         on_pinion=on_pinion,
         on_gear=on_gear,

@@ -20,14 +20,14 @@ from facegear.contact.influence import product
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pair import BUILDERS
 from facegear.contact.position import LoadedPosition, first_turn, solve_position
+from facegear.contact.position_solver import PositionContact
 from facegear.contact.search import find_candidates
 from facegear.contact.teeth import LOADED_SIDE, contact_side, elastic_tooth
-from facegear.contact.touching import Touching
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import FeTooth
-from validation.contact.all_candidates import touching
+from validation.contact.all_candidates import solve_candidates
 
 Blocks = dict[tuple[int, int], Array]
 
@@ -62,7 +62,7 @@ class _SectorAtPosition:
     def base_radius(self) -> float:
         return self.sectors.flanks.design.pinion_base_radius
 
-    def touching(self, torques: Array, limit: float) -> Touching:
+    def contact(self, torques: Array, limit: float) -> PositionContact:
         sectors, flanks = self.sectors, self.sectors.flanks
         loaded = np.array(sorted({seen for seen, _ in sectors.pinion}))
         placement = angles_at(flanks.design, self.position)
@@ -71,7 +71,7 @@ class _SectorAtPosition:
         def influence() -> Array:
             return _influence(pairs, sectors.pinion, sectors.gear)
 
-        return touching(pairs, influence, torques, f"position {self.position:.6f}")
+        return solve_candidates(pairs, influence, torques, f"position {self.position:.6f}")
 
 
 def angles_at(design: PairDesign, position: float) -> tuple[float, float]:

@@ -15,19 +15,19 @@ from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.influence import influence_matrix
+from facegear.contact.lattice import Lattice
 from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.options import Ends, Refinement
 from facegear.contact.position import LoadedPosition, first_turn, solve_position
-from facegear.contact.spreading import Lattice
+from facegear.contact.position_solver import PositionContact
 from facegear.contact.teeth import ContactSide, elastic_tooth
-from facegear.contact.touching import Touching
 from facegear.geometry import pinion
 from facegear.geometry.design import Material, PairDesign, involute
 from facegear.geometry.placement import body_rotation
 from facegear.geometry.unloaded import PAIRS
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import FeTooth, pinion_tooth
-from validation.contact.all_candidates import touching
+from validation.contact.all_candidates import solve_candidates
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +131,7 @@ class _TwinAtPosition:
     def base_radius(self) -> float:
         return self.model.pinion.pinion_base_radius
 
-    def touching(self, torques: Array, limit: float) -> Touching:
+    def contact(self, torques: Array, limit: float) -> PositionContact:
         model = self.model
         phi1 = (self.position - 0.5) * 2 * pi / model.pinion.pinion.teeth
         pairs = _candidates(model, phi1, limit)
@@ -139,7 +139,7 @@ class _TwinAtPosition:
         def influence() -> Array:
             return influence_matrix(pairs, model.pinion_compliance, model.gear_compliance)
 
-        return touching(pairs, influence, torques, f"position {self.position:.6f}")
+        return solve_candidates(pairs, influence, torques, f"position {self.position:.6f}")
 
 
 def involute_separation(

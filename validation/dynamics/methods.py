@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from facegear.dynamics.abreast.wide import WIDTH
 from scipy.integrate import solve_ivp
 
 from facegear.arrays import Array
-from facegear.dynamics.many import run_many
-from facegear.dynamics.abreast.wide import WIDTH
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.many import run_many
 from facegear.dynamics.steady_state.orbits import monodromy
 from validation.dynamics import heyoka_peer
 from validation.dynamics.problems import SAMPLES, Compared, Problem

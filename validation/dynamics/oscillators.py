@@ -14,9 +14,9 @@ import pandas as pd
 from numba import njit
 
 from facegear.arrays import Array
-from facegear.dynamics.many import run_many
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
+from facegear.dynamics.many import run_many
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import steady_state

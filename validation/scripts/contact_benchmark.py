@@ -3,7 +3,7 @@
 import pandas as pd
 
 from facegear.io import tables
-from facegear.plots.style import save
+from facegear.plots.save import save_drawn
 from facegear.provenance.stage import stage
 from validation.contact.benchmark import cheapest, with_errors
 from validation.contact.refinement_levels import DEFAULT, FINEST
@@ -14,7 +14,7 @@ with stage(snakemake) as run:
     growth = tables.read(snakemake.input.growth, ["varied", "positions", "loads", "contact_s"])
     table = with_errors(pd.concat(parts, ignore_index=True), FINEST)
     tables.write(snakemake.output.table, table)
-    save(speed_against_error(table, growth, DEFAULT), snakemake.output.svg, snakemake.output.png)
+    save_drawn(speed_against_error(table, growth, DEFAULT), snakemake.output.svg, snakemake.output.png)
     best = cheapest(table)
     run.summary(
         f"{table['level'].nunique()} resolutions against {FINEST}; cheapest {best}, default {DEFAULT}"

@@ -5,7 +5,7 @@ import pandas as pd
 from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
-from facegear.plots.style import save
+from facegear.plots.save import save_drawn
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
@@ -27,6 +27,6 @@ with stage(snakemake) as run:
     step = Progress("methods", sum(len(first) * len(second) for first, second in comparisons)).step
     table = pd.concat([work_precision(*both, Budget(), step) for both in comparisons])
     tables.write(output.table, table)
-    save(work_precision_diagram(table), output.svg, output.png)
+    save_drawn(work_precision_diagram(table), output.svg, output.png)
     gains = [gain(table, problem, methods) for problems, methods in comparisons for problem in problems]
     run.summary("; ".join(gains))

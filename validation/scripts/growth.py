@@ -3,7 +3,7 @@
 import os
 
 from facegear.io import tables
-from facegear.plots.style import save
+from facegear.plots.save import save_drawn
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from validation.growth.curves import CURVES
@@ -20,7 +20,7 @@ with stage(snakemake) as run:
     tables.write(snakemake.output.table, table)
     tables.write(snakemake.output.exponents, fitted)
     texts = {name: (curve.size, curve.timed) for name, curve in CURVES.items()}
-    save(growth_figure(table, texts), snakemake.output.svg, snakemake.output.png)
+    save_drawn(growth_figure(table, texts), snakemake.output.svg, snakemake.output.png)
     steepest = fitted.loc[fitted["exponent"].idxmax()]
     run.summary(
         f"steepest: {steepest['timed']} over {steepest['size']}, exponent {steepest['exponent']:.2f}; "

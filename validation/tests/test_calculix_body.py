@@ -55,7 +55,7 @@ MODE NO.   X-COMPONENT     Y-COMPONENT
 
 
 @against(
-    "other program",
+    "third-party program",
     "CalculiX, bricks of 20 nodes of the whole body (docs/measured/calculix_body.csv, `make peers`)",
     capability="gear_bodies",
     module="facegear.gear_body.modes",

@@ -100,7 +100,7 @@ def test_all_programs_carry_the_torque_that_the_page_names():
 
 
 @against(
-    "other program",
+    "third-party program",
     "CalculiX, and Kratos with 8-node elements (docs/measured/pair_peer.csv, `make peers`)",
     capability="contact compliance",
     module="facegear.contact.position",
@@ -117,7 +117,7 @@ def test_two_other_programs_find_our_stiffness_and_pressure_where_the_mesh_sees_
 
 
 @against(
-    "other program",
+    "third-party program",
     "CalculiX, and Kratos with 8-node elements (docs/measured/pair_peer.csv, `make peers`)",
     capability="root_stress",
     module="facegear.contact.root_gauges",

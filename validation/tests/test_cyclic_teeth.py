@@ -29,7 +29,7 @@ def test_sector_without_its_tooth_has_the_frequencies_of_fourier_elements():
 
 
 @against(
-    "other program",
+    "second implementation",
     "one sector of the whole gear, bricks of 27 nodes (docs/measured/cyclic_teeth.csv, `make peers`)",
     capability="gear_bodies",
     module="facegear.tooth_layer.fit",

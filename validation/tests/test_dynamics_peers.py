@@ -34,7 +34,7 @@ def problems():
 
 
 @against(
-    "other program",
+    "second implementation",
     "the equations of motion written plainly with NumPy",
     capability="machine_code dynamics_response",
     module="facegear.dynamics.integrator.integrator",
@@ -85,7 +85,7 @@ def test_the_table_lists_failures_and_interpolates_times(problems):
 
 
 @against(
-    "other program",
+    "third-party program",
     "heyoka: Taylor's method with located events",
     capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",
@@ -100,7 +100,7 @@ def test_heyoka_follows_the_same_motion_through_every_switch(problems):
 
 
 @against(
-    "other program",
+    "third-party program",
     "heyoka: Taylor's method with located events",
     capability="dynamics_response branches",
     module="facegear.dynamics.integrator.integrator",

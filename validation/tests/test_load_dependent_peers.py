@@ -34,7 +34,7 @@ def model():
 
 
 @against(
-    "other program",
+    "third-party program",
     "DOP853 of SciPy on the equations written plainly with NumPy",
     capability="dynamics_response mesh_law",
     module="facegear.mesh_law.load_dependent",

@@ -25,7 +25,7 @@ def theirs(case, start):
 
 
 @against(
-    "other program",
+    "third-party program",
     "ROSS 2.3.0 (docs/measured/shaft_peer.csv, `make peers`)",
     capability="shafts",
     module="facegear.shafts.condensed",
@@ -42,7 +42,7 @@ def test_a_pinion_gives_way_on_its_shaft_as_in_ross():
 
 
 @against(
-    "other program",
+    "third-party program",
     "ROSS 2.3.0 (docs/measured/shaft_peer.csv, `make peers`)",
     capability="modal",
     module="facegear.transmission.drive_line",
@@ -55,7 +55,7 @@ def test_a_spinning_pinion_whirls_on_its_shaft_as_in_ross():
 
 
 @against(
-    "other program",
+    "third-party program",
     "openTorsion 0.3.2 (docs/measured/shaft_peer.csv, `make peers`)",
     capability="shafts",
     module="facegear.transmission.drive_line",

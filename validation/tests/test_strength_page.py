@@ -73,7 +73,7 @@ def test_a_row_about_root_stress_is_the_stored_measurement(message):
 
 
 @against(
-    "other program",
+    "third-party program",
     "CalculiX on the same mesh (docs/measured/calculix_stress.csv, `make peers`)",
     capability="root_stress",
     module="facegear.contact.root_gauges",

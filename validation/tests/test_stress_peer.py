@@ -52,7 +52,7 @@ def test_line_load_is_one_newton_along_the_normals():
 
 
 @against(
-    "other program",
+    "third-party program",
     "CalculiX on the same mesh",
     capability="root_stress",
     module="facegear.contact.root_gauges",

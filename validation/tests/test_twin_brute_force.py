@@ -24,7 +24,7 @@ def test_twin_of_a_modified_pair_is_the_standard_pair_without_backlash():
 
 
 @against(
-    "other program",
+    "third-party program",
     "scikit-fem: contact of both teeth on a mesh that resolves it; ISO 6336-1 for the size",
     capability="contact",
     module="facegear.contact.ltca",

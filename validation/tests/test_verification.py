@@ -6,6 +6,7 @@ import pkgutil
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import facegear.results
@@ -20,8 +21,10 @@ from validation.references import (
     METHOD_TITLES,
     NO_LESS,
     ROOT,
+    Kind,
     declarations,
     read,
+    shares_table,
     verification_table,
 )
 
@@ -87,6 +90,32 @@ def test_a_stage_is_made_with_the_modules_that_its_references_check(capability):
     assert checked <= reached
 
 
+@pytest.mark.parametrize("counts", [(1, 1, 1), (1, 2, 4), (341, 81, 46, 17, 37, 65), (0, 0, 5)])
+def test_shares_of_all_kinds_are_printed_and_add_up(counts):
+    kinds = [kind for kind, count in zip(Kind, counts, strict=False) for _ in range(count)]
+    lines = shares_table(pd.DataFrame({"kind": kinds})).splitlines()[2:]
+    cells = [line.strip("| ").split(" | ") for line in lines]
+    assert [cell[0] for cell in cells] == [*Kind, "all"]
+    tenths = [round(10 * float(cell[2].removesuffix(" %"))) for cell in cells]
+    assert sum(tenths[:-1]) == tenths[-1] == 1000
+    for cell, tenth in zip(cells[:-1], tenths, strict=False):
+        rows = 0 if cell[1] == "none" else int(cell[1])
+        assert abs(tenth - 1000 * rows / len(kinds)) < 1
+
+
+def test_a_row_of_an_unknown_kind_is_refused():
+    with pytest.raises(ValueError, match="other program"):
+        shares_table(pd.DataFrame({"kind": ["other program"]}))
+
+
+def test_the_page_opens_with_the_shares_and_says_what_was_never_measured():
+    page = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8").splitlines()
+    assert page[2].startswith("## What was never checked against the real world")
+    opening = page[3 : page.index("## How it is checked")]
+    assert "{shares}" in opening
+    assert sum(line.startswith(("- **Strong**", "- **Weak**", "- **Missing**")) for line in opening) == 5
+
+
 def test_the_page_shows_every_stored_row_and_every_capability(stored):
     page = verification_table(stored)
     shown = re.findall(r"^\| .* \|$", page, flags=re.MULTILINE)
@@ -94,3 +123,21 @@ def test_the_page_shows_every_stored_row_and_every_capability(stored):
     counts = 1 + len({*STAGES, *METHODS.values()})
     assert len(shown) == counts + len(headings) + len(stored)
     assert len(set(headings)) == len(headings)
+
+
+SECTIONS = (
+    *("Summary", "Statement of need", "State of the field", "Software design", "Research impact statement"),
+    *("AI usage disclosure", "Acknowledgements", "References"),
+)
+"""Sections that the Journal of Open Source Software asks for."""
+
+
+def test_the_paper_has_its_sections_and_claims_only_programs_that_the_page_shows(stored):
+    paper = (ROOT / "docs" / "joss" / "paper.md").read_text(encoding="utf-8")
+    headings = re.findall(r"^# (.+)$", paper, flags=re.MULTILINE)
+    assert set(SECTIONS) <= set(headings)
+    (claimed,) = re.findall(r"as references: (.+?) compute cases", paper)
+    programs = re.split(r", | and ", claimed.replace("`", ""))
+    sources = " ".join(stored.loc[stored["kind"] != Kind.CONVERGENCE, "source"])
+    assert len(programs) == 5 and [name for name in programs if name not in sources] == []
+    assert "None of them is a measurement of a machine" in paper or (stored["kind"] == Kind.MEASUREMENT).any()

@@ -1,9 +1,9 @@
 // Vectors of doubles. This file is the only place that knows the processor and the compiler's extensions.
 //
-// With GCC and Clang a vector of four is the compiler's own type: AVX2 where the module is compiled for it, two
-// registers of SSE2 or NEON otherwise. Elsewhere, and where FACEGEAR_SCALAR is defined, it is an array of doubles
-// with the same operators. Eight lanes are two vectors of four: GCC 12 turns vectors of 64 bytes without AVX-512
-// into memory traffic, ten times slower.
+// With GCC and Clang a vector of four is the compiler's own type: AVX2 where the module is compiled for it,
+// two registers of SSE2 or NEON otherwise. Elsewhere, and where FACEGEAR_SCALAR is defined, it is an array of
+// doubles with the same operators. Eight lanes are two vectors of four: GCC 12 turns vectors of 64 bytes
+// without AVX-512 into memory traffic, ten times slower.
 #pragma once
 
 #include <cmath>

@@ -12,13 +12,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import blas, lapack
 
+from facegear._kernels import contact as kernels
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies.cellwise import Part, coupled, in_turn
 from facegear.contact.bodies.dissection import Front, dissection
 from facegear.errors import FacegearError
-from facegear.machine_code.compiler import compiler
-
-compiled = compiler()
 
 Entries = tuple[Array, Integers, Integers, Integers, Array]
 """Small matrices (k, a, a), their rows (k, a) of a sparse one, and its pointers, columns and values."""
@@ -105,7 +103,9 @@ def _added(
     group = np.empty(cells, dtype=np.int64)
     for which, front in enumerate(fronts):
         group[front.cells] = which
-    moved = [(part.moved.indptr, number[part.moved.indices], part.moved.data) for part in parts]
+    moved = [
+        (part.moved.indptr.astype(np.int64), number[part.moved.indices], part.moved.data) for part in parts
+    ]
     turns = zip(*(in_turn(part, group, len(fronts)) for part in parts), strict=True)
     for turn in turns:
         yield [(*small, *by) for small, by in zip(turn, moved, strict=True)]
@@ -174,9 +174,9 @@ def _sum_up(
     _clear(rest)
     below[:] = 0.0
     for entries in added:
-        _add_entries(*entries, row_of, *parts)
+        kernels.add_elements(*entries, row_of, *parts)
     for other in step.before:
-        _add_front(steps[other].rest(memory), row_of[steps[other].outside], *parts)
+        kernels.extend_add(steps[other].rest(memory), row_of[steps[other].outside], *parts)
 
 
 def _add_readings(read: sp.csc_matrix, dof: slice, rows: Integers, block: Array) -> None:
@@ -196,55 +196,6 @@ def _eliminate(pivot: Array, below: Array, rest: Array) -> None:
     if below.size:
         blas.dtrsm(1.0, pivot, below, side=1, lower=1, trans_a=1, overwrite_b=1)
         blas.dsyrk(-1.0, below, beta=1.0, c=rest, lower=1, overwrite_c=1)
-
-
-@compiled
-def _add_entries(
-    matrices: Array,
-    rows: Integers,
-    indptr: Integers,
-    indices: Integers,
-    data: Array,
-    row_of: Integers,
-    pivot: Array,
-    below: Array,
-    rest: Array,
-) -> None:
-    """Add small matrices (k, a, a), whose rows are those (k, a) of a sparse matrix."""
-    size = pivot.shape[0]
-    for which in range(rows.shape[0]):
-        for a in range(rows.shape[1]):
-            for p in range(indptr[rows[which, a]], indptr[rows[which, a] + 1]):
-                column = row_of[indices[p]]
-                for b in range(rows.shape[1]):
-                    entry = data[p] * matrices[which, a, b]
-                    for q in range(indptr[rows[which, b]], indptr[rows[which, b] + 1]):
-                        row = row_of[indices[q]]
-                        if row < column:
-                            continue
-                        if column >= size:
-                            rest[row - size, column - size] += entry * data[q]
-                        elif row >= size:
-                            below[row - size, column] += entry * data[q]
-                        else:
-                            pivot[row, column] += entry * data[q]
-
-
-@compiled
-def _add_front(added: Array, at: Integers, pivot: Array, below: Array, rest: Array) -> None:
-    """Add the lower triangle of a front before to the places (m,), ascending, of its dof in this one."""
-    size, count = pivot.shape[0], added.shape[0]
-    inside = np.searchsorted(at, size)
-    for j in range(inside):
-        column = at[j]
-        for i in range(j, inside):
-            pivot[at[i], column] += added[i, j]
-        for i in range(inside, count):
-            below[at[i] - size, column] += added[i, j]
-    for j in range(inside, count):
-        column = at[j] - size
-        for i in range(j, count):
-            rest[at[i] - size, column] += added[i, j]
 
 
 def _clear(square: Array) -> None:

@@ -15,11 +15,6 @@ import scipy.sparse as sp
 from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, MeshQuad
 
 from facegear.arrays import Array, Integers
-from facegear.machine_code import picked
-from facegear.machine_code.compiler import compiler, for_callers
-from facegear.machine_code.picked import cube, empty_numbers, empty_table, integer_table, integers
-
-compiled, inlined = compiler(*picked.SOURCES), for_callers(error_model="numpy")
 
 TWO_POINTS = 3
 """Degree that two Gauss points integrate exactly."""
@@ -38,53 +33,27 @@ def face_functions(
     Biquadratic over faces of hexahedra; with `linear` bilinear between neighbouring nodes, as 8-node
     hexahedra on the same nodes are. Gradients are by lattice coordinate.
     """
-    steps = LINEAR_STEPS if linear else QUADRATIC_STEPS
-    return _faces(np.ascontiguousarray(coordinates), shape[0], shape[1], steps)
+    size, steps = (1, LINEAR_STEPS) if linear else (2, QUADRATIC_STEPS)
+    last = (np.array(shape) - 1 - size) // size
+    corner = size * np.clip(np.floor(coordinates / size).astype(np.int64), 0, last)
+    value, slope = _interval_functions((coordinates - corner) / size, linear)
+    row, column = steps.T
+    across, along, slope_across, slope_along = (
+        part[:, axis, step] for part in (value, slope) for axis, step in enumerate((row, column))
+    )
+    nodes = (corner[:, :1] + row) * shape[1] + corner[:, 1:] + column
+    gradients = np.stack([slope_across * along, across * slope_along], axis=-1) / size
+    return nodes, across * along, gradients
 
 
-@compiled
-def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tuple[Integers, Array, Array]:
-    """`face_functions` of elements whose nodes stand `steps` (a, 2) from their corner."""
-    count, width, size = coordinates.shape[0], steps.shape[0], steps[0, 0]
-    for a in range(width):
-        size = max(size, steps[a, 0])
-    nodes, corner = integer_table(count, width), integers(2, 0)
-    values, gradients = empty_table(count, width), cube(count, width, 2)
-    value, slope = empty_table(2, size + 1), empty_table(2, size + 1)
-    for point in range(count):
-        locate(coordinates[point, 0], coordinates[point, 1], (rows, columns), size, corner, value, slope)
-        for a in range(width):
-            i, j = steps[a, 0], steps[a, 1]
-            nodes[point, a] = (corner[0] + i) * columns + corner[1] + j
-            values[point, a] = value[0, i] * value[1, j]
-            gradients[point, a, 0] = slope[0, i] * value[1, j] / size
-            gradients[point, a, 1] = value[0, i] * slope[1, j] / size
-    return nodes, values, gradients
-
-
-@inlined
-def locate(
-    row: float, column: float, shape: tuple[int, int], size: int, corner: Integers, value: Array, slope: Array
-) -> None:
-    """Fill in the first node (2,) of the face at lattice coordinates, `size` nodes an element both ways, and
-    values and slopes (2, size + 1) of the polynomials across and along it.
-    """
-    for axis in range(2):
-        at = row if axis == 0 else column
-        last = (shape[axis] - 1 - size) // size
-        corner[axis] = size * min(max(int(np.floor(at / size)), 0), last)
-        _interval((at - corner[axis]) / size, size, value[axis], slope[axis])
-
-
-@inlined
-def _interval(x: float, degree: int, value: Array, slope: Array) -> None:
-    """Fill in values and slopes of the Lagrange polynomials of an interval at x in 0..1."""
-    if degree == 1:
-        value[0], value[1] = 1.0 - x, x
-        slope[0], slope[1] = -1.0, 1.0
-        return
-    value[0], value[1], value[2] = (1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)
-    slope[0], slope[1], slope[2] = 4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0
+def _interval_functions(x: Array, linear: bool) -> tuple[Array, Array]:
+    """Return values and slopes (..., a) of the Lagrange polynomials of an interval at x (...) in 0..1."""
+    value: tuple[Array, ...] = (1.0 - x, x)
+    slope: tuple[Array, ...] = (np.full_like(x, -1.0), np.ones_like(x))
+    if not linear:
+        value = (1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)
+        slope = 4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0
+    return np.stack(value, axis=-1), np.stack(slope, axis=-1)
 
 
 def interpolation(coordinates: Array, shape: tuple[int, int], linear: bool = False) -> sp.csr_matrix:
@@ -123,34 +92,21 @@ def edge_hats(nodes: int) -> tuple[Array, Integers, Array]:
 def cell_areas(surface: Array) -> Array:
     """Area (m2) that each Gauss point of the pressure basis stands for, surface nodes (nu, nv, 3)."""
     rows, columns, _ = surface.shape
-    positions = np.ascontiguousarray(surface.reshape(-1, 3))
-    return np.asarray(areas_at(positions, *_at_cell_points((rows, columns))))
-
-
-@compiled
-def areas_at(positions: Array, nodes: Integers, gradients: Array, weights: Array) -> Array:
-    """Areas (q,) that q points stand for by weights (q,), of a surface through `positions` (n, 3) of its
-    nodes, by its `face_functions`.
-    """
-    areas = empty_numbers(weights.size)
-    for point in range(weights.size):
-        ux, uy, uz, vx, vy, vz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for a in range(nodes.shape[1]):
-            node, u, v = nodes[point, a], gradients[point, a, 0], gradients[point, a, 1]
-            x, y, z = positions[node, 0], positions[node, 1], positions[node, 2]
-            ux, uy, uz = ux + u * x, uy + u * y, uz + u * z
-            vx, vy, vz = vx + v * x, vy + v * y, vz + v * z
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        areas[point] = weights[point] * np.sqrt(x * x + y * y + z * z)
-    return areas
+    across, along, weights = _slopes_at_cell_points((rows, columns))
+    positions = surface.reshape(-1, 3)
+    normals = np.cross(across @ positions, along @ positions)
+    return np.asarray(weights * np.linalg.norm(normals, axis=1))
 
 
 @lru_cache(maxsize=8)
-def _at_cell_points(shape: tuple[int, int]) -> tuple[Integers, Array, Array]:
-    """Nodes and gradients of `face_functions` at a pressure basis' Gauss points, and their weights (q,)."""
+def _slopes_at_cell_points(shape: tuple[int, int]) -> tuple[sp.csr_matrix, sp.csr_matrix, Array]:
+    """Return slopes (q, n) across and along a surface by its nodes at a pressure basis' Gauss points, and the
+    points' weights (q,).
+    """
     basis = pressure_basis(shape)
     nodes, _, gradients = face_functions(cell_points(basis), shape)
-    return nodes, gradients, basis.dx.ravel()
+    across, along = (_rows(nodes, gradients[:, :, axis], shape[0] * shape[1]) for axis in range(2))
+    return across, along, basis.dx.ravel()
 
 
 def _by_point(basis: Basis) -> tuple[Integers, Array]:

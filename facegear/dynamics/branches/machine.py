@@ -20,6 +20,7 @@ from facegear.dynamics.branches.swept import Swept
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, simulate, static_start
 from facegear.errors import NotConverged
+from facegear.number_format import count_noun
 
 TRIES = 12
 SETTLING = Settings(tolerance=1e-6, settle=256, window=64, extensions=1)
@@ -146,7 +147,8 @@ def machine_loci(
                 progress(missed[-1])
                 continue
             loci.append(locus)
-            progress(f"{kind} at {np.exp(x[-1]):.6g} rpm over {parameter}: {len(locus.points)} points")
+            points = count_noun(len(locus.points), "point")
+            progress(f"{kind} at {np.exp(x[-1]):.6g} rpm over {parameter}: {points}")
             passed += [(period_map.period, u) for u in _at_speed(locus)]
     return loci, missed
 

@@ -6,11 +6,11 @@ from typing import cast
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.many import run_many
 from facegear.dynamics.branches.extrema import extrema
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import RING_ROWS
+from facegear.dynamics.many import run_many
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.orbits import monodromy
 

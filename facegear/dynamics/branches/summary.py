@@ -9,6 +9,7 @@ import pandas as pd
 from facegear.dynamics.branches.loci import Locus
 from facegear.dynamics.branches.margins import StabilityLimit
 from facegear.dynamics.branches.survey import Survey
+from facegear.number_format import count_noun
 
 
 def tell(text: str) -> None:
@@ -27,13 +28,15 @@ def survey_summary(
     followed = [branch for branch in survey.branches if branch.image_of is None]
     counts = Counter(s.kind.value for branch in followed for s in branch.specials)
     points, images = sum(len(branch.points) for branch in followed), len(survey.branches) - len(followed)
+    motions = count_noun(len(swept), "periodic motion")
     parts = [
-        f"{len(followed)} branches of {points} points" + (f" and {images} images" if images else ""),
+        f"{count_noun(len(followed), 'branch', 'branches')} of {count_noun(points, 'point')}"
+        + (f" and {count_noun(images, 'image')}" if images else ""),
         ", ".join(f"{count} {kind}" for kind, count in counts.most_common()),
-        f"{len(ranges)} speed ranges with several stable motions",
-        f"{len(survey.unfollowed)} motions not followed" if survey.unfollowed else "",
-        f"{(swept['branch'] != '').sum()} of {len(swept)} periodic motions of the sweep on a branch",
-        f"{(jumps['kind'] != '').sum()} of {len(jumps)} jumps named",
+        f"{count_noun(len(ranges), 'speed range')} with several stable motions",
+        f"{count_noun(len(survey.unfollowed), 'motion')} not followed" if survey.unfollowed else "",
+        f"{(swept['branch'] != '').sum()} of {motions} of the sweep on a branch",
+        f"{(jumps['kind'] != '').sum()} of {count_noun(len(jumps), 'jump')} named",
     ]
     parts += [_margin(loss) for loss in stability_limits]
     return "; ".join(part for part in parts if part)
@@ -49,7 +52,7 @@ def _margin(loss: StabilityLimit) -> str:
 def loci_summary(loci: Sequence[Locus], missed: Sequence[str]) -> str:
     """Loci, their points and corners; those that could not be followed."""
     corners = Counter(corner.value for locus in loci for corner, _ in locus.corners)
-    points = sum(len(locus.points) for locus in loci)
+    points = count_noun(sum(len(locus.points) for locus in loci), "point")
     text = ", ".join(f"{count} {corner}" for corner, count in corners.items())
     lost = f"; not followed: {'; '.join(missed)}" if missed else ""
-    return f"{len(loci)} loci of {points} points; {text or 'no corners'}{lost}"
+    return f"{count_noun(len(loci), 'locus', 'loci')} of {points}; {text or 'no corners'}{lost}"

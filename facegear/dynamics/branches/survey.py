@@ -15,6 +15,7 @@ from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.branches.switching import broken, doubled
 from facegear.dynamics.symmetries import symmetries
 from facegear.errors import NotConverged
+from facegear.number_format import count_noun
 
 MET = 1e-6
 """Logarithms of the parameter that differ by less belong to one special point."""
@@ -140,7 +141,9 @@ class _Search:
         if self._is_known(period, branch.points[len(branch.points) // 2]):
             return None
         self.branches.append(branch)
-        self.progress(f"{len(branch.points)} points of period {period}, {len(branch.specials)} special")
+        self.progress(
+            f"{count_noun(len(branch.points), 'point')} of period {period}, {len(branch.specials)} special"
+        )
         self._add_images(branch)
         return branch
 

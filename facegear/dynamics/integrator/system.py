@@ -1,4 +1,4 @@
-"""What the integrator (facegear/_kernels/src/motion) sees: unit-mass oscillators coupled by meshes with clearance.
+"""What the integrator (`facegear/_kernels/src/motion`) sees: unit masses coupled by meshes with clearance.
 
     y'' + damping y' + omega_squared y + coupling + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
 

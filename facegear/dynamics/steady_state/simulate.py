@@ -47,7 +47,22 @@ class Model:
 def build_model(machine: Machine) -> Model:
     """Reduce a machine once for all speeds."""
     reduced = _reduced(machine.alike)
-    return Model(machine, reduced, machine_system(machine, reduced))
+    return Model(machine, reduced, _excited(machine, reduced.basis, machine_system(machine, reduced)))
+
+
+def _excited(machine: Machine, basis: Array, system: System) -> System:
+    """The system with its periodic torques. Raises InvalidInput where one does not repeat with the mesh."""
+    if not machine.excitations:
+        return system
+    last = max(excitation.mesh_harmonic for excitation in machine.excitations)
+    load = np.zeros((system.size, 2, max(last + 1, system.load.shape[2])))
+    load[:, :, : system.load.shape[2]] = system.load
+    for excitation in machine.excitations:
+        force = excitation.amplitude * (basis.T @ machine.straining_torque(excitation.body))
+        number = excitation.mesh_harmonic
+        load[:, 0, number] -= np.sin(excitation.phase) * force
+        load[:, 1, number] += np.cos(excitation.phase) * force
+    return replace(system, load=load)
 
 
 @lru_cache(maxsize=8)

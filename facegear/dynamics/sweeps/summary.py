@@ -8,6 +8,7 @@ import numpy as np
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
 from facegear.dynamics.sweeps.whole_sweep import Direction
+from facegear.number_format import count_noun
 
 PULLS = 1e-3
 """Pull of a damper, over the largest elastic mesh force, that is worth a word."""
@@ -37,11 +38,13 @@ def sweep_summary(directions: Mapping[str, Direction]) -> str:
     parts = []
     for name, direction in directions.items():
         periods = direction.piece.period
-        counts = f"{int((periods > 0).sum())} of {len(periods)} speeds periodic"
+        counts = f"{int((periods > 0).sum())} of {count_noun(len(periods), 'speed')} periodic"
         irregular = sum(seam.kind.value == "irregular" for seam in direction.seams)
         rerun = sum(seam.rerun for seam in direction.seams)
         changes = Counter(jump.kind is JumpKind.IRREGULAR for jump in direction.jumps)
-        jumps = f"{changes[False]} jump{'s' * (changes[False] != 1)}"
-        seams = f", seams: {rerun} speeds run again, {irregular} irregular" * bool(rerun or irregular)
+        jumps = count_noun(changes[False], "jump")
+        seams = f", seams: {count_noun(rerun, 'speed')} run again, {irregular} irregular" * bool(
+            rerun or irregular
+        )
         parts.append(f"{name}: {jumps}, {counts}{seams}")
     return "; ".join(parts)

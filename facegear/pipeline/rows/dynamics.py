@@ -16,15 +16,14 @@ from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Stage
 ROWS = (
     Stage(
         name="machine_code",
-        title="Machine code of contact and time integration",
+        title="Machine code of the time integration",
         needs={
             "mesh_law": "mesh_stiffness.mesh_law",
-            "contact": Computed(asked.contact, ("mesh_stiffness", "contact", "lubrication")),
             "motion": Computed(asked.machine, ("transmission",)),
             "side_by_side": Computed(asked.side_by_side, ("transmission", "mesh_stiffness", "lubrication")),
         },
         folder="machine_code",
-        asked=asked.contact_or_machine,
+        asked=asked.machine,
         priority=95,
     ),
     Stage(
@@ -66,13 +65,18 @@ ROWS = (
                 may_be_empty=True,
                 text=("turning", "mesh"),
             ),
+            "excited": File(
+                "dynamics/excited.csv",
+                ("speed_rpm", "order", "of_mesh", "frequency_hz"),
+                may_be_empty=True,
+                text=("body", "part"),
+            ),
         },
         figures=Figures(
             draw="facegear.plots.shaft_orders:figures",
             names=("shaft_orders",),
             chapter="dynamics",
             upstream=from_stage("shaft_orders", "orders", "over_speed"),
-            needs=SPEED,
         ),
         asked=asked.turning_errors,
         local=True,
@@ -121,7 +125,7 @@ ROWS = (
                 **from_stage("dynamics_sweep", "sweep", "jumps", "resonances", "waterfall"),
                 "frequencies": From("modal", "frequencies"),
             },
-            needs={"transmission": "transmission", "pinion_teeth": "tooth_pair.pinion_teeth", **SPEED},
+            needs={"transmission": "transmission", "pinion_teeth": "tooth_pair.pinion_teeth"},
             memory_mb=1300,
         ),
         asked=asked.machine,

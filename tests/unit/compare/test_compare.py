@@ -11,9 +11,10 @@ import facegear
 from facegear.__main__ import main
 from facegear.compare import answers
 from facegear.compare.causes import causes
-from facegear.compare.judge import Verdict, answer_tables, compare
+from facegear.compare.judge import Verdict, answer_tables, compare, tables_not_stored
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io.checksums import sha256
+from facegear.number_format import count_noun
 
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 
@@ -265,6 +266,17 @@ def test_stored_answers_are_small_the_same_bytes_each_time_and_compare_equal_to_
     assert len(answer_tables(tmp_path / "stored")) == len(sizes) - 1
     for one, other in ((tmp_path / "stored", nominal), (nominal, tmp_path / "stored")):
         assert compare(one, other).rows.empty
+
+
+def test_how_many_tables_a_stored_answer_holds_is_said(capsys):
+    """Nothing is compared with those that are not stored, and a user did not know how many these are."""
+    assert main(["compare", "current/example", "current/example"]) == 0
+    with answers.opened("current/example") as folder:
+        held, missing = len(answer_tables(folder)), len(tables_not_stored(folder))
+    assert capsys.readouterr().out.splitlines()[1] == (
+        f"current/example holds {held} tables. Not stored, and not compared: "
+        f"{count_noun(missing, 'larger table')}."
+    )
 
 
 @pytest.mark.parametrize("name", ["no/such", "0.0.0/paper", str(CONFIG)])

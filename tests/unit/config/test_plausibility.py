@@ -21,6 +21,7 @@ WRONG_UNITS = {
     "mass in g": ("concentric", "transmission.pinion.mass_kg", 1e3, "g"),
     "inertia in kg mm2": ("concentric", "transmission.face_gear.inertia_kg_m2", 1e6, "kg mm2"),
     "mesh stiffness in N/um": ("concentric", "mesh_stiffness.mean_n_per_m", 1e-6, "N/um"),
+    "inertia beyond its bound": ("webs", "transmission.face_gear.inertia_kg_m2", 1e6, "kg mm2"),
     "bearing x in N/um": ("concentric", "transmission.pinion.bearing_stiffness_n_per_m.x", 1e-6, "N/um"),
     "bearing z in N/um": ("concentric", "transmission.face_gear.bearing_stiffness_n_per_m.z", 1e-6, "N/um"),
     "shaft bearing in N/um": ("shafts", SHAFT, 1e-6, "N/um"),
@@ -29,6 +30,7 @@ WRONG_UNITS = {
     "contact torques in kN m": ("concentric", "contact.torques_n_m", 1e-3, "kN m"),
     "module in m": ("concentric", "tooth_pair.module_mm", 1e-3, "m"),
     "face width in m": ("concentric", "tooth_pair.pinion.width_mm", 1e-3, "m"),
+    "face radius in m": ("strength_only", "tooth_pair.face_gear.outer_radius_mm", 1e-3, "m"),
     "mesh damping in kN s/m": ("concentric", "transmission.damping.mesh_n_s_per_m", 1e-3, "kN s/m"),
     "Ra in mm": ("friction", "lubrication.pinion.ra_um", 1e-3, "mm"),
 }

@@ -5,7 +5,6 @@ from math import pi
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 from contact_bodies import STEEL, pair_design, stiffness
 from references import against, agrees
 
@@ -67,7 +66,7 @@ def answer(system, nodal):
 def test_contact_forces_and_reactions_of_a_body_balance_in_all_six_components(pressed_teeth, body):
     systems, _, pair, contact = pressed_teeth
     loads = pair.loads(body, True)
-    force, _, reaction = answer(systems[body], loads.by(contact.force))
+    force, _, reaction = answer(systems[body], loads.T @ contact.force)
     points = systems[body].points
     scale = np.linalg.norm(force.sum(axis=0))
     assert scale > 5e3
@@ -84,7 +83,7 @@ def test_contact_forces_and_reactions_of_a_body_balance_in_all_six_components(pr
 )
 def test_bore_feels_the_torque_that_the_contact_was_solved_for(pressed_teeth):
     systems, _, pair, contact = pressed_teeth
-    _, _, reaction = answer(systems[0], pair.loads(0, True).by(contact.force))
+    _, _, reaction = answer(systems[0], pair.loads(0, True).T @ contact.force)
     moment = np.cross(systems[0].points, reaction)[:, 1].sum()
     agrees("torque at the bore, N m", abs(moment), TORQUE, relative=1e-3)
 
@@ -93,12 +92,11 @@ def test_flanks_displaced_by_the_finite_elements_just_touch_where_pressed(presse
     systems, bodies, pair, contact = pressed_teeth
     approach = np.zeros(len(contact.force))
     for system, body, loads in zip(systems, bodies, (pair.loads(0, True), pair.loads(1, True)), strict=True):
-        nodal = loads.by(contact.force)
+        nodal = loads.T @ contact.force
         _, moved, _ = answer(system, nodal)
         normal = system.spread @ np.sum(moved[system.loaded] * system.loaded_normals, axis=1)
         np.testing.assert_allclose(-normal, body.own @ nodal, atol=1e-9 * np.abs(normal).max())
-        pointer, index, weight = loads.rows
-        approach -= sp.csr_matrix((weight, index, pointer), shape=(approach.size, loads.nodes)) @ normal
+        approach -= loads @ normal
     clearance = pair.gap + approach - contact.rotation * pair.lever_arm
     largest = contact.rotation * pair.lever_arm.max()
     np.testing.assert_allclose(clearance[contact.active], 0.0, atol=1e-9 * largest)
@@ -108,7 +106,7 @@ def test_flanks_displaced_by_the_finite_elements_just_touch_where_pressed(presse
 def test_both_gears_are_pressed_alike(pressed_teeth):
     systems, _, pair, contact = pressed_teeth
     forces = [
-        np.linalg.norm(answer(system, loads.by(contact.force))[0].sum(axis=0))
+        np.linalg.norm(answer(system, loads.T @ contact.force)[0].sum(axis=0))
         for system, loads in zip(systems, (pair.loads(0, True), pair.loads(1, True)), strict=True)
     ]
     assert forces[0] == pytest.approx(forces[1], rel=1e-3)

@@ -9,18 +9,17 @@ from skfem import ElementQuad1, ElementQuad2
 from test_pair_contact import misaligned
 
 from facegear.contact import ltca
-from facegear.contact.averages import closing
-from facegear.contact.bodies.surface import face_functions, interpolation
+from facegear.contact.basis_functions import functions_within
+from facegear.contact.bodies.surface import face_functions
 from facegear.contact.candidates import candidates_of
-from facegear.contact.displacement import displacement
-from facegear.contact.influence import influence, influence_matrix, surface_of
+from facegear.contact.influence import influence_matrix
 from facegear.contact.known_contact import known_contact
+from facegear.contact.lattice import Lattice
 from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
+from facegear.contact.position_solver import PositionSolver
 from facegear.contact.search import cover_of, facing_points, find_candidates
-from facegear.contact.spreading import Lattice, composed
-from facegear.contact.touching import touching
 from facegear.geometry.opposite import located
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
@@ -120,12 +119,13 @@ def same_results(found, expected):
 def test_contact_sought_beside_a_known_one_is_the_same_among_fewer_hats(model_of, monkeypatch):
     known, model, sought = known_of(model_of()), misaligned(model_of(), offset=2e-5), []
 
-    def counted(*given):
-        contact = touching(*given)
-        sought.append(contact.sought)
-        return contact
+    class CountingSolver(PositionSolver):
+        def solve(self, *given):
+            contact = super().solve(*given)
+            sought.append(contact.sought)
+            return contact
 
-    monkeypatch.setattr(ltca, "touching", counted)
+    monkeypatch.setattr(ltca, "PositionSolver", CountingSolver)
     expected = loaded_contact(model, POSITIONS, TORQUES)
     among_all, _ = list(sought), sought.clear()
     same_results(loaded_contact(model, POSITIONS, TORQUES, known=known), expected)
@@ -166,51 +166,42 @@ def test_contact_that_fillets_turn_back_is_none_to_go_by(model_of):
     assert known_contact(results, positions.tolist(), model.flanks.pinion.shape, base_radius) is None
 
 
-def test_displacements_without_the_matrix_are_those_with_it(model_of):
-    """Of all hats at a position, and of some of them where only the first load cases are asked for."""
+@pytest.mark.parametrize("coupled", [True, False])
+def test_solver_has_the_influence_of_sparse_products(model_of, coupled):
+    """The approach without the matrix, too: of all functions at a position, and of some in some cases."""
     model, options, limit = model_of(), ContactOptions(), 4e-4
     flanks, angles = model.flanks, placed(model, 0.3)
     facing = facing_points(flanks, [angles], [PAIRS], limit, options)[0]
-    cover, at = cover_of(flanks, options), (facing.points.pinion, facing.points.gear)
-    first, shape, flank_ends = cover.first, cover.shape, cover.flank_ends
-    hats = closing(facing.points, facing.starts, cover.min_area, first, shape, flank_ends, limit)
     lattices = flanks.pinion.lattice, flanks.gear.lattice
-    bodies = tuple(map(surface_of, lattices, (model.pinion, model.gear)))
-    every, ends = np.arange(hats.gap.size), np.searchsorted(hats.pair, np.arange(PAIRS.size + 1))
-    fine, coarse = (
-        tuple(
-            lattice.loads(hats.rows, place, refined).rows for lattice, place in zip(lattices, at, strict=True)
-        )
-        for refined in (True, False)
-    )
-    forces = np.random.default_rng(0).uniform(0, 10, (2, every.size))
-    with_matrix = forces @ influence(ends, PAIRS, bodies, fine, coarse, True)
+    solver = PositionSolver(cover_of(flanks, options), lattices, (model.pinion, model.gear), coupled)
     pairs = find_candidates(flanks, angles, PAIRS, limit, options)
-    by_pair = influence_matrix(pairs, model.pinion, model.gear)
-    np.testing.assert_allclose(with_matrix, forces @ by_pair, rtol=1e-9)
-    loads, cases = (fine, coarse), np.full(every.size, 2)
-    given = fine, bodies, PAIRS, (ends, loads), forces, True
-    np.testing.assert_allclose(displacement((every, ends, cases), *given).T, with_matrix, rtol=1e-9)
-    some, cases = every[::3], 1 + every[::3] % 2
-    of_some = np.searchsorted(hats.pair[some], np.arange(PAIRS.size + 1))
-    moved = displacement((some, of_some, cases), *given).T
-    np.testing.assert_allclose(moved[0], with_matrix[0, some], rtol=1e-9)
-    np.testing.assert_allclose(moved[1], np.where(cases == 2, with_matrix[1, some], 0.0), rtol=1e-9)
+    expected = influence_matrix(pairs, model.pinion, model.gear, coupled)
+    matrix, largest = solver.influence(facing, limit), np.abs(expected).max()
+    np.testing.assert_allclose(matrix, expected, rtol=1e-12, atol=1e-13 * largest)
+    forces = np.random.default_rng(0).uniform(0, 10, (7, len(expected)))
+    approach, largest = (forces @ expected).T, np.abs(forces @ expected).max()
+    cases = np.full(len(expected), 7)
+    found = solver.approach(facing, limit, forces, cases)
+    np.testing.assert_allclose(found, approach, rtol=1e-12, atol=1e-13 * largest)
+    cases[::3], cases[1::3] = 0, 2
+    within = np.arange(7) < cases[:, None]
+    found = solver.approach(facing, limit, forces, cases)
+    some = np.where(within, approach, 0.0)[cases > 0]
+    np.testing.assert_allclose(found, some, rtol=1e-12, atol=1e-13 * largest)
 
 
-@pytest.mark.parametrize("linear", [False, True])
-def test_loads_spread_in_one_pass_are_the_sparse_product(linear):
-    rng = np.random.default_rng(1)
-    shape, points = (9, 7), rng.uniform(0, 6, (40, 2))
-    matrix = sp.random_array((12, 40), density=0.2, format="csr", rng=rng)
-    rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
-    loads = Lattice(shape, Refinement(), linear).loads(rows, points)
-    pointer, index, weight = loads.rows
-    made = sp.csr_matrix((weight, index, pointer), shape=(12, 63)).toarray()
-    expected = (matrix @ interpolation(points, shape, linear)).toarray()
-    np.testing.assert_allclose(made, expected, atol=1e-14)
-    forces = rng.uniform(0, 1, 12)
-    np.testing.assert_allclose(loads.by(forces), forces @ expected, atol=1e-14)
+def test_functions_that_a_rotation_closes_average_gap_and_lever_arm(model_of):
+    model, limit = model_of(), 4e-4
+    facing = facing_points(model.flanks, [placed(model, 0.3)], [PAIRS], limit, ContactOptions())[0]
+    found = functions_within(facing, cover_of(model.flanks, ContactOptions()), limit)
+    pointer, index, weight = found.average
+    average = sp.csr_matrix((weight, index, pointer), shape=(found.gap.size, facing.points.gap.size))
+    finite = [np.where(np.isfinite(each), each, 0.0) for each in (facing.points.gap, facing.points.lever_arm)]
+    np.testing.assert_allclose(average.sum(axis=1), 1.0, rtol=1e-13)
+    np.testing.assert_allclose(average @ finite[0], found.gap, rtol=1e-12, atol=1e-18)
+    np.testing.assert_allclose(average @ finite[1], found.lever_arm, rtol=1e-13)
+    assert (found.gap < limit * found.lever_arm).all()
+    assert (np.diff(found.pair) >= 0).all() and found.node.max() < np.prod(model.flanks.pinion.shape)
 
 
 @pytest.mark.parametrize("linear", [False, True])
@@ -221,12 +212,10 @@ def test_loads_before_refinement_follow_from_the_refined_ones(linear):
     points = rng.uniform(-0.5, 12.5, (40, 2))
     matrix = sp.random_array((12, 40), density=0.2, format="csr", rng=rng)
     rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
-    refined, coarse = (lattice.loads(rows, points, finer).rows for finer in (True, False))
-    pointer, index, weight = composed(refined, lattice.interpolated(), 35)
-    followed = sp.csr_matrix((weight, index, pointer), shape=(12, 35)).toarray()
-    pointer, index, weight = coarse
-    expected = sp.csr_matrix((weight, index, pointer), shape=(12, 35)).toarray()
-    np.testing.assert_allclose(followed, expected, atol=1e-13)
+    refined, coarse = (lattice.loads(rows, points, finer) for finer in (True, False))
+    pointer, index, weight = lattice.interpolated()
+    interpolated = sp.csr_matrix((weight, index, pointer), shape=(refined.shape[1], 35))
+    np.testing.assert_allclose((refined @ interpolated).toarray(), coarse.toarray(), atol=1e-13)
 
 
 @pytest.mark.parametrize(("element", "linear"), [(ElementQuad1(), True), (ElementQuad2(), False)])

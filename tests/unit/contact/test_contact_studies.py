@@ -1,6 +1,5 @@
 """Cases of a study side by side: shifts from the machine itself, figures with one curve a case."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from contact_patterns import line_arrays
@@ -80,10 +79,8 @@ def test_the_path_at_a_position_is_the_centroid_of_its_forces():
 def test_figures_show_every_case_and_say_where_the_torque_differs():
     cases = [case("machine", 0.0), case("offset", 1.5, (100.0, 250.0))]
     figure, patterns = contact_study(cases, 300.0, "Errors"), pattern_study(cases, 300.0)
-    error, stiffness, path = figure.axes
-    assert [line.get_label() for line in error.lines] == ["machine", "offset (250 N m)"]
-    assert len(stiffness.lines) == 2
-    np.testing.assert_allclose(path.lines[2].get_ydata(), [261.5, 261.0, 261.5])
-    assert [axis.get_title() for axis in patterns.axes[:2]] == ["machine", "offset (250 N m)"]
-    for drawn in (figure, patterns):
-        plt.close(drawn)
+    error, stiffness, path = figure.panels
+    assert [curve.name for curve in error.marks] == ["machine", "offset (250 N m)"]
+    assert len(stiffness.marks) == 2
+    np.testing.assert_allclose(path.marks[2].y, [261.5, 261.0, 261.5])
+    assert [panel.title for panel in patterns.panels] == ["machine", "offset (250 N m)"]

@@ -76,7 +76,7 @@ def bent(points):
 
 
 @against(
-    "other program",
+    "third-party program",
     "scikit-fem's own assembly of the elastic form",
     capability="compliance",
     module="facegear.contact.bodies.assembly",
@@ -182,7 +182,7 @@ def test_influence_matrix_is_symmetric():
 
 
 @against(
-    "other program",
+    "third-party program",
     "SciPy's SuperLU",
     capability="compliance",
     module="facegear.contact.bodies.elimination",
@@ -215,7 +215,7 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
 
 
 @against(
-    "other program",
+    "third-party program",
     "PARDISO of MKL beside SciPy's SuperLU",
     capability="compliance",
     module="facegear.contact.bodies.factor",
@@ -251,7 +251,7 @@ def test_body_that_nothing_holds_is_refused_in_one_line():
 
 
 @against(
-    "other program",
+    "third-party program",
     "all teeth meshed whole, scipy.sparse.linalg.spsolve",
     capability="compliance",
     module="facegear.contact.bodies.compliance",

@@ -185,7 +185,7 @@ def test_sphere_pressed_on_finite_elements_has_hertz_pressure_within_a_percent()
 
 
 @against(
-    "other program",
+    "second implementation",
     "polynomial through gaps beside the line",
     capability="contact",
     module="facegear.contact.pressure",

@@ -63,7 +63,7 @@ def lubrication(design, friction, bulk=None):
 
 
 @against(
-    "other program",
+    "second implementation",
     "another quadrature of the loads of the default mesh",
     capability="lubrication machine_loss",
     module="facegear.lubrication.loss",
@@ -131,7 +131,7 @@ def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
 
 
 @against(
-    "other program",
+    "second implementation",
     "another quadrature of the loads of the default mesh",
     capability="lubrication",
     module="facegear.lubrication.heat",
@@ -166,7 +166,7 @@ def test_largest_flash_and_thinnest_film_are_the_reference_s(
 
 
 @against(
-    "other program",
+    "second implementation",
     "another quadrature of the loads of the default mesh",
     capability="lubrication",
     module="facegear.lubrication.friction",

@@ -96,7 +96,7 @@ def test_a_refined_layer_tied_to_coarse_elements_keeps_their_order(cuts):
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.sparse.linalg.spsolve on the whole body",
     capability="compliance",
     module="facegear.contact.bodies.substructure",

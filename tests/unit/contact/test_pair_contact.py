@@ -258,7 +258,7 @@ def test_linear_elements_on_the_same_nodes_are_too_stiff():
 
 
 @against(
-    "other program",
+    "second implementation",
     "geometry's own unloaded contact",
     capability="contact",
     module="facegear.contact.ltca",

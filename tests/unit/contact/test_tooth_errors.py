@@ -67,7 +67,7 @@ def test_thick_teeth_of_both_gears_show_at_their_own_orders_over_the_hunting_cyc
 
 
 @against(
-    "other program",
+    "second implementation",
     "the loaded contact of flanks that deviate",
     capability="tooth_errors",
     module="facegear.contact.tooth_errors",

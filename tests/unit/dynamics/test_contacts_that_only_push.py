@@ -68,7 +68,7 @@ def by_pieces(start, end, push_only):
 
 
 @against(
-    "other program",
+    "third-party program",
     "SciPy's DOP853 with located events",
     capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",
@@ -91,7 +91,7 @@ def test_flanks_part_with_a_damper_however_weak_as_they_do_without(damping):
 
 
 @against(
-    "other program",
+    "third-party program",
     "SciPy's DOP853 with located events",
     capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",

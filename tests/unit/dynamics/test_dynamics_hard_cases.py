@@ -94,7 +94,7 @@ def full_run(machine, speed, start, end):
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.integrate.solve_ivp on the full equations",
     capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",

@@ -25,7 +25,7 @@ def state(displacement, velocity):
 
 
 @against(
-    "other program",
+    "second implementation",
     "oscillator with backlash, computed twice by independent means",
     capability="dynamics_response",
     module="facegear.dynamics.steady_state.simulate",
@@ -84,7 +84,7 @@ def exact_multipliers(speed, displacement, velocity):
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.linalg.expm between the switches of contact",
     capability="dynamics_response branches",
     module="facegear.dynamics.steady_state.orbits",
@@ -240,7 +240,7 @@ def test_damped_tongue_edges():
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.special.mathieu_a and mathieu_b",
     capability="dynamics_response branches",
     module="facegear.dynamics.steady_state.orbits",

@@ -49,7 +49,7 @@ def pulling_rings(system):
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.integrate.solve_ivp",
     capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",

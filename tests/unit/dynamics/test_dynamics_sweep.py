@@ -200,10 +200,8 @@ def test_the_campbell_diagram_marks_a_resonance_at_its_order_of_the_mesh_frequen
     frequencies = pd.DataFrame({"frequency_hz": [750.0], "class": ["pinion"]})
     # The text of a name is for readers: the marks come from the numbers beside it.
     figure = campbell(frequencies, peaks.assign(order=2.0), jumps.iloc[:0], layout.pinion_teeth, 5600.0)
-    marks = next(line for line in figure.axes[0].lines if line.get_label() == "peaks")
-    np.testing.assert_allclose(
-        marks.get_ydata(), 2.0 * layout.pinion_teeth * np.asarray(marks.get_xdata()) / 60.0
-    )
+    marks = next(mark for mark in figure.panels[0].marks if getattr(mark, "name", "") == "peaks")
+    np.testing.assert_allclose(1e3 * marks.y, 2.0 * layout.pinion_teeth * marks.x / 60.0)
 
 
 @given(hnp.arrays(float, st.integers(3, 30), elements=st.integers(0, 9).map(float)))

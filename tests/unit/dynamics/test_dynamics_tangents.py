@@ -38,7 +38,7 @@ def test_disturbances_side_by_side_move_as_each_does_alone(losing_contact, count
 
 
 @against(
-    "other program",
+    "second implementation",
     "differences of two motions",
     capability="dynamics_response branches",
     module="facegear.dynamics.integrator.integrator",

@@ -58,7 +58,7 @@ def assert_holds_the_branch_point(jump, direction):
 
 
 @against(
-    "other program",
+    "second implementation",
     "branch point by continuation along the arc, which shares the integrator alone",
     capability="dynamics_sweep",
     module="facegear.dynamics.sweeps.jumps",
@@ -70,7 +70,7 @@ def test_a_jump_where_symmetry_breaks_holds_the_branch_point_on_any_grid(grid, d
 
 
 @against(
-    "other program",
+    "second implementation",
     "branch point by continuation along the arc, which shares the integrator alone",
     capability="dynamics_sweep",
     module="facegear.dynamics.sweeps.whole_sweep",

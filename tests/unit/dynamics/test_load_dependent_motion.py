@@ -96,7 +96,7 @@ def off(period_map, found, place, rate):
 
 
 @against(
-    "other program",
+    "second implementation",
     "power law of force: Taylor series of high order",
     capability="branches",
     module="facegear.dynamics.branches.points",
@@ -123,7 +123,7 @@ def test_an_unstable_orbit_on_a_table_has_place_and_multipliers_of_the_power_law
 
 
 @against(
-    "other program",
+    "second implementation",
     "power law of force: Taylor series of high order",
     capability="branches",
     module="facegear.dynamics.branches.continuation",
@@ -167,7 +167,7 @@ def test_two_pairs_that_take_over_from_each_other_are_met_as_well_as_their_corne
 
 
 @against(
-    "other program",
+    "second implementation",
     "central differences of the motion; Liouville's formula",
     capability="branches",
     module="facegear.dynamics.integrator.integrator",

@@ -103,7 +103,7 @@ def apart(found, starts, periods):
 
 
 @against(
-    "other program",
+    "second implementation",
     "the integrator of a single machine, whose vectors hold its meshes",
     capability="branches_starts machine_code",
     module="facegear.dynamics.many",

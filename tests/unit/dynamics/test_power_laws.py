@@ -80,7 +80,7 @@ def test_the_motion_keeps_its_order_where_it_passes_the_level_of_a_law():
 
 
 @against(
-    "other program",
+    "second implementation",
     "power law of force: closed form and Taylor series of high order",
     capability="branches",
     module="facegear.dynamics.branches.points",
@@ -114,7 +114,7 @@ def test_a_parametric_power_law_doubles_its_period_where_the_taylor_series_say()
 
 
 @against(
-    "other program",
+    "second implementation",
     "power law of force: closed form and Taylor series of high order",
     capability="branches",
     module="facegear.dynamics.branches.continuation",

@@ -92,7 +92,7 @@ def rubbed(model):
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.integrate.solve_ivp",
     capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",
@@ -109,7 +109,7 @@ def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
 
 
 @against(
-    "other program",
+    "second implementation",
     "central differences of the motion; Liouville's formula",
     capability="dynamics_response branches",
     module="facegear.dynamics.integrator.integrator",

@@ -51,7 +51,7 @@ def test_equal_gears_have_equal_modes_and_both_stand_in_the_tables(outcome):
 
 
 @against(
-    "other program",
+    "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
     module="facegear.gear_body.tables",

@@ -63,7 +63,7 @@ def each(table):
 
 
 @against(
-    "other program",
+    "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
     module="facegear.gear_body.body",
@@ -74,7 +74,7 @@ def test_mass_and_inertia_of_the_section_are_those_of_its_polygon():
 
 
 @against(
-    "other program",
+    "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
     module="facegear.gear_body.body",
@@ -90,7 +90,7 @@ def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
 
 
 @against(
-    "other program",
+    "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
     module="facegear.gear_body.body",
@@ -112,7 +112,7 @@ def test_forward_and_backward_waves_meet_the_mesh_frequency_where_another_progra
 
 
 @against(
-    "other program",
+    "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
     module="facegear.gear_body.body",
@@ -145,7 +145,7 @@ def test_compliance_below_a_mesh_and_between_meshes_is_that_of_another_program()
 
 
 @against(
-    "other program",
+    "second implementation",
     "masses of the modes, Fourier elements extrapolated",
     capability="gear_bodies",
     module="facegear.gear_body.body",
@@ -160,7 +160,7 @@ def test_hub_that_moves_drags_the_modes_of_none_and_one_nodal_diameter():
 
 
 @against(
-    "other program",
+    "second implementation",
     "cyclic sector of a gear with its 143 teeth",
     capability="gear_bodies",
     module="facegear.gear_body.body",

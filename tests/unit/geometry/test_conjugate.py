@@ -34,7 +34,7 @@ def posed(pair):
 
 
 @against(
-    "other program",
+    "second implementation",
     "a pair displaced rigidly and searched at 1e-13 m",
     capability="geometry",
     module="facegear.geometry.conjugate",

@@ -105,7 +105,7 @@ def test_rays_end_at_the_measured_flank_to_a_tenth_of_a_micrometre_at_50(pair, f
 
 
 @against(
-    "other program",
+    "second implementation",
     "the same deviations on the other gear, by conjugate action",
     capability="geometry",
     module="facegear.geometry.deviations",
@@ -155,7 +155,7 @@ def test_material_on_a_flank_sets_its_own_side_ahead_and_leaves_the_other(pair):
 
 
 @against(
-    "other program",
+    "second implementation",
     "second differences of the gap",
     capability="geometry contact",
     module="facegear.geometry.curvature",

@@ -59,7 +59,7 @@ def test_rays_end_at_the_flank_that_is_displaced_along_its_normal(pair, kind):
 
 
 @against(
-    "other program",
+    "second implementation",
     "the same lead crowning on the pinion",
     capability="geometry",
     module="facegear.geometry.gear_modifications",

@@ -153,7 +153,7 @@ def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
 
 
 @against(
-    "other program",
+    "second implementation",
     "nearest point of a dense cloud of the gear",
     capability="geometry contact",
     module="facegear.geometry.separation",
@@ -259,7 +259,7 @@ def test_second_relative_curvature_vanishes_in_line_contact(pair):
 
 
 @against(
-    "other program",
+    "second implementation",
     "second differences of the gap",
     capability="geometry contact",
     module="facegear.geometry.curvature",

@@ -42,7 +42,7 @@ def test_surfaces_close_and_face_outwards(pair, body, teeth):
 
 
 @against(
-    "other program",
+    "third-party program",
     "OpenCASCADE: volume of the solid and nearest points of its faces",
     capability="cad export",
     module="facegear.io.cad",
@@ -113,7 +113,7 @@ def _distance(file, points):
 
 
 @against(
-    "other program",
+    "third-party program",
     "meshio reads the file",
     capability="cad export",
     module="facegear.io.cad",

@@ -14,7 +14,8 @@ from facegear.errors import CorruptFile, FacegearError
 from facegear.io import documents, tables
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.io.pictures import read_svg
-from facegear.plots.style import save
+from facegear.plots.modal import mode_shapes
+from facegear.plots.save import save
 from facegear.report.page import Picture
 from facegear.results.store import Store
 
@@ -135,8 +136,8 @@ def test_a_config_in_the_root_folder_is_loaded(monkeypatch):
 def figure(tmp_path_factory):
     """A figure as svg and in its interactive form."""
     path = tmp_path_factory.mktemp("figures") / "modes.svg"
-    drawn = facegear.load(CONFIG, None).modes().plot()
-    save(drawn, path, path.with_suffix(".json"))
+    modes = facegear.load(CONFIG, None).modes()
+    save(mode_shapes(modes.table(), modes.shapes()), path, path.with_suffix(".json"))
     return path
 
 

@@ -22,7 +22,7 @@ def machine_with(**errors):
 
 
 @against(
-    "other program",
+    "second implementation",
     "differences over all positions of the whole hunting cycle",
     capability="hunting",
     module="facegear.load_sharing.sensitivity",

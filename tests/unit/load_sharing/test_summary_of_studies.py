@@ -1,7 +1,6 @@
 """The summary of all studies holds the rows of each case, and says of how many the motion does not repeat;
 over the numbers of a study stand the forces of its meshes."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from references import against, agrees
@@ -54,9 +53,9 @@ MEAN = (3000.0, 1000.0, 2000.0, 500.0, 700.0, 600.0)
     module="facegear.load_sharing.study_forces",
 )
 def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_force_beside_the_number():
-    places = [("right input", "input", 0.0), ("idler", "idler", 90.0), ("tail", "tail", 200.0)]
+    positions = [("right input", "input", 0.0), ("idler", "idler", 90.0), ("tail", "tail", 200.0)]
     plain = load_config("config/harmonics_only.yaml").model_dump(mode="json")["transmission"]
-    pinions = [{"name": name, "role": role, "angle_deg": angle} for name, role, angle in places]
+    pinions = [{"name": name, "role": role, "angle_deg": angle} for name, role, angle in positions]
     section = parse(Transmission, {**plain, "pinions": pinions, "single_pinions": {}, "single_meshes": {}})
     points = [("web", f"{n}", "web (mm)", "", "key", n) for n in (8.0, 10.0)]
     teeth = ToothNumbers.of_config(
@@ -96,6 +95,11 @@ def test_the_forces_of_every_case_stand_beside_the_number_that_is_its_own():
     assert outcome.summary == "largest force 14 N, on n at web (mm) = 10"
 
 
+def points(curve):
+    """Return the points of a curve."""
+    return list(zip(curve.x, curve.y, strict=True))
+
+
 def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
     table = pd.DataFrame(
         {
@@ -116,14 +120,13 @@ def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
     write_part(str(tmp_path / "forces.csv"), table)
     stored = STAGES["study_forces"].files["forces"].read(tmp_path / "forces.csv")
     (figure,) = figures(stored, {"web": "Web"})
-    split, largest = ({line.get_label(): line for line in axes.lines} for axes in figure.axes)
-    assert list(split["b/lower"].get_xydata().ravel()) == [8.0, 50.0, 12.0, 40.0]
+    split, largest = ({mark.name: mark for mark in panel.marks if not mark.hollow} for panel in figure.panels)
+    assert points(split["b/lower"]) == [(8.0, 50.0), (12.0, 40.0)]
     assert "a/lower" not in split
-    assert list(largest["a/lower"].get_xydata().ravel()) == [8.0, 4.0, 12.0, 2.0]
-    (hollow,) = [line for line in figure.axes[1].lines if line.get_markerfacecolor() == "white"]
-    assert list(hollow.get_xydata().ravel()) == [8.0, 5.0]
-    assert figure.axes[1].get_xlabel() == "web (mm)"
-    plt.close(figure)
+    assert points(largest["a/lower"]) == [(8.0, 4.0), (12.0, 2.0)]
+    (hollow,) = [mark for mark in figure.panels[1].marks if mark.hollow]
+    assert points(hollow) == [(8.0, 5.0)]
+    assert figure.panels[1].x.label == "web (mm)"
 
 
 def test_a_machine_without_studies_is_one_case():

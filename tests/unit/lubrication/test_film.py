@@ -105,7 +105,7 @@ def test_smallest_elliptic_film_is_that_of_hamrock_and_dowson():
 
 
 @against(
-    "other program",
+    "third-party program",
     "GEARpie, an open gear code: C40 gears",
     capability="lubrication",
     module="facegear.lubrication.film",

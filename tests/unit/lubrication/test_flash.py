@@ -123,7 +123,7 @@ def test_factor_of_slow_flanks_is_jaeger_s_between_the_points_of_its_table():
 
 
 @against(
-    "other program",
+    "second implementation",
     "finite volumes of transient heat conduction",
     capability="lubrication",
     module="facegear.lubrication.flash",

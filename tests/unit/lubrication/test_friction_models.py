@@ -80,7 +80,7 @@ def test_pitch_point_of_c40_gears_has_the_coefficients_of_the_standards():
 
 
 @against(
-    "other program",
+    "third-party program",
     "GEARpie, an open gear code: C40 gears",
     capability="lubrication",
     module="facegear.lubrication.friction",

@@ -35,7 +35,7 @@ def test_spur_twin_has_ohlendorf_s_loss_factor(approach, recess, ratio):
 
 
 @against(
-    "other program",
+    "third-party program",
     "GEARpie, an open gear code: C40 gears; Ohlendorf",
     capability="lubrication machine_loss",
     module="facegear.lubrication.loss",

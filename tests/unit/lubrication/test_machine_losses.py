@@ -29,7 +29,7 @@ def gearbox():
 
 
 @against(
-    "other program",
+    "second implementation",
     "loss summed over the meshes by another program",
     capability="machine_loss",
     module="facegear.lubrication.loss",

@@ -30,7 +30,7 @@ places = st.tuples(st.floats(-0.01, 0.01), st.floats(0.25, 0.275), st.floats(-0.
 
 
 @against(
-    "other program",
+    "second implementation",
     "differences of points that turn with their body",
     capability="lubrication",
     module="facegear.lubrication.kinematics",

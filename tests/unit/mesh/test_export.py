@@ -40,7 +40,7 @@ def test_msh_keeps_volume_and_named_groups(written):
 
 
 @against(
-    "other program",
+    "third-party program",
     "gmsh: volume of all elements of the file",
     capability="mesh",
     module="facegear.mesh.export",
@@ -59,7 +59,7 @@ def test_gmsh_measures_the_same_volume_and_no_inverted_element(written):
 
 
 @against(
-    "other program",
+    "third-party program",
     "meshio reads the file",
     capability="mesh",
     module="facegear.mesh.export",

@@ -1,5 +1,7 @@
 """The load-dependent law by itself: what statics, motion and tangents ask of it is one function."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from force_tables import power_table, two_pairs
@@ -8,7 +10,7 @@ from hypothesis import strategies as st
 
 from facegear.mesh_law.force_table import ForceTable, lagging
 from facegear.mesh_law.load_dependent import load_dependent_law
-from facegear.mesh_law.terms import held_force
+from facegear.transmission.block_statics import Springs, settle_all
 
 AMOUNTS = np.append(np.linspace(0.0, 5.0, 83), [1e-6, 3e-5])
 LAW = load_dependent_law(lagging(2 * [power_table(12, 0.3)], [0.0, 0.2]))
@@ -39,14 +41,38 @@ def test_slopes_are_the_derivatives_of_forces_and_are_continuous_at_the_levels(s
     np.testing.assert_allclose(around[0], around[1], rtol=0, atol=1e-9)
 
 
+def pressed(held, forces, amounts):
+    """Forces (K, M) that statics finds where M pinions, each on a bearing and one flank, are pressed in."""
+    count, bearing = amounts.size, 0.5
+    lines = np.zeros((count, 3))
+    lines[:, 0] = 1.0
+    settled = []
+    for phase, own in enumerate(forces):
+        loads = np.zeros(3 * count)
+        loads[::3] = own + bearing * amounts
+        springs = Springs(
+            jacobian=lines,
+            pinion=3 * np.arange(count),
+            gear=np.full(count, 3 * count),
+            pinion_bearing=np.tile([bearing, 0.0, 1.0], (count, 1)),
+            clearance=np.zeros(count),
+            core_row=np.zeros(0, int),
+            core_column=np.zeros(0, int),
+            core_value=np.zeros(0),
+            loads=loads,
+        )
+        at_phase = held._replace(
+            **{name: getattr(held, name)[[phase]] for name in ("stiffness", "cosine", "sine")}
+        )
+        settled.append(settle_all(springs, at_phase, np.zeros((1, count)), 1e-14, np.zeros(3 * count))[1][0])
+    return np.array(settled)
+
+
 def test_compiled_statics_see_the_same_law():
-    cycles = np.array([0.1, 0.85])
-    held = LAW.held(cycles)
-    for amount in AMOUNTS[1:]:
-        beyond = np.full((2, 2), amount)
-        found = np.array([[held_force(held, k, m, amount) for m in range(2)] for k in range(2)])
-        np.testing.assert_allclose(found[..., 0], LAW.force(cycles, beyond), rtol=1e-12, atol=1e-15)
-        np.testing.assert_allclose(found[..., 1], LAW.slope(cycles, beyond), rtol=1e-12, atol=1e-15)
+    cycles, law = np.array([0.1, 0.85]), replace(LAW, kind=np.arange(AMOUNTS.size - 1) % 2)
+    forces = law.force(cycles, np.tile(AMOUNTS[1:], (2, 1)))
+    found = pressed(law.held(cycles), forces, AMOUNTS[1:])
+    np.testing.assert_allclose(found, forces, rtol=1e-12, atol=1e-12)
 
 
 @given(st.floats(0.0, 1.0), st.floats(1e-9, 6.0), st.floats(-1.0, 1.0))

@@ -1,18 +1,17 @@
 """The same results give the same files of figures."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from facegear.plots.style import STYLE, save, styled
+from facegear.plots.description import Axis, Curve, Figure, Panel
+from facegear.plots.draw_matplotlib import STYLE
+from facegear.plots.save import save
 
 
 def figure():
-    """One whose svg holds clip paths and markers, which have made-up names."""
-    with styled():
-        drawn, axis = plt.subplots(figsize=(3.0, 2.0))
-        axis.plot(np.arange(5.0), np.arange(5.0) ** 2, "o-")
-    return drawn
+    """Return one whose svg holds clip paths and markers, which have made-up names."""
+    curve = Curve(np.arange(5.0), np.arange(5.0) ** 2, marker="circle")
+    return Figure([Panel(Axis("x", "mm"), Axis("y", "mm"), [curve])], width=3.0)
 
 
 @pytest.mark.parametrize("ending", ["svg", "png"])

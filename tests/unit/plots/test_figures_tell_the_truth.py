@@ -11,11 +11,12 @@ from facegear.contact.columns import LTCA_COLUMNS, SHARES
 from facegear.plots.campbell import campbell
 from facegear.plots.compare import curves_compared
 from facegear.plots.contact import closed, contact_pattern
+from facegear.plots.draw_matplotlib import draw
 from facegear.plots.dynamics import drawn_machine
 from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.modal import amplitudes, mode_shapes, typical_modes
 from facegear.plots.response import deflections
-from facegear.plots.style import save
+from facegear.plots.save import save
 from facegear.plots.tooth_pair import separation
 
 
@@ -53,7 +54,7 @@ def test_modes_of_one_frequency_are_shown_together_and_do_not_depend_on_their_ve
     stacked = shapes["amplitude_m_or_rad"].to_numpy()[:48].reshape(6, 8)
     turned.loc[:47, "amplitude_m_or_rad"] = (angle @ stacked).ravel()
     assert np.allclose(amplitudes(shapes, equal), amplitudes(turned, equal))
-    assert "(x 6)" in mode_shapes(frequencies, shapes).axes[0].get_title(loc="left")
+    assert "(x 6)" in mode_shapes(frequencies, shapes).panels[0].title
 
 
 def test_a_contact_curve_ends_where_the_next_pitch_begins():
@@ -73,17 +74,17 @@ def test_spectra_are_lines_at_their_orders_without_the_mean():
     spectrum = pd.DataFrame(
         {"mesh": "p/upper", "order": [0.0, 0.5, 1.0, 2.0], "amplitude_um": [40.0, 0.0, 3.0, 1.0]}
     )
-    (lines,) = deflections(response, spectrum, ["p"], 7500.0).axes[1].collections
-    drawn = np.array([segment[1] for segment in lines.get_segments()])
-    assert drawn[:, 0] == pytest.approx([1.0, 2.0], abs=0.1)
-    assert drawn[:, 1].tolist() == [3.0, 1.0]
+    (lines,) = deflections(response, spectrum, ["p"]).panels[1].marks
+    assert lines.x[1::3] == pytest.approx([1.0, 2.0], abs=0.1)
+    assert lines.y[1::3].tolist() == [3.0, 1.0]
 
 
 def test_text_is_at_least_12_px_high_on_a_page_500_px_wide(modes):
     response = pd.DataFrame({"mesh_cycle": [0.0, 0.5], "mesh": "p/upper", "deflection_um": [40.0, 42.0]})
     spectrum = pd.DataFrame({"mesh": ["p/upper"], "order": [1.0], "amplitude_um": [3.0]})
     margins = 40
-    for figure in (mode_shapes(*modes), deflections(response, spectrum, ["p"], 7500.0)):
+    for described in (mode_shapes(*modes), deflections(response, spectrum, ["p"])):
+        figure = draw(described)
         scale = min(1.0, (500 - margins) / (96 * figure.get_figwidth()))
         shown = [text for text in figure.findobj(Text) if text.get_text()]
         assert min(text.get_fontsize() for text in shown) * 96 / 72 * scale >= 12.0 - 1e-9
@@ -116,13 +117,10 @@ def test_a_load_sharing_figure_holds_no_inputs_and_its_legend_leaves_the_axis_re
             "undefined_fraction": [0.5],
         }
     )
-    figure = sharing_figure(curves, summary, "idlers", "Effect of backlash")
+    figure = draw(sharing_figure(curves, summary, "idlers", "Effect of backlash"))
     figure.canvas.draw()
-    whole = figure.bbox
-    for text in figure.findobj(Text):
-        box = text.get_window_extent()
-        if text.get_text() and box.width:
-            assert whole.x0 <= box.x0 and box.x1 <= whole.x1, text.get_text()
+    box = figure.get_tightbbox()
+    assert box.x0 >= 0.0 and box.x1 <= figure.get_figwidth()
     assert not any("N/m" in text.get_text() for text in figure.findobj(Text))
     (axis,) = figure.axes
     assert figure.legends[0].get_window_extent().y1 <= axis.xaxis.label.get_window_extent().y0
@@ -132,7 +130,7 @@ def test_a_load_sharing_figure_holds_no_inputs_and_its_legend_leaves_the_axis_re
 def test_the_legend_of_curves_compared_leaves_the_offset_of_their_numbers_free():
     x = np.linspace(0.0, 1.0, 9)
     old, new = (pd.DataFrame({"x": x, "k": 4.1e8 + 1e3 * np.sin(factor * x)}) for factor in (7.0, 8.0))
-    figure = curves_compared(old, new, "x", "k", ("position", "stiffness (N/m)"), "tvms.csv")
+    figure = draw(curves_compared(old, new, "x", "k", ("position", "stiffness (N/m)"), "tvms.csv"))
     figure.canvas.draw()
     top = figure.axes[0]
     offset = top.yaxis.get_offset_text()
@@ -157,7 +155,7 @@ def test_names_of_the_edges_of_a_flank_stand_off_their_curves():
         "path_y": np.full(3, 0.265),
     }
     gap = {"gap_um": 7.8, "gear_radius_mm": 259.6, "gear_part": "tip edge", "pinion_part": "fillet"}
-    figure = separation({"smallest_gap": gap}, {"gear_flank": np.stack(edges)}, contact)
+    figure = draw(separation({"smallest_gap": gap}, {"gear_flank": np.stack(edges)}, contact))
     figure.canvas.draw()
     axes = figure.axes[0]
     names = {"tip edge", "end of the flank"}
@@ -206,7 +204,7 @@ def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():
     marks = pd.DataFrame({"order": [1.0, 0.3], "resonance": [1, 2], "speed_rpm": [2000.0, 9000.0]})
     jumps = pd.concat([marks, marks]).assign(kind=["jump", "jump", "irregular", "irregular"])
     jumps = jumps.rename(columns={"speed_rpm": "speed_after_rpm"})
-    figure = campbell(frequencies, marks, jumps, 23, 20000.0)
+    figure = draw(campbell(frequencies, marks, jumps, 23, 20000.0))
     figure.canvas.draw()
     (legend,) = figure.legends
     box = legend.get_window_extent()

@@ -1,110 +1,155 @@
-"""The interactive form of a figure holds the numbers, names and units of the still picture."""
+"""The page draws the same figure as a paper: numbers, names, units and kinds of marks."""
 
 import json
-import re
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from matplotlib.patches import Circle
 
-from facegear.plots.interactive import interactive
-from facegear.plots.style import save, styled
+from facegear.plots.description import (
+    Area,
+    Arrow,
+    Axis,
+    Band,
+    Bars,
+    ColourScale,
+    Curve,
+    Figure,
+    Levels,
+    Line,
+    Map,
+    Panel,
+    Scatter,
+    Span,
+    Text,
+)
+from facegear.plots.draw_matplotlib import draw
+from facegear.plots.draw_plotly import interactive
+from facegear.plots.save import save
+
+SPEED, FORCE = Axis("Pinion speed", "rpm"), Axis("RMS of d", "µm", "without its mean")
 
 
-@pytest.fixture
-def panels():
-    """Two panels over a common x axis, as a sweep up and down has them; the lower one has no names."""
-    with styled():
-        figure, (top, below) = plt.subplots(2, 1, sharex=True)
-    yield figure, top, below
-    plt.close(figure)
+def figure(*marks, **keywords):
+    """Return a figure with all marks in one panel."""
+    return Figure([Panel(SPEED, FORCE, marks)], **keywords)
 
 
-def test_a_curve_keeps_its_values_its_name_and_the_units_of_its_axes(panels):
-    figure, top, below = panels
-    speed = np.array([1000.0, 2000.0, 3000.0])
-    for axis in (top, below):
-        axis.plot(
-            speed, [1.23456789, np.nan, 3.0], "--", color="tab:red", label="up" if axis is top else None
-        )
-        axis.set_ylabel("RMS of d (µm)\nwithout its mean")
-    below.set_xlabel("Pinion speed (rpm)")
-    top.legend()
-    figure.suptitle("RMS at 10$^{-4}$ s, $K_\\gamma$")
-    described = interactive(figure)
+def test_a_curve_keeps_its_values_its_name_and_the_units_of_its_axes():
+    speed, values = np.array([1000.0, 2000.0, 3000.0]), np.array([1.23456789, np.nan, -0.0])
+    curve = Curve(speed, values, "up", line="dash")
+    described = interactive(Figure([Panel(SPEED, FORCE, [curve])] * 2, title="a < b\nand c"))
     first, second = described["data"]
-    assert first["x"] == [1000.0, 2000.0, 3000.0] and first["y"] == [1.23457, None, 3.0]
+    assert first["x"] == [1000.0, 2000.0, 3000.0] and first["y"] == [1.23457, None, 0.0]
+    assert str(first["y"][2]) == "0.0", "no number is minus zero"
     assert (first["name"], second["name"], first["line"]["dash"]) == ("up", "up", "dash")
     assert first["legendgroup"] == second["legendgroup"], "the legend switches a curve in all panels"
     assert [first["showlegend"], second["showlegend"]] == [True, False]
-    assert "µm" in first["hovertemplate"] and "rpm" in str(described["layout"]["xaxis"]["unifiedhovertitle"])
+    layout = described["layout"]
+    assert "µm" in first["hovertemplate"] and "rpm" in str(layout["xaxis"]["unifiedhovertitle"])
     assert first["xaxis"] == second["xaxis"] == "x", "panels above each other are zoomed together"
-    assert described["title"] == "RMS at 10<sup>−4</sup> s, K<sub>γ</sub>"
+    assert layout["yaxis"]["title"]["text"] == "RMS of d (µm)<br>without its mean"
+    assert described["title"] == "a &lt; b<br>and c"
 
 
-def test_a_map_keeps_the_value_of_every_cell_with_its_unit(panels):
-    figure, top, below = panels
-    drawn = top.pcolormesh([0.0, 1.0, 2.0], [0.0, 5.0], [[1.0, 2.5]])
+def test_a_map_keeps_the_value_of_every_point_with_its_unit():
+    scale = ColourScale("Pressure", "MPa", 1.0, 2.5)
+    cells = Map(np.array([0.0, 1.0]), np.array([5.0]), np.array([[1.0, 2.5]]), scale)
     x, y = np.meshgrid([0.0, 1.0], [0.0, 1.0, 2.0])
-    smooth = below.pcolormesh(x, y + 0.5 * x, np.ma.masked_greater(y, 1.5), shading="gouraud")
-    figure.colorbar(drawn, ax=top, label="Pressure (MPa)")
-    cells, uneven = interactive(figure)["data"]
-    assert cells["z"] == [[1.0, 2.5]] and cells["x"] == [0.0, 1.0, 2.0] and cells["y"] == [0.0, 5.0]
-    assert "Pressure" in cells["hovertemplate"] and "MPa" in cells["hovertemplate"] and cells["showscale"]
-    known = np.array(uneven["z"], dtype=float)
-    expected = np.array(uneven["y"])[:, None] - 0.5 * np.array(uneven["x"])
+    uneven = Map(x, y + 0.5 * x, np.where(y > 1.5, np.nan, y), ColourScale("y", "", 0.0, 2.0), smooth=True)
+    flat, smooth = interactive(Figure([Panel(SPEED, FORCE, [mark]) for mark in (cells, uneven)]))["data"]
+    assert flat["z"] == [[1.0, 2.5]] and flat["x"] == [0.0, 1.0] and flat["y"] == [5.0]
+    assert "Pressure" in flat["hovertemplate"] and "MPa" in flat["hovertemplate"] and flat["showscale"]
+    known = np.array(smooth["z"], dtype=float)
+    expected = np.array(smooth["y"])[:, None] - 0.5 * np.array(smooth["x"])
     inside = np.isfinite(known)
     np.testing.assert_allclose(known[inside], expected[inside], atol=1e-3)
-    assert np.all(expected[inside] < 1.01) and inside.any(axis=0).all(), "what is masked stays blank"
-    assert smooth.get_clim() == (uneven["zmin"], uneven["zmax"])
+    assert np.all(expected[inside] < 1.01) and inside.any(axis=0).all(), "what is not known stays blank"
+    assert (smooth["zmin"], smooth["zmax"]) == (0.0, 2.0)
 
 
-def test_bars_lines_across_a_panel_areas_and_points_are_kept(panels):
-    figure, top, below = panels
-    top.barh(["tail idler", "input"], [2.0, -1.0], color=["tab:blue", "tab:red"])
-    below.axvline(7.0, ymax=0.04, color="k")
-    below.axhspan(1.0, 2.0, color="0.5", alpha=0.1)
-    below.fill_between([0.0, 1.0], [0.0, 0.0], [1.0, 2.0])
-    points = below.scatter([1.0, 2.0], [3.0, 4.0], c=[10.0, 20.0])
-    figure.colorbar(points, ax=below, label="Speed (rpm)")
-    described = interactive(figure)
+def test_panels_with_one_scale_of_colours_have_one_bar():
+    scale = ColourScale("Pressure", "MPa", 0.0, 2.0)
+    panel = Panel(SPEED, FORCE, [Map(np.arange(2.0), np.arange(2.0), np.eye(2), scale)])
+    traces = interactive(Figure([panel] * 3))["data"]
+    assert [trace["showscale"] for trace in traces] == [True, False, False]
+    assert len(draw(Figure([panel] * 3)).axes) == 4
+
+
+def test_bars_lines_across_a_panel_areas_and_points_are_kept():
+    ends = np.array([0.0, 1.0])
+    names = Axis("", "", ticks=[(0.0, "tail idler"), (1.0, "input")])
+    bars = Bars(ends, np.array([2.0, -1.0]), flat=True)
+    points = Scatter(ends, ends, ends + 3.0, values=10.0 * ends, scale=ColourScale("v", "rpm", 0.0, 10.0))
+    marks = [
+        Line(7.0, part=0.04),
+        Span(1.0, 2.0, "y"),
+        Band(ends, ends, ends + 1.0),
+        Area(ends, ends),
+        points,
+    ]
+    described = interactive(Figure([Panel(SPEED, names, [bars]), Panel(SPEED, FORCE, marks)], shared_x=False))
     kinds = [(trace["type"], trace.get("fill")) for trace in described["data"]]
-    assert kinds == [("bar", None), ("bar", None), ("scatter", "toself"), ("scatter", None)]
-    assert [trace["customdata"] for trace in described["data"][:2]] == [["tail idler"], ["input"]]
-    assert [trace["x"] for trace in described["data"][:2]] == [[2.0], [-1.0]]
-    assert described["data"][3]["marker"]["color"] == [10.0, 20.0]
-    line, band = sorted(described["layout"]["shapes"], key=lambda shape: shape["type"])
-    assert (line["xref"], line["x0"], line["yref"], line["y1"]) == ("x", 7.0, "y2 domain", 0.04)
-    assert (band["yref"], band["y0"], band["y1"]) == ("y2", 1.0, 2.0)
+    assert kinds == [("bar", None), ("scatter", "toself"), ("scatter", "toself"), ("scatter", None)]
+    assert described["data"][0]["customdata"] == [["tail idler", 2.0], ["input", -1.0]]
+    assert described["data"][0]["x"] == [2.0, -1.0]
+    assert described["data"][3]["marker"]["color"] == [0.0, 10.0]
+    line, span = described["layout"]["shapes"]
+    assert (line["xref"], line["x0"], line["yref"], line["y1"]) == ("x2", 7.0, "y2 domain", 0.04)
+    assert (span["yref"], span["y0"], span["y1"]) == ("y2", 1.0, 2.0)
 
 
-def test_areas_between_levels_say_between_which(panels):
-    figure, top, _ = panels
-    drawn = top.contourf([0.0, 1.0], [0.0, 1.0], [[0.0, 1.0], [2.0, 3.0]], levels=[0.0, 1.0, 3.0])
-    figure.colorbar(drawn, ax=top, label="Gap (um)")
-    areas = [trace for trace in interactive(figure)["data"] if trace.get("fill")]
-    assert [trace["text"] for trace in areas] == ["0 to 1 um", "1 to 3 um"]
+def test_areas_between_levels_say_between_which():
+    x, y = np.meshgrid([0.0, 1.0], [0.0, 1.0])
+    scale = ColourScale("Gap", "µm", 0.0, 3.0, levels=(0.0, 1.0, 3.0))
+    described = interactive(figure(Levels(x, y, x + 2.0 * y, scale)))
+    areas = [trace for trace in described["data"] if trace.get("fill")]
+    assert [trace["text"] for trace in areas] == ["0 to 1 µm", "1 to 3 µm"]
 
 
-def test_a_drawing_stays_a_still_picture(panels, tmp_path):
-    figure, top, _ = panels
-    top.add_patch(Circle((0.0, 0.0), 1.0))
-    save(figure, tmp_path / "a.json")
+def test_a_drawing_stays_a_still_picture(tmp_path):
+    save(figure(Arrow((0.0, 0.0), (1.0, 1.0))), tmp_path / "a.json")
     assert json.loads((tmp_path / "a.json").read_text())["data"] == []
 
 
-def test_names_beside_the_last_panel_and_long_lines_below_it_are_not_cut_off(panels):
+def test_names_beside_the_last_panel_and_long_lines_below_it_are_not_cut_off():
     """Deflections beside the lines of a mesh law, and the inputs below a study, were cut off."""
-    figure, _, below = panels
-    below.plot([0.0, 1.0], [1.0, 2.0])
-    below.set_xlim(0.0, 1.0)
-    narrow = interactive(figure)["layout"]["margin"]["r"]
-    below.annotate("68.8 µm", (1.0, 2.0), (3, 0), textcoords="offset points", va="center")
-    first, second = "torque per engine 1328 N m; share of the power at the tail 3.4 %;", "meshes geometric"
-    figure.supxlabel(f"{first}\n{second}")
-    layout = interactive(figure)["layout"]
-    assert layout["margin"]["r"] > narrow + 40
-    (label,) = [text for text in re.findall(r"'text': '([^']*)'", str(layout)) if "torque" in text]
-    assert max(map(len, label.split("<br>"))) < 50
-    assert label.replace("<br>", " ") == f"{first} {second}"
+    curve = Curve(np.array([0.0, 1.0]), np.array([1.0, 2.0]))
+    end = interactive(figure(curve))["layout"]["xaxis"]["range"][1]
+    narrow = interactive(figure(curve))["layout"]["margin"]["r"]
+    beside = interactive(figure(curve, Text(end, 2.0, "68.8 µm")))["layout"]
+    assert beside["margin"]["r"] > narrow + 40
+    words = "torque per engine 1328 N m; share of the power at the tail 3.4 %; meshes geometric"
+    label = interactive(Figure([Panel(Axis(words, ""), FORCE, [curve])]))["layout"]["xaxis"]["title"]["text"]
+    assert max(map(len, label.split("<br>"))) < 50 and label.replace("<br>", " ") == words
+
+
+@pytest.mark.parametrize(
+    ("axis", "values"),
+    [
+        (Axis("a", "", low=0.0), [1.0, 3.0]),
+        (Axis("a", "", logarithmic=True), [1.0, 1e4]),
+        (Axis("a", "", is_falling=True), [2.0, 2.0]),
+        (Axis("a", "", low=-1.0, high=7.0), []),
+    ],
+)
+def test_both_drawings_have_the_same_ends_of_an_axis(axis, values):
+    described = Figure([Panel(SPEED, axis, [Curve(np.arange(float(len(values))), np.array(values))])])
+    page = interactive(described)["layout"]["yaxis"]
+    ends = 10.0 ** np.array(page["range"]) if axis.logarithmic else np.array(page["range"])
+    np.testing.assert_allclose(draw(described).axes[0].get_ylim(), ends, rtol=1e-5)
+
+
+def test_a_legend_names_what_is_drawn_once_and_lies_off_every_panel():
+    ends = np.array([0.0, 1.0])
+    curves = [Curve(ends, n * ends, name) for n, name in enumerate(("one", "two", "one", ""))]
+    panel = Panel(SPEED, FORCE, [*curves, Curve(ends, ends, "beside the pointer", in_legend=False)])
+    for own in (False, True):
+        panel = Panel(SPEED, FORCE, panel.marks, own_legend=own)
+        drawn = draw(Figure([panel]))
+        drawn.draw_without_rendering()
+        (axes,) = drawn.axes
+        legend = axes.get_legend() if own else drawn.legends[0]
+        assert [text.get_text() for text in legend.texts] == ["one", "two"]
+        assert not legend.get_window_extent().overlaps(axes.bbox)
+    names = [trace["name"] for trace in interactive(Figure([panel]))["data"] if trace["showlegend"]]
+    assert names == ["one", "two"]

@@ -8,6 +8,7 @@ import pytest
 import facegear
 from facegear.config.changes import TEETH
 from facegear.config.machine_layout import wired_layout
+from facegear.plots.draw_matplotlib import draw
 from facegear.plots.gearbox_layout import HALF_FACE, layout_figure
 
 
@@ -22,7 +23,7 @@ def drawn(gears, names):
     layout = wired_layout(section, {key: values["tooth_pair"][key] for key in TEETH})
     meshes = {"mesh": layout.mesh_names, "mean_n": 9e3, "drive_fraction": 1.0, "back_fraction": 0.0}
     forces = {"body": layout.body_names, "mean_x_n": 8e3, "mean_y_n": -3e3, "mean_z_n": 1e3}
-    return layout_figure(layout, pd.DataFrame(meshes), pd.DataFrame(forces)), layout.mesh_radius
+    return draw(layout_figure(layout, pd.DataFrame(meshes), pd.DataFrame(forces))), layout.mesh_radius
 
 
 @pytest.mark.parametrize("gears", [["upper"], ["lower"], ["lower", "upper"]])

@@ -1,11 +1,10 @@
 """Figures of the load-dependent law show its table, and what lies past it in words."""
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-import pytest
 from force_tables import power_table
 
+from facegear.plots.description import Text
 from facegear.plots.mesh_law import figures, load_figures
 from facegear.stiffness.load_dependent import law_arrays
 
@@ -23,12 +22,6 @@ LOADS = pd.DataFrame(
 )
 
 
-@pytest.fixture(autouse=True)
-def closed():
-    yield
-    plt.close("all")
-
-
 def sweep(size):
     rows = [
         (direction, speed, "deflection_ac_rms_um", mesh, size)
@@ -42,24 +35,25 @@ def sweep(size):
 def test_lines_over_a_pitch_are_the_forces_of_the_table_at_the_deflections_beside_them():
     table = power_table(20, 0.2, 1e-6, 6e-5, 5e10)
     lines, surface = figures(law_arrays([table], np.zeros((2, 2), dtype=int)))
-    (axis,) = lines.axes
-    assert axis.texts[-1].get_text() == "60 µm"
-    phases, forces = axis.lines[-1].get_data()
+    (panel,) = lines.panels
+    assert panel.marks[-1].text == panel.marks[-2].name == "60 µm"
+    phases, forces = panel.marks[-2].x, panel.marks[-2].y
     wanted = (1.0 + 0.2 * np.cos(2.0 * np.pi * phases)) * 5e10 * 6e-5**1.5 / 1e3
     np.testing.assert_allclose(forces, wanted, rtol=1e-9)
-    assert surface.axes[0].get_zlabel() == "Mesh force (kN)"
+    assert surface.panels[0].z.label == "Mesh force (kN)"
 
 
 def test_a_mesh_that_goes_past_its_table_says_for_how_much_of_the_time():
     (figure,) = load_figures(LOADS, sweep(1.0), [], ["load-dependent"])
-    assert [text.get_text().strip() for text in figure.axes[0].texts] == ["12 % past"]
+    texts = [mark.text for mark in figure.panels[0].marks if isinstance(mark, Text)]
+    assert texts == ["12 % of the time past it"]
 
 
 def test_sweeps_of_both_laws_lie_over_each_other_in_a_panel_for_each_mesh_of_one_gear():
     laws = ["load-dependent", "constant stiffness"]
     _, figure = load_figures(LOADS, sweep(1.0), [sweep(2.0)], laws)
-    assert [axis.get_title(loc="left") for axis in figure.axes] == ["input/upper", "idler/upper"]
-    shown = {line.get_label(): line.get_ydata()[0] for line in figure.axes[0].lines}
+    assert [panel.title for panel in figure.panels] == ["input/upper", "idler/upper"]
+    shown = {curve.name: curve.y.iloc[0] for curve in figure.panels[0].marks}
     assert shown == {
         f"{law}, {way}": size for law, size in zip(laws, (1.0, 2.0), strict=True) for way in ("up", "down")
     }

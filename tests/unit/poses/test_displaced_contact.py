@@ -38,7 +38,7 @@ def seen_at_zero(x, y):
 
 
 @against(
-    "other program",
+    "second implementation",
     "both bodies displaced rigidly, contact searched at 1e-13 m",
     capability="displaced_contact",
     module="facegear.poses.displaced",
@@ -61,7 +61,7 @@ def test_two_displaced_bodies_meet_and_close_as_rigid_displacement_has_it(side):
 
 
 @against(
-    "other program",
+    "second implementation",
     "unloaded contact of published poses, searched on displaced bodies",
     capability="displaced_contact",
     module="facegear.poses.displaced",
@@ -129,7 +129,7 @@ def test_turned_bodies_close_by_the_arc_of_their_base_circles():
 
 
 @against(
-    "other program",
+    "second implementation",
     "contact of the pair assembled with these errors, through the config",
     capability="displaced_contact",
     module="facegear.stages.displaced_contact",

@@ -88,7 +88,7 @@ def moved_by(model: LinearModel, size=1.0):
 
 
 @against(
-    "other program",
+    "second implementation",
     "both bodies displaced rigidly, contact searched at 1e-13 m",
     capability="geometry",
     module="facegear.geometry.conjugate",

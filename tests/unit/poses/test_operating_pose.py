@@ -67,7 +67,7 @@ def plain_machine(bearing=6.5e7, torque=1328.0, **more):
 
 
 @against(
-    "other program",
+    "second implementation",
     "contact of every mesh solved anew in every step of the iteration",
     capability="operating_pose",
     module="facegear.poses.fixed_point",
@@ -83,7 +83,7 @@ def test_forces_with_teeth_where_they_stand_are_the_published_ones(concentric, s
 
 
 @against(
-    "other program",
+    "second implementation",
     "contact of a pair in given assemblies",
     capability="pose_surface",
     module="facegear.contact.posed",
@@ -97,7 +97,7 @@ def test_loaded_contact_in_given_assemblies_is_the_published_one(assembly):
 
 
 @against(
-    "other program",
+    "second implementation",
     "contact of a pair in given assemblies",
     capability="pose_surface",
     module="facegear.poses.surface",

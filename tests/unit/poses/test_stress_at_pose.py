@@ -49,7 +49,7 @@ def surface(gearbox):
 
 
 @against(
-    "other program",
+    "second implementation",
     "contact of every mesh solved anew in every step of the iteration",
     capability="duty_poses",
     module="facegear.poses.fixed_point",

@@ -38,7 +38,8 @@ def test_a_machine_in_balance_says_so_and_one_out_of_balance_by_how_much(example
     values, tables = example
     assert "The power brought in equals the power taken out" in machine_chapter(values, tables).text
     off = tables["ratings"].assign(value=lambda t: t["value"].mask(t["quantity"] == "power_imbalance", -0.07))
-    assert "-7 % of the larger" in machine_chapter(values, {**tables, "ratings": off}).text
+    text = machine_chapter(values, {**tables, "ratings": off}).text
+    assert "The power taken out is larger than the power brought in, by 7 % of the larger of both." in text
 
 
 def test_friction_loss_is_taken_off_the_power_out(example):

@@ -5,14 +5,15 @@ import io
 import re
 import shutil
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import sync_playwright
 
-from facegear.plots.style import save
+from facegear.plots.colours import colour_of
+from facegear.plots.description import Axis, Band, ColourScale, Curve, Figure, Map, Panel
+from facegear.plots.save import save
 from facegear.plots.sweep import mesh_sweeps, translations
 from facegear.report.compact import sweep_picture
 from facegear.report.first_screen import FirstScreen, Key
@@ -58,31 +59,25 @@ DOTS = """async sources => {
 
 
 def dim_colours():
-    """A line and an area of the same dark violet."""
-    figure, axis = plt.subplots()
-    axis.plot([0.0, 1.0], [0.0, 1.0], color=DIM, label="line")
-    axis.fill_between([0.0, 1.0], [2.0, 2.0], [3.0, 3.0], color=DIM)
-    return figure
+    """Return a line and an area of the same dark violet."""
+    ends = np.array([0.0, 1.0])
+    marks = [Curve(ends, ends, "line", DIM), Band(ends, ends + 2.0, ends + 3.0, colour=DIM, opacity=1.0)]
+    return Figure([Panel(Axis("x", "mm"), Axis("y", "mm"), marks)])
 
 
 def wide_legend():
-    """A panel below a legend as wide as the figure."""
-    figure, axis = plt.subplots(figsize=(4.7, 3.0))
-    for number in range(4):
-        axis.plot([0.0, 1.0], [0.0, number], label=f"curve of the mesh {number}")
-    axis.set(xlabel="speed (rpm)", ylabel="force (kN)")
-    axis.legend()
-    return figure
+    """Return a panel below a legend as wide as the figure."""
+    ends = np.array([0.0, 1.0])
+    curves = [Curve(ends, n * ends, f"curve of the mesh {n}", colour_of(n)) for n in range(4)]
+    return Figure([Panel(Axis("speed", "rpm"), Axis("force", "kN"), curves, own_legend=True)])
 
 
 def long_title():
-    """A narrow panel beside a bar of colours, below a title wider than the panel."""
-    figure, axis = plt.subplots(figsize=(4.7, 3.0), layout="constrained")
-    drawn_map = axis.pcolormesh([0.0, 1.0, 2.0], [0.0, 1.0], [[1.0, 2.0]])
-    figure.colorbar(drawn_map, label="Pressure (MPa)")
-    axis.set_title("1200 N m: 1568 ± 9 MPa; tip edges up to 857 N/mm")
-    axis.set(xlabel="along (mm)", ylabel="radius (mm)")
-    return figure
+    """Return a narrow panel beside a bar of colours, below a title wider than the panel."""
+    at = np.array([0.0, 1.0])
+    drawn = Map(at, at, np.array([[1.0, 2.0], [2.0, 3.0]]), ColourScale("Pressure", "MPa", 1.0, 3.0))
+    title = "1200 N m: 1568 ± 9 MPa; tip edges up to 857 N/mm"
+    return Figure([Panel(Axis("along", "mm"), Axis("radius", "mm"), [drawn], title=title)])
 
 
 @pytest.fixture(scope="module")
@@ -181,9 +176,8 @@ def test_the_pointer_shows_values_with_units_up_and_down_side_by_side(opened):
     page.mouse.move(x, y)
     label = page.wait_for_selector(f"#{OVER_SPEED} .hoverlayer .legend")
     words = label.text_content()
-    assert re.search(r"up : [\d.]+ µm.*down : [\d.]+ µm", words) and re.search(r"speed [\d.]+ rpm", words), (
-        words
-    )
+    assert re.search(r"up : [\d.,]+ µm.*down : [\d.,]+ µm", words), words
+    assert re.search(r"speed [\d.,]+ rpm", words), words
 
 
 def test_a_drag_zooms_every_figure_over_speed_and_a_legend_switches_a_curve_everywhere(opened):

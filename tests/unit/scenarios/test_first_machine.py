@@ -2,6 +2,7 @@
 
 import random
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,9 +14,11 @@ from facegear.config.model import resolved
 from facegear.config.tooth_pair import pair
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigError, FacegearError
-from facegear.geometry.analysis import analyse
+from facegear.geometry.analysis import analyse, path_curvatures
 from facegear.strength.rating import pinion_form
+from facegear.variants.first_estimates import load_concentration
 from facegear.variants.first_machine import first_machine
+from facegear.variants.starting_draft import STIFFNESS
 from facegear.variants.starting_teeth import choose_teeth
 from facegear.variants.starting_wishes import MachineWishes, ToothWishes
 
@@ -152,6 +155,46 @@ def test_a_split_torque_machine_splits_its_torque_as_it_says(known, tmp_path):
     assert 0.7 <= groups.loc["idlers", "k_gamma"] <= 1.3
     assert groups["group_ratio"].max() == pytest.approx(ratio, rel=0.1)
     assert groups["group_ratio"].max() <= 1.3 * 1.02
+
+
+@pytest.mark.parametrize("known", [MACHINES[1], MACHINES[4]], ids=lambda known: known.case)
+def test_printed_resonances_are_natural_frequencies_in_the_speed_range(known, tmp_path):
+    """They were frequencies in Hz divided by 2 pi."""
+    values, gearbox = with_constant_stiffness(known, tmp_path)
+    sweep = values["dynamics"]["sweep"]
+    frequencies = gearbox.modes().table()["frequency_hz"].round(1).unique()
+    speeds = 60.0 * frequencies / known.pinion_teeth
+    within = sorted(speed for speed in speeds if sweep["from_rpm"] <= speed <= sweep["to_rpm"])
+    said = [float(number) for number in re.findall(r"[\d.]+", first_machine(known).expected[-1])]
+    assert said == pytest.approx(within[: len(said)], rel=2e-3) and len(said) > 1
+
+
+def with_face(design, inner, outer):
+    """A design whose face reaches from `inner` to `outer`, m from the path of contact."""
+    path = 0.5 * design.module * design.face_gear.teeth
+    gear = replace(design.face_gear, inner_radius=path + inner, outer_radius=path + outer)
+    return replace(design, face_gear=gear, pinion=replace(design.pinion, width=outer - inner))
+
+
+def test_the_line_load_of_a_wide_face_is_the_parabola_of_the_crowning():
+    """Strips of stiffness c carry F = 2/3 c k a^3 within the half-width a, the largest 3/4 F / a."""
+    design = choose_teeth(ToothWishes(23, 143, 3.75)).design
+    concentration = [load_concentration(with_face(design, -0.1, 0.1), torque) for torque in (100.0, 800.0)]
+    assert concentration[0] == pytest.approx(2.0 * concentration[1], rel=1e-6)
+    roll, _, curvature, _ = path_curvatures(design)
+    at_pitch = np.interp(np.tan(design.pressure_angle), roll, curvature)
+    half_width = (1.5 * 100.0 / design.pinion_base_radius / (STIFFNESS * at_pitch)) ** (1 / 3)
+    assert concentration[0] == pytest.approx(0.75 * 0.2 / half_width, rel=0.02)
+
+
+def test_a_face_beside_the_path_carries_more_and_flanks_without_crowning_none():
+    design = choose_teeth(ToothWishes(23, 143, 3.75)).design
+    even = [
+        load_concentration(with_face(design, start, start + 0.02), 500.0) for start in (-0.01, -0.002, 0.001)
+    ]
+    assert 1.0 < even[0] < even[1] < even[2]
+    straight = choose_teeth(ToothWishes(23, 143, 3.75, shaper_teeth=23)).design
+    assert load_concentration(straight, 500.0) == pytest.approx(1.0, abs=1e-6)
 
 
 def test_every_mesh_at_rest_lies_inside_the_torques_of_the_contact_analysis(tmp_path):

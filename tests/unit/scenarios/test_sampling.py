@@ -43,7 +43,7 @@ def test_correlated_samples_are_the_same_to_the_bit_in_any_chunk():
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.stats",
     capability="tolerances_chunk tolerances",
     module="facegear.scenarios.sampling",
@@ -63,7 +63,7 @@ def test_samples_have_the_quantiles_of_their_distributions():
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.stats.truncnorm",
     capability="tolerances_chunk tolerances",
     module="facegear.scenarios.distributions",

@@ -138,7 +138,7 @@ TURNING = {
 
 
 @against(
-    "other program",
+    "second implementation",
     "all 3289 mesh cycles",
     capability="tolerances_chunk",
     module="facegear.load_sharing.quantities",

@@ -56,7 +56,7 @@ def at_rest(machine):
 
 
 @against(
-    "other program",
+    "second implementation",
     "loaded contact of the pair at this torque",
     capability="mesh_law",
     module="facegear.stiffness.load_dependent",

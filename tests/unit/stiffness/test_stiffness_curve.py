@@ -110,7 +110,7 @@ def test_both_means_stand_beside_the_harmonics_and_modes_take_the_local_one(sour
     for definition in ("local", "average"):
         found = call(STAGES["modal"], {**needs, "definition": definition, "harmonics": table})
         taken[definition] = found.content["contacts"]["stiffness_n_per_m"].to_list()
-        assert f"N/m ({definition})" in found.summary
+        assert f"N/um ({definition})" in found.summary
     assert taken["local"] == pytest.approx(10 * [1.3 * average], rel=1e-9)
     assert taken["average"] == pytest.approx(10 * [average], rel=1e-9)
 
@@ -147,7 +147,7 @@ def test_the_papers_modes_are_those_of_the_mean_that_its_config_gives():
         relative=1e-7,
         absolute=0.0501,
     )
-    assert "4.1e+08 N/m (average, given)" in found.summary
+    assert "410 N/um (average, given)" in found.summary
 
 
 @pytest.mark.parametrize("source", ["fem", "fem_scaled"])

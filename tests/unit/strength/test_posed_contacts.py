@@ -64,7 +64,7 @@ def duty(torques, bins, meshes=(), flank="drive", gear="face_gear"):
 
 
 @against(
-    "other program",
+    "second implementation",
     "contact of a pair solved in two assemblies",
     capability="posed_stress",
     module="facegear.strength.posed_contacts",

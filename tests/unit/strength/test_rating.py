@@ -20,6 +20,7 @@ from facegear.config.strength import Strength, duty_bins
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.geometry.analysis import section_contact_ratio
+from facegear.plots.description import entries
 from facegear.plots.strength import damage_by_bin, life
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import DutyBin, given_duty
@@ -261,9 +262,10 @@ def test_the_figures_of_life_and_damage_show_every_method():
     found = rated(bins)[1]
     table, harm = rating_table(found, PRESSURE, ROOTS), damage_table(found, bins, PRESSURE)
     shown = life(table, harm, curve_table(found))
-    labels = {text.get_text() for axis in shown.axes for text in axis.get_legend().get_texts()}
-    assert {label.rsplit(", ", 1)[1] for label in labels} == {one.method for one in found}
-    assert len(damage_by_bin(table, harm).axes[0].get_legend().get_texts()) == len(found)
+    names = {key.name for key in entries(shown.panels)}
+    assert {name.rsplit(", ", 1)[1] for name in names} == {one.method for one in found}
+    (panel,) = damage_by_bin(table, harm).panels
+    assert len(entries([panel])) + panel.title.count("flank") == len(found)
 
 
 def test_a_contact_on_edges_alone_is_judged_by_the_standard():

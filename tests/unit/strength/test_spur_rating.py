@@ -74,7 +74,7 @@ def test_stresses_of_fzg_c_gears_match_the_published_ones():
 
 
 @against(
-    "other program",
+    "third-party program",
     "DIN 3990-11 example of a public code that prints every factor (hanslhansl/din3990)",
     capability="rating",
     module="facegear.strength.root_form",
@@ -96,7 +96,7 @@ def test_form_and_stress_correction_of_the_din_3990_11_example_for_a_load_at_the
 
 
 @against(
-    "other program",
+    "third-party program",
     "DIN 3990-11 example of a public code that prints every factor (hanslhansl/din3990)",
     capability="rating",
     module="facegear.strength.factors",

@@ -142,7 +142,7 @@ def test_hub_moved_as_a_rigid_whole_moves_flanks_and_momentum_as_the_same_motion
 
 
 @against(
-    "other program",
+    "second implementation",
     "forced response of the whole finite-element body in space",
     capability="modal",
     module="facegear.transmission.elastic_gears",

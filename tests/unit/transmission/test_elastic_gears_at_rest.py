@@ -25,7 +25,7 @@ pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 
 
 @against(
-    "other program",
+    "second implementation",
     "statics with the influence of whole Fourier finite elements",
     capability="hunting modal",
     module="facegear.transmission.elastic_gears",

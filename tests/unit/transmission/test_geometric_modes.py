@@ -50,7 +50,7 @@ def test_with_a_large_tail_torque_the_tail_idlers_upper_mesh_changes_flank():
 
 
 @against(
-    "other program",
+    "second implementation",
     "active sets with NumPy beside the compiled statics",
     capability="modal",
     module="facegear.transmission.loaded_modes",

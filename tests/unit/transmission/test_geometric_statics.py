@@ -14,8 +14,7 @@ from references import against, agrees
 from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.linear import linear_law
-from facegear.transmission.contact_energy import Springs
-from facegear.transmission.contact_kernel import settle_all
+from facegear.transmission.block_statics import Springs, settle_all
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import Runout, perfect
 from facegear.transmission.layout import Body, Role, Side, Tilt
@@ -57,11 +56,11 @@ def machine_with(layout, torque=800.0, tail_share=0.0, backlash=100e-6, **errors
 def held_forces(machine):
     """Mesh forces (meshes,) of flanks drive - back with both face gears held against turning."""
     springs = static_springs(machine)
-    core = np.arange(springs.applied.size - 3 * len(machine.layout.pinions))
+    core = np.arange(springs.loads.size - 3 * len(machine.layout.pinions))
     springs = springs._replace(core_row=core, core_column=core, core_value=np.full(core.size, HELD))
     gaps = (constant_errors(machine) + flank_gaps(machine))[None]
     law = linear_law(gaps.size * [FLAT])
-    start = np.zeros(springs.applied.size)
+    start = np.zeros(springs.loads.size)
     _, forces, residual = settle_all(springs, law.held(np.zeros(1)), gaps, TOLERANCE, start)
     assert residual[0] < 1e-12
     drive, back = np.split(forces[0], 2)
@@ -219,7 +218,7 @@ def random_machine(draw, most_pinions):
 
 
 @against(
-    "other program",
+    "second implementation",
     "enumeration of all states of contact, numpy.linalg.lstsq",
     capability="hunting load_sharing_reference",
     module="facegear.transmission.statics",

@@ -118,7 +118,7 @@ def free_hub(gear_speed, count):
 
 
 @against(
-    "other program",
+    "second implementation",
     "finite elements of the whole body whose bore is a rigid body on springs",
     capability="gear_waves",
     module="facegear.transmission.elastic_gears",

@@ -61,7 +61,7 @@ def test_a_negative_torque_presses_the_back_flank_by_its_own_table():
 
 
 @against(
-    "other program",
+    "second implementation",
     "eigenvalues of a stiffness matrix of differences",
     capability="modal",
     module="facegear.transmission.loaded_modes",

@@ -89,7 +89,7 @@ def test_a_runout_is_the_first_order_of_its_turn_alone(amplitude, phase):
 
 
 @against(
-    "other program",
+    "second implementation",
     "equilibria of the machine turned slowly",
     capability="shaft_orders",
     module="facegear.transmission.shaft_orders",
@@ -108,7 +108,7 @@ def test_turned_slowly_the_forces_are_those_of_the_equilibria():
 
 
 @against(
-    "other program",
+    "second implementation",
     "the motion followed in time until the start is forgotten",
     capability="shaft_orders",
     module="facegear.transmission.shaft_orders",

@@ -116,7 +116,7 @@ def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
 
 
 @against(
-    "other program",
+    "second implementation",
     "dense linear solution with NumPy",
     capability="load_sharing_reference",
     module="facegear.transmission.statics",

@@ -50,7 +50,7 @@ def test_static_mesh_forces_balance_the_torques_on_every_pinion(torque, share, b
 
 
 @against(
-    "other program",
+    "second implementation",
     "numpy.linalg.lstsq of the linear machine",
     capability="load_sharing_reference",
     module="facegear.transmission.statics",

@@ -78,7 +78,7 @@ def potential(machine):
 
 
 @against(
-    "other program",
+    "third-party program",
     "scipy.optimize.minimize (BFGS) of the elastic energy",
     capability="hunting load_sharing_reference",
     module="facegear.transmission.statics",

@@ -26,7 +26,7 @@ def one_tooth(count, tooth):
 
 
 @against(
-    "other program",
+    "second implementation",
     "cumulative pitch deviations of the same teeth",
     capability="hunting",
     module="facegear.transmission.tooth_errors",

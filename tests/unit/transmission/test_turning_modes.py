@@ -36,7 +36,7 @@ def modes_at(machine, gear_rpm):
 
 
 @against(
-    "other program",
+    "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_waves",
     module="facegear.transmission.turning_modes",

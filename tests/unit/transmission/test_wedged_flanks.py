@@ -165,7 +165,7 @@ def test_law_that_depends_on_the_load_couples_wedged_flanks_as_the_stiffness_tha
 
 
 @against(
-    "other program",
+    "second implementation",
     "equilibria with the whole compliance between the flanks",
     capability="shaft_orders",
     module="facegear.transmission.shaft_orders",

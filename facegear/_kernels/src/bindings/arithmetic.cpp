@@ -14,10 +14,12 @@ using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device:
 using Output = nb::ndarray<double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 template <int Width>
-void multiply_add_all(const double* first, const double* second, const double* third, double* out, size_t size) {
+void multiply_add_all(const double* first, const double* second, const double* third, double* out,
+                      size_t size) {
     using Vector = Lanes<Width>;
     for (size_t i = 0; i + Width <= size; i += Width) {
-        multiply_add(Vector::load(first + i), Vector::load(second + i), Vector::load(third + i)).store(out + i);
+        multiply_add(Vector::load(first + i), Vector::load(second + i), Vector::load(third + i))
+            .store(out + i);
     }
 }
 
@@ -30,8 +32,8 @@ void bound_multiply_add(Numbers first, Numbers second, Numbers third, Output out
         throw nb::value_error("width must be 4 or 8, and the length a multiple of it");
     }
     nb::gil_scoped_release released;
-    (width == 4 ? multiply_add_all<4> : multiply_add_all<8>)(first.data(), second.data(), third.data(), out.data(),
-                                                             size);
+    (width == 4 ? multiply_add_all<4> : multiply_add_all<8>)(first.data(), second.data(), third.data(),
+                                                             out.data(), size);
 }
 
 } // namespace

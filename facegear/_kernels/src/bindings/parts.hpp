@@ -6,6 +6,11 @@
 namespace facegear {
 
 void bind_arithmetic(nanobind::module_ module);
+void bind_flanks(nanobind::module_ module);
+void bind_samples(nanobind::module_ module);
+void bind_statics(nanobind::module_ module);
+void bind_strength(nanobind::module_ module);
+void bind_contact(nanobind::module_ module);
 void bind_motion(nanobind::module_ module);
 
 } // namespace facegear

@@ -41,7 +41,7 @@ def starts():
 
 
 @against(
-    "other program",
+    "second implementation",
     "share of the same box of starts by another program, 0.3651 +- 0.0005",
     capability="branches_starts",
     module="facegear.dynamics.branches.explore",
@@ -127,7 +127,7 @@ def machine_branch():
 
 
 @against(
-    "other program",
+    "second implementation",
     "central differences of the period map",
     capability="branches",
     module="facegear.dynamics.branches.period_map",

@@ -118,7 +118,7 @@ def scipy_multipliers(speed, depth, damping):
 
 
 @against(
-    "other program",
+    "third-party program",
     "multipliers of Mathieu's equation in two coordinates by SciPy's DOP853",
     capability="branches",
     module="facegear.dynamics.branches.between",

@@ -1,0 +1,54 @@
+"""Build backend (PEP 517): scikit-build-core, with zig as compiler where a machine has none.
+
+An editable install is a path, in which Snakemake finds its plugin, and its kernels lie beside their sources.
+"""
+
+import tempfile
+from pathlib import Path
+
+import kernels
+from scikit_build_core import build as skbuild
+from scikit_build_core.build import (
+    build_sdist,
+    get_requires_for_build_sdist,
+    prepare_metadata_for_build_editable,
+    prepare_metadata_for_build_wheel,
+)
+
+__all__ = [
+    "build_editable",
+    "build_sdist",
+    "build_wheel",
+    "get_requires_for_build_editable",
+    "get_requires_for_build_sdist",
+    "get_requires_for_build_wheel",
+    "prepare_metadata_for_build_editable",
+    "prepare_metadata_for_build_wheel",
+]
+Settings = dict[str, list[str] | str] | None
+
+
+def get_requires_for_build_wheel(config_settings: Settings = None) -> list[str]:
+    """Return what the build needs beside the backend: CMake, ninja and a compiler, where they are missing."""
+    compiler = [] if kernels.compiler_is_installed() else ["ziglang>=0.15"]
+    return [*skbuild.get_requires_for_build_wheel(config_settings), *compiler]
+
+
+get_requires_for_build_editable = get_requires_for_build_wheel
+
+
+def build_wheel(
+    wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
+) -> str:
+    """Build the wheel, and return its file name."""
+    with tempfile.TemporaryDirectory() as folder:
+        kernels.choose_compiler(Path(folder))
+        return skbuild.build_wheel(wheel_directory, config_settings, metadata_directory)
+
+
+def build_editable(
+    wheel_directory: str, config_settings: Settings = None, metadata_directory: str | None = None
+) -> str:
+    """Build the kernels beside their sources and the wheel that names this folder; return its file name."""
+    kernels.build_in_place()
+    return skbuild.build_editable(wheel_directory, config_settings, metadata_directory)

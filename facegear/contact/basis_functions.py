@@ -1,0 +1,132 @@
+"""Points of the pinion that face the gear, and the basis functions of the pressure over them."""
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from facegear._kernels import contact as kernels
+from facegear.arrays import Array, Integers, Mask
+
+Rows = tuple[Integers, Integers, Array]
+"""Sparse rows: pointer, index, weight. Row i takes `index` by `weight` from pointer[i] to pointer[i + 1]."""
+
+
+class FacingPoints(NamedTuple):
+    """Points (q,) of one tooth that may face a tooth of the other gear, with the basis functions there.
+
+    Attributes
+    ----------
+    gap, lever_arm : (q,)
+        m; the gap is not finite where nothing is opposite.
+    pinion, gear : (q, 2)
+        Refined lattice coordinates on both teeth, nan or inf where nothing is opposite.
+    functions : (q, 4)
+        Numbers of the basis functions that are not zero at a point.
+    values : (q, 4)
+        Their values there.
+    area : (q,)
+        Area (m2) that a point stands for; of an edge its length in distances of the edge's nodes.
+    """
+
+    gap: Array
+    lever_arm: Array
+    pinion: Array
+    gear: Array
+    functions: Integers
+    values: Array
+    area: Array
+
+    def part(self, rows: slice) -> "FacingPoints":
+        """Return the points of some rows."""
+        gap, lever_arm, pinion, gear, functions, values, area = self
+        return FacingPoints(
+            gap[rows], lever_arm[rows], pinion[rows], gear[rows], functions[rows], values[rows], area[rows]
+        )
+
+
+class Facing:
+    """Facing points of the pairs of teeth at a position, pair by pair.
+
+    Parameters
+    ----------
+    points : FacingPoints
+        Points (q,) of all pairs.
+    starts : Integers
+        First point of each pair and the number of all points (p + 1,).
+    teeth : Integers
+        Number (p,) of each pair.
+    """
+
+    def __init__(self, points: FacingPoints, starts: Integers, teeth: Integers) -> None:
+        self.points, self.starts, self.teeth = points, starts, teeth
+
+    @cached_property
+    def kernel(self) -> kernels.FacingPoints:
+        """The points as the compiled kernels take them."""
+        teeth = np.ascontiguousarray(self.teeth, np.int64)
+        return kernels.FacingPoints(*map(np.ascontiguousarray, self.points), self.starts, teeth)
+
+
+class Cover:
+    """All basis functions of a pair of teeth: of the gear's tip edge, the pinion's lattice and its tip edge.
+
+    Parameters
+    ----------
+    min_area : Array
+        Area (n,) m2 of each function that a tooth opposite must cover.
+    first : int
+        Number of the function of the lattice's first node.
+    shape : tuple of int
+        Rows and columns of the pinion's refined lattice.
+    flank_ends : tuple of float
+        Refined rows of pinion and gear beyond which their fillets begin.
+    """
+
+    def __init__(
+        self, min_area: Array, first: int, shape: tuple[int, int], flank_ends: tuple[float, float]
+    ) -> None:
+        self.min_area, self.first, self.shape, self.flank_ends = min_area, first, shape, flank_ends
+
+    @cached_property
+    def kernel(self) -> kernels.Cover:
+        """The functions as the compiled kernels take them."""
+        return kernels.Cover(np.ascontiguousarray(self.min_area), self.first, self.shape, self.flank_ends)
+
+
+class BasisFunctions(NamedTuple):
+    """Basis functions (m,) of the pairs of teeth of a position that may touch, pair by pair.
+
+    Attributes
+    ----------
+    pair : (m,)
+        Row of the function's pair in `Facing.teeth`.
+    node : (m,)
+        Node of the pinion's lattice, of a function along an edge the nearest.
+    gap, lever_arm : (m,)
+        Means over the function, m.
+    fillet : (m,)
+        Whether most of the function lies on a fillet of either gear.
+    average
+        Weights of the points in a mean over each function.
+    """
+
+    pair: Integers
+    node: Integers
+    gap: Array
+    lever_arm: Array
+    fillet: Mask
+    average: Rows
+
+
+def functions_within(facing: Facing, cover: Cover, limit: float) -> BasisFunctions:
+    """Return the basis functions whose gap a rotation of the pinion by `limit` (rad) would close."""
+    return BasisFunctions(**kernels.find_functions(facing.kernel, cover.kernel, limit))
+
+
+def chosen_rows(rows: Rows, keep: Mask) -> Rows:
+    """Return the rows marked (m,)."""
+    pointer, index, weight = rows
+    counts = np.diff(pointer)
+    entries = np.repeat(keep, counts)
+    return np.concatenate([[0], np.cumsum(counts[keep])]), index[entries], weight[entries]

@@ -1,0 +1,550 @@
+"""A figure as data: panels with axes, units and marks, which `draw_plotly` and `draw_matplotlib` draw.
+
+Texts are plain, with line ends where they are wanted. Numbers are in the unit that their axis names.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from facegear.arrays import AnyArray, Array
+from facegear.plots.colours import BLACK, grey
+
+LineStyle = Literal["solid", "dash", "dot", "dashdot", "none"]
+Letter = Literal["x", "y"]
+Look = dict[str, Any]
+"""Keywords of a mark that say how it is drawn."""
+NARROW = 4.7
+"""Width in inches of figures that a telephone shows whole: at 500 px their 9 pt text is 12 px high."""
+MARGIN = 0.05
+"""Room beside the data on an axis without limits, in its range."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Quantity of an axis, with its unit, ends and ticks.
+
+    - name, unit: an empty unit is that of a dimensionless number
+    - note: second line of its label
+    - low, high: limits; None where the data decide
+    - ticks: positions with names
+    """
+
+    name: str
+    unit: str
+    note: str = ""
+    low: float | None = None
+    high: float | None = None
+    logarithmic: bool = False
+    integer: bool = False
+    is_falling: bool = False
+    ticks: Sequence[tuple[float, str]] = ()
+
+    @property
+    def label(self) -> str:
+        """Name, unit in brackets, and the note below."""
+        return "\n".join(part for part in (with_unit(self.name, self.unit), self.note) if part)
+
+
+@dataclass(frozen=True)
+class ColourScale:
+    """Quantity that colours of a map or of points show.
+
+    - colours: name of the scale as matplotlib has it
+    - levels: limits of areas of one colour; none for a colour that follows the value
+    """
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    colours: str = "viridis"
+    levels: tuple[float, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Name and unit in brackets."""
+        return with_unit(self.name, self.unit)
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A line, marks, or both; nan parts it.
+
+    - x, y: shape (points,)
+    - name: in the legend; empty for none
+    - marker: `circle`, `square`, `diamond`, `triangle-up`, `triangle-down`, `x`, `cross`, `star`, `dot`, ...
+    - width, size: of line and mark, in points of 1/72 inch
+    - steps: a value holds up to the next one
+    - in_legend: whether its name stands there, not beside the pointer alone
+    """
+
+    x: Array
+    y: Array
+    name: str = ""
+    colour: str = BLACK
+    line: LineStyle = "solid"
+    width: float = 1.2
+    marker: str = ""
+    size: float = 4.5
+    hollow: bool = False
+    opacity: float = 1.0
+    steps: bool = False
+    in_legend: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Scatter:
+    """Points, coloured by a value where `values` and `scale` are given.
+
+    - x, y, values, sizes: shape (points,); sizes in 1/72 inch
+    """
+
+    x: Array
+    y: Array
+    sizes: Array
+    name: str = ""
+    colour: str = BLACK
+    marker: str = "circle"
+    values: Array | None = None
+    scale: ColourScale | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Bars:
+    """Bars from `base` to `base + lengths` at positions on an axis, all of shape (bars,).
+
+    - flat: whether they lie
+    - width: in the unit of their positions
+    - low, high: ends of an error bar of each
+    - labels: text inside each
+    """
+
+    positions: Array
+    lengths: Array
+    name: str = ""
+    colour: str = BLACK
+    width: float = 0.8
+    flat: bool = False
+    base: Array | None = None
+    low: Array | None = None
+    high: Array | None = None
+    labels: Sequence[str] = ()
+    in_legend: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """An area between two curves, shape (points,) each."""
+
+    x: Array
+    low: Array
+    high: Array
+    name: str = ""
+    colour: str = BLACK
+    opacity: float = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Area:
+    """A filled area inside a ring of points, shape (points,) each."""
+
+    x: Array
+    y: Array
+    name: str = ""
+    colour: str = BLACK
+    opacity: float = 1.0
+    outline: str = ""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line across a panel at a value of the axis `of`, over the first `part` of it."""
+
+    at: float
+    of: Letter = "x"
+    name: str = ""
+    colour: str = grey(0.5)
+    line: LineStyle = "solid"
+    width: float = 0.8
+    part: float = 1.0
+    in_legend: bool = True
+
+
+@dataclass(frozen=True)
+class Span:
+    """A band across a panel between two values of the axis `of`."""
+
+    low: float
+    high: float
+    of: Letter = "x"
+    name: str = ""
+    colour: str = grey(0.5)
+    opacity: float = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """Values over a grid, nan where there is none.
+
+    - x, y: shape (columns,) and (rows,), or (rows, columns) each where rows are not even
+    - values: shape (rows, columns), at the points of the grid
+    - smooth: whether colours run from point to point
+    """
+
+    x: Array
+    y: Array
+    values: Array
+    scale: ColourScale
+    smooth: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """Areas between the levels of a scale.
+
+    - x, y, values: shape (rows, columns); values are nan where there is none
+    """
+
+    x: Array
+    y: Array
+    values: Array
+    scale: ColourScale
+
+
+@dataclass(frozen=True, eq=False)
+class Faces:
+    """Polygons of shape (faces, corners, 2), each with a value that its colour shows."""
+
+    corners: Array
+    values: Array
+    colours: str = "viridis"
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text at a point of the data, moved by `shift` (1/72 inch).
+
+    - across, upright: which side of the text stands there
+    - paper: whether it stands on a patch of paper
+    """
+
+    x: float
+    y: float
+    text: str
+    shift: tuple[float, float] = (0.0, 0.0)
+    across: Literal["left", "center", "right"] = "left"
+    upright: Literal["bottom", "center", "top"] = "center"
+    colour: str = BLACK
+    paper: bool = False
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """An arrow of a drawing; `bend` is the height of its arc in its length, to the right for more than 0."""
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    colour: str = BLACK
+    width: float = 2.0
+    bend: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """Faces in space of a drawing: shape (faces, corners, 3), and their colours, shape (faces, 3), 0 to 1."""
+
+    corners: Array
+    colours: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A height over a grid, drawn in space: x, y, z of shape (rows, columns)."""
+
+    x: Array
+    y: Array
+    z: Array
+    colours: str = "viridis"
+
+
+Mark = (
+    Curve | Scatter | Bars | Band | Area | Line | Span | Map | Levels | Faces | Text | Arrow | Solid | Surface
+)
+
+
+@dataclass(frozen=True)
+class Key:
+    """An entry of a legend that explains a look; `area`: a patch of colour instead of a line."""
+
+    name: str
+    colour: str = BLACK
+    line: LineStyle = "solid"
+    width: float = 1.2
+    marker: str = ""
+    hollow: bool = False
+    area: bool = False
+    opacity: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """Axes with what is drawn in them; later marks lie above earlier ones.
+
+    - height: of the axes, in inches
+    - z: third axis of a drawing in space
+    - equal: whether both axes have one scale
+    - bare: whether it is a drawing without axes
+    - own_legend: whether its legend stands above it, not below the figure
+    - ground: colour behind the marks
+    """
+
+    x: Axis
+    y: Axis
+    marks: Sequence[Mark]
+    title: str = ""
+    height: float = 1.6
+    z: Axis | None = None
+    equal: bool = False
+    bare: bool = False
+    own_legend: bool = False
+    ground: str = ""
+    view: tuple[float, float] = (22.0, -62.0)
+
+    def scales(self) -> list[ColourScale]:
+        """Return the colour scales of its marks.
+
+        Returns
+        -------
+        list of ColourScale
+            Each once.
+        """
+        values_found = [
+            mark.scale for mark in self.marks if isinstance(mark, Map | Levels | Scatter) and mark.scale
+        ]
+        return list(dict.fromkeys(values_found))
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """Panels row by row.
+
+    - title: above all; empty where axes and names say enough
+    - width: in inches
+    - shared_x, shared_y: whether panels of a column have one x axis, and those of a row one y axis
+    - y_label: label of all y axes
+    - keys: entries of the legend that no mark gives
+    """
+
+    panels: Sequence[Panel]
+    title: str = ""
+    columns: int = 1
+    width: float = NARROW
+    shared_x: bool = True
+    shared_y: bool = False
+    y_label: str = ""
+    legend_title: str = ""
+    keys: Sequence[Key] = ()
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of panels."""
+        return -(-len(self.panels) // self.columns)
+
+    @property
+    def is_drawing(self) -> bool:
+        """Whether it is a drawing, which the page shows as it stands."""
+        return any(
+            panel.bare or panel.z or any(isinstance(mark, Arrow) for mark in panel.marks)
+            for panel in self.panels
+        )
+
+    def shows_x(self, number: int) -> bool:
+        """Return whether a panel has the label of its x axis below it.
+
+        Parameters
+        ----------
+        number : int
+            Number of the panel, from 0, dimensionless.
+
+        Returns
+        -------
+        bool
+            False where a panel below shares the axis.
+        """
+        return not self.shared_x or number + self.columns >= len(self.panels)
+
+    def limits(self, number: int, letter: Letter) -> tuple[float, float]:
+        """Return the ends of an axis of a panel; panels that share the axis have the same.
+
+        Parameters
+        ----------
+        number : int
+            Number of the panel, from 0, dimensionless.
+        letter : str
+            `x` or `y`.
+
+        Returns
+        -------
+        low, high : float
+            Ends in the unit of the axis.
+        """
+        panels_joined = [
+            panel
+            for index, panel in enumerate(self.panels)
+            if index == number
+            or (letter == "x" and self.shared_x and (index - number) % self.columns == 0)
+            or (letter == "y" and self.shared_y and index // self.columns == number // self.columns)
+        ]
+        return _limits(panels_joined, letter)
+
+
+def with_unit(name: str, unit: str) -> str:
+    """Write a quantity as axes name it.
+
+    Parameters
+    ----------
+    name, unit : str
+        The quantity and its unit; an empty one is that of a dimensionless number.
+
+    Returns
+    -------
+    str
+        The name with the unit in brackets.
+    """
+    return f"{name} ({unit})" if unit else name
+
+
+def entries(panels: Sequence[Panel], keys: Sequence[Key] = ()) -> list[Key]:
+    """List what the legend of panels says: each name once, in the order of the marks.
+
+    Parameters
+    ----------
+    panels : sequence of Panel
+        The panels.
+    keys : sequence of Key
+        Entries that no mark gives.
+
+    Returns
+    -------
+    list of Key
+        The entries.
+    """
+    values_found = {key.name: key for key in reversed([*_legend_keys(panels), *keys])}
+    return [values_found[name] for name in dict.fromkeys(key.name for key in [*_legend_keys(panels), *keys])]
+
+
+def _legend_keys(panels: Sequence[Panel]) -> Iterator[Key]:
+    for mark in (mark for panel in panels for mark in panel.marks):
+        if not getattr(mark, "name", "") or not getattr(mark, "in_legend", True):
+            continue
+        if isinstance(mark, Curve):
+            yield Key(mark.name, mark.colour, mark.line, mark.width, mark.marker, mark.hollow)
+        elif isinstance(mark, Scatter):
+            yield Key(mark.name, mark.colour, "none", marker=mark.marker)
+        elif isinstance(mark, Line):
+            yield Key(mark.name, mark.colour, mark.line, mark.width)
+        elif isinstance(mark, Bars | Band | Area | Span):
+            yield Key(mark.name, mark.colour, area=True, opacity=getattr(mark, "opacity", 1.0))
+
+
+def apart(x: AnyArray, y: AnyArray) -> tuple[Array, Array]:
+    """Join separate lines to one curve.
+
+    Parameters
+    ----------
+    x, y : array
+        Points of each line, shape (lines, points), any unit.
+
+    Returns
+    -------
+    x, y : array
+        Points of the curve, with nan after each line, shape (lines * (points + 1),).
+    """
+    x, y = np.broadcast_arrays(np.atleast_2d(x), np.atleast_2d(y))
+    ends = np.full((len(x), 1), np.nan)
+    return tuple(np.hstack([values, ends]).ravel()[:-1] for values in (x, y))  # type: ignore[return-value]
+
+
+def stems(at: AnyArray, heights: AnyArray) -> tuple[Array, Array]:
+    """Return lines from 0 up to heights as one curve.
+
+    Parameters
+    ----------
+    at, heights : array
+        Place and height of each line, shape (lines,), any unit.
+
+    Returns
+    -------
+    x, y : array
+        Points of the curve, shape (3 * lines - 1,).
+    """
+    at, heights = np.asarray(at, dtype=float), np.asarray(heights, dtype=float)
+    return apart(np.stack([at, at], axis=1), np.stack([0.0 * heights, heights], axis=1))
+
+
+def extent(mark: Mark, letter: Letter) -> Array:
+    """List the values of a mark on an axis, as far as they decide its ends.
+
+    Parameters
+    ----------
+    mark : Mark
+        The mark.
+    letter : str
+        `x` or `y`.
+
+    Returns
+    -------
+    array
+        Values in the unit of the axis, shape (n,).
+    """
+    values: Any
+    if isinstance(mark, Line):
+        values = [mark.at] if mark.of == letter else []
+    elif isinstance(mark, Span):
+        values = [mark.low, mark.high] if mark.of == letter else []
+    elif isinstance(mark, Band) and letter == "y":
+        values = [*mark.low, *mark.high]
+    elif isinstance(mark, Bars):
+        values = _extent_of_bars(mark, letter)
+    elif isinstance(mark, Faces):
+        values = mark.corners[..., "xy".index(letter)].ravel()
+    elif isinstance(mark, Text | Arrow | Solid | Surface):
+        values = []
+    else:
+        values = np.ravel(getattr(mark, letter))
+    values_found = np.asarray(values, dtype=float)
+    return np.asarray(values_found[np.isfinite(values_found)])
+
+
+def _extent_of_bars(bars: Bars, letter: Letter) -> list[float]:
+    if (letter == "y") == bars.flat:
+        half = 0.5 * bars.width
+        return [*(bars.positions - half), *(bars.positions + half)]
+    base = np.zeros_like(bars.lengths) if bars.base is None else bars.base
+    ends = [values for values in (bars.low, bars.high) if values is not None]
+    return [*base, *(base + bars.lengths), *np.ravel(ends)]
+
+
+def _limits(panels: Sequence[Panel], letter: Letter) -> tuple[float, float]:
+    axes = [getattr(panel, letter) for panel in panels]
+    values = np.concatenate(
+        [np.zeros(0), *(extent(mark, letter) for panel in panels for mark in panel.marks)]
+    )
+    logarithmic = axes[0].logarithmic
+    if logarithmic:
+        values = np.log10(values[values > 0.0])
+    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
+    margin = MARGIN * (high - low) or max(MARGIN * abs(high), MARGIN)
+    ends = (low - margin, high + margin)
+    limits_given = [
+        [getattr(axis, end) for axis in axes if getattr(axis, end) is not None] for end in ("low", "high")
+    ]
+    values_found = [10.0**end if logarithmic else end for end in ends]
+    first, last = (
+        choose(limits_known) if limits_known else end
+        for choose, limits_known, end in zip((min, max), limits_given, values_found, strict=True)
+    )
+    return (first, last) if first < last else (first, first + 1.0)

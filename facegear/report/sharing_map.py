@@ -1,0 +1,169 @@
+"""Chapter on the load-sharing map: curves, the machine's place, and advice with its gain."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from facegear.number_format import format_number
+from facegear.report.table import Table
+
+CLOSE = 1e-3
+"""Relative difference between statics and closed form that counts as agreement."""
+ALL_CARRY = 1.0 - 1e-9
+"""Fraction of samples in which every path carries, from which the closed form may hold."""
+POINTS = (
+    "The machine on the map at each of its torques. number: k_e sigma / W of idlers, 2 b k / W of inputs; W: "
+    "load of all meshes of the group; p50, p95, p99: percentiles over the drawn errors of the idlers. An "
+    "input has one value"
+)
+ADVICE = (
+    "Each change of the machine by itself, at its nominal torque. k_gamma: before; predicted: by the closed "
+    "form alone; found: by the statics of the changed machine; gain: what k_gamma falls by. Idlers are "
+    "judged by the 95th percentile over their drawn errors; worst, worst found: the largest of all groups "
+    "before and after"
+)
+CURVES = (
+    "Curves of the idlers. all carry: fraction of the drawn machines in which every path carries, where the "
+    "closed form may hold"
+)
+INPUTS = "Curves of the inputs, for each stiffness of their bearings; closed: the loop formula"
+BEST = 3
+"""Changes that are named for the machine as a whole."""
+MAIN_COLUMNS = ("group", "change", "from_to", "k_gamma", "predicted", "found", "gain")
+
+
+def sharing_map_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """List the tables of the chapter.
+
+    Parameters
+    ----------
+    tables : mapping of str to pd.DataFrame
+        Tables of the case by file name.
+
+    Returns
+    -------
+    list of Table
+        Empty without a map.
+    """
+    if "sharing_map_advice" not in tables:
+        return []
+    return [
+        Table(ADVICE, tables["sharing_map_advice"], 4, main=MAIN_COLUMNS),
+        Table(POINTS, tables["sharing_map_points"], 4),
+        *(
+            Table(caption, tables[name], 4, is_folded=True)
+            for caption, name in ((CURVES, "sharing_map_curves"), (INPUTS, "sharing_map_inputs"))
+            if len(tables[name])
+        ),
+    ]
+
+
+def sharing_map_text(tables: Mapping[str, pd.DataFrame]) -> str:
+    """Say what to change, and whether the closed form holds.
+
+    Parameters
+    ----------
+    tables : mapping of str to pd.DataFrame
+        Tables of the case by file name.
+
+    Returns
+    -------
+    str
+        Paragraphs; empty without a map.
+    """
+    if "sharing_map_advice" not in tables:
+        return ""
+    parts = [*advice_lines(tables["sharing_map_advice"])]
+    if sentence := closed_form_line(tables["sharing_map_curves"], tables["sharing_map_reasons"]):
+        parts.append(sentence)
+    return "\n\n".join(parts)
+
+
+def advice_lines(advice: pd.DataFrame) -> list[str]:
+    """Say what helps the machine as a whole, then for each group what gains and what costs most.
+
+    Parameters
+    ----------
+    advice : pd.DataFrame
+        Table `advice` of stage sharing_map.
+
+    Returns
+    -------
+    list of str
+        One line for the machine, then one a group.
+    """
+    lines = _whole_machine(advice)
+    for group, rows in advice.groupby("group", sort=False):
+        if (highest := rows["k_gamma"].iloc[0]) <= 1.0:
+            lines.append(f"{_capital(group)}: below the even share, K_gamma {highest:.3f}.")
+            continue
+        best, worst = rows.loc[rows["gain"].idxmax()], rows.loc[rows["gain"].idxmin()]
+        if best["gain"] <= 0.0:
+            lines.append(f"{_capital(group)}: no change that was tried lowers K_gamma.")
+            continue
+        line = f"{_capital(group)}: {_change(best)}{_prediction(best)}."
+        if worst["gain"] < 0.0:
+            line += f" Do not {worst['change']}: {_from_to(worst)}."
+        lines.append(line)
+    return lines
+
+
+def _whole_machine(advice: pd.DataFrame) -> list[str]:
+    """The changes that lower the largest K_gamma of all groups most, with it."""
+    if advice.empty:
+        return []
+    changes = advice.drop_duplicates("change").sort_values("worst_found", kind="stable")
+    helping = changes[changes["worst_found"] < changes["worst"]].head(BEST)
+    now = float(advice["worst"].iloc[0])
+    if helping.empty:
+        return [f"Largest K_gamma of all groups: {now:.3f}; no change that was tried lowers it."]
+    words = "; ".join(
+        f"{row['change']} ({row['from_to']}), {row['worst_found']:.3f}" for _, row in helping.iterrows()
+    )
+    return [f"Largest K_gamma of all groups: {now:.3f}. What lowers it most, each by itself: {words}."]
+
+
+def closed_form_line(curves: pd.DataFrame, reasons: pd.DataFrame) -> str:
+    """Say how far statics and the closed form of idlers agree, and why they do not.
+
+    Parameters
+    ----------
+    curves, reasons : pd.DataFrame
+        Tables of stage sharing_map.
+
+    Returns
+    -------
+    str
+        A sentence or two; empty without idlers.
+    """
+    if curves.empty:
+        return ""
+    valid = curves[curves["all_carry"] >= ALL_CARRY]
+    off = (valid["k_gamma_p95"] / valid["closed_p95"] - 1.0).abs()
+    by_curve = off.groupby(valid["floating"], sort=False).max()
+    differences = ", ".join(f"{name} {format_number(100.0 * part, 2)} %" for name, part in by_curve.items())
+    text = (
+        "Largest difference of P95 of the idlers from the closed form of equal paths, as long as every path "
+        f"carries, by which gear floats: {differences}."
+    )
+    if (off > CLOSE).any() and len(reasons):
+        text += f" The closed form is of equal paths between two gears; here {'; '.join(reasons['reason'])}."
+    return text
+
+
+def _change(row: pd.Series) -> str:
+    return f"{row['change']} ({row['from_to']}): {_from_to(row)}"
+
+
+def _from_to(row: pd.Series) -> str:
+    measure = "P95 of K_gamma" if row["kind"] == "idlers" else "K_gamma"
+    return f"{measure} from {row['k_gamma']:.3f} to {row['found']:.3f}"
+
+
+def _prediction(row: pd.Series) -> str:
+    return f" (closed form {row['predicted']:.3f})" if pd.notna(row["predicted"]) else ""
+
+
+def _capital(words: object) -> str:
+    text = str(words)
+    return text[:1].upper() + text[1:]
