@@ -1,4 +1,6 @@
 // Contact: what kernels are given is checked here once, so that they can trust shapes and indices.
+#include "bindings/parts.hpp"
+
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
@@ -8,7 +10,6 @@
 #include <mutex>
 #include <string>
 
-#include "bindings/parts.hpp"
 #include "contact/elimination.hpp"
 #include "contact/position.hpp"
 
