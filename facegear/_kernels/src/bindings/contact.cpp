@@ -238,7 +238,7 @@ struct BoundSolver {
         result["steps"] = owned(std::move(found.steps));
         result["candidates"] = found.candidates;
         result["forward"] = found.forward;
-        result["sought"] = found.sought;
+        result["strip_size"] = found.strip_size;
         result["overlap"] = found.overlap;
         result["pair"] = owned(std::move(found.pair));
         result["node"] = owned(std::move(found.node));
