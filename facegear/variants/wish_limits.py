@@ -101,8 +101,8 @@ def require_room(wishes: MachineWishes, design: PairDesign) -> None:
     count, largest_count = wishes.pinions + wishes.idlers, max(floor(2.0 * pi / pinion_angle), 1)
     if count > largest_count:
         key, value = ("pinions", wishes.pinions) if not wishes.idlers else ("pinions and idlers", count)
-        room = f"each of which takes {degrees(pinion_angle):.4g} deg"
-        raise ConfigError(key, value, f"at most {largest_count} round this gear, {room}")
+        pinion_text = f"each of which takes {degrees(pinion_angle):.4g} deg"
+        raise ConfigError(key, value, f"at most {largest_count} round this gear, {pinion_text}")
 
 
 def _limits(section: type[Section], key: str) -> tuple[float, float]:
