@@ -9,7 +9,7 @@ from facegear.variants.first_machine import first_machine
 from validation.starters import COUNT, SHARING, draw_machines, run_all
 
 LIGHTEST = (18, 4, 16)
-"""Numbers of a single pair, a gear with five pinions and a split-torque machine: some 30 s of the processor each."""
+"""A single pair, a gear with five pinions and a split-torque machine: some 30 s of the processor each."""
 
 
 def test_the_same_machines_are_drawn_each_time_and_split_torque_is_among_them():
