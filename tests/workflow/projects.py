@@ -11,15 +11,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from facegear.machine_code import kept
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import fingerprint, recall, remember, stage_fingerprint
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "facegear", "paper", "validation", "config")
 SCRIPTS = sorted(path for name in FOLDERS for path in (ROOT / name / "scripts").glob("*.py"))
-SOURCES = kept.folder().with_name("sources.json")
-"""In Snakemake's folder: what counts of each source file."""
+SOURCES = ROOT / ".snakemake" / "sources.json"
+"""In the folder of the sources: what counts of each source file."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +138,7 @@ def environment() -> dict[str, str]:
 
 
 def copy_sources(target: Path) -> Path:
-    """A copy of the tracked and new source files, with their times."""
+    """A copy of the tracked and new source files, with their times, and of the compiled kernels."""
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard", "Snakefile", *FOLDERS],
         cwd=ROOT,
@@ -147,6 +146,8 @@ def copy_sources(target: Path) -> Path:
         text=True,
         check=True,
     ).stdout.splitlines()
+    kernels = (ROOT / "facegear" / "_kernels").iterdir()
+    listed += [str(file.relative_to(ROOT)) for file in kernels if file.suffix in (".so", ".pyd")]
     for name in listed:
         if (ROOT / name).is_file():
             (target / name).parent.mkdir(parents=True, exist_ok=True)
