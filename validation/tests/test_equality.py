@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import facegear
-from validation.ratios.equality import CASES, CONVERGED, LIMITS, NOT_SETTLED, Case, answer, compare, main
+from validation.ratios.equality import CASES, LIMITS, NOT_SETTLED, STEP_TOLERANCE, Case, answer, compare, main
 from validation.ratios.run import read_answers
 from validation.ratios.trees import present
 
@@ -127,7 +127,7 @@ def test_every_case_is_a_machine_with_limits_for_what_is_asked():
         if case.is_motion:
             dynamics = values["dynamics"]
             found = [part["accuracy"]["tolerance"] for part in (dynamics, dynamics["sweep"])]
-            assert found == [CONVERGED, CONVERGED]
+            assert found == [STEP_TOLERANCE, STEP_TOLERANCE]
 
 
 def test_unknown_cases_are_refused_before_any_work(capsys):
