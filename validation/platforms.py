@@ -1,8 +1,8 @@
 """Measure what moves between processors and threads: `python -m validation.platforms [PLATFORM ...]`.
 
 Processes of their own run the same tests natively and with lowered levels of instructions in NumPy, OpenBLAS
-and numba, on one and two threads. A level can only be lower than that of the machine. Every number of the
-reference tests is set beside that of the first run. Tests of notebooks, stored answers, dynamics, load
+and the kernels, on one and two threads. A level can only be lower than that of the machine. Every number of
+the reference tests is set beside that of the first run. Tests of notebooks, stored answers, dynamics, load
 sharing and contact must pass on each.
 """
 
@@ -19,29 +19,21 @@ from xml.etree import ElementTree
 import numpy as np
 import pandas as pd
 
-from facegear.machine_code import shipped
 from validation.references import ROOT, declarations
 
 MEASURED = ROOT / "docs" / "measured" / "platforms.csv"
 STORED = ROOT / "results" / "platforms"
 """Numbers and messages of each platform, written as soon as its process has ended."""
 OUTCOMES = ROOT / "docs" / "measured" / "platform_tests.csv"
-SSE_INSTRUCTIONS = (
-    *("cmov", "cx16", "cx8", "fxsr", "mmx", "popcnt", "sahf"),
-    *("sse", "sse2", "sse3", "sse4.1", "sse4.2", "ssse3"),
-)
 AVX2 = {
     "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
     "OPENBLAS_CORETYPE": "Haswell",
-    "NUMBA_CPU_NAME": shipped.CPU,
-    "NUMBA_CPU_FEATURES": shipped.FEATURES,
 }
 """Level x86-64-v3 without AVX-512."""
 SSE = {
     "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR",
     "OPENBLAS_CORETYPE": "Nehalem",
-    "NUMBA_CPU_NAME": "nehalem",
-    "NUMBA_CPU_FEATURES": ",".join(f"+{instruction}" for instruction in SSE_INSTRUCTIONS),
+    "FACEGEAR_INSTRUCTIONS": "baseline",
 }
 """Level x86-64-v2 without AVX and fused multiplication. NumPy 2.4 names its kernels by these levels."""
 
@@ -93,7 +85,7 @@ TESTS = (
     "tests/workflow/test_stored_answers.py",
 )
 """Tests whose labels, notebooks and stored answers a processor might decide."""
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 COLUMNS = ("platform", "end", "capability", "numbers", "largest_relative", "largest_of_tolerance")
 OUTCOME_COLUMNS = ("platform", "passed", "failed", "failed_tests")
 Numbers = dict[str, list[tuple[str, list[float], list[float], list[float]]]]

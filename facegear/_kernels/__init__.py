@@ -5,17 +5,20 @@ build writes its types beside this file (`arithmetic.pyi`).
 """
 
 import hashlib
+import os
 import sys
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+VARIABLE = "FACEGEAR_INSTRUCTIONS"
+"""Environment variable that chooses the module for every processor where it is `baseline`."""
 _SOURCES = Path(__file__).with_name("src")
 _REMEDY = "rebuild them by `make kernels`, or by `pip install -e .` where pip installed this folder"
 
 try:
     _module = import_module(f"{__name__}._baseline")
-    if _module.has_x86_64_v3():
+    if os.environ.get(VARIABLE) != "baseline" and _module.has_x86_64_v3():
         _module = import_module(f"{__name__}._x86_64_v3")
 except ImportError as error:
     raise ImportError(f"the compiled kernels of facegear cannot be loaded ({error}): {_REMEDY}") from error

@@ -128,11 +128,6 @@ def machine(case: Case) -> bool:
     return case.values["transmission"] is not None
 
 
-def side_by_side(case: Case) -> bool:
-    """Whether section transmission is given, with a linear law of mesh forces and no friction in motion."""
-    return machine(case) and not load_dependent(case) and not friction_in_motion(case)
-
-
 def elastic_gears(case: Case) -> bool:
     """Whether the body of a face gear bends."""
     from facegear.config.elastic_bodies import any_elastic

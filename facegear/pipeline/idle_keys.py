@@ -9,8 +9,6 @@ from facegear.pipeline.table import STAGES
 
 ALWAYS_READ = ("case", "extends", "studies", "reproduction", "transmission.backlash_um")
 """Keys that are read before any stage runs, or that complete a section."""
-ONLY_DECIDES = ("machine_code",)
-"""Stages whose needs decide what is made ready, and no number."""
 HARMONICS_GIVEN = ("torque_n_m", "definition")
 """Keys of mesh_stiffness that belong to a computed stiffness."""
 
@@ -52,8 +50,6 @@ def _keys_read(case: Case) -> Iterator[str]:
     """Dotted keys that the stages of a plain run, those before them and their figures take."""
     run = [name for name, stage in STAGES.items() if stage.asked is not None and stage.asked(case)]
     for name in dict.fromkeys(before for stage in run for before in stages_before(stage, case.values)):
-        if name in ONLY_DECIDES:
-            continue
         for need in STAGES[name].needs.values():
             yield from _keys(need)
 

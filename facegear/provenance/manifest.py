@@ -13,7 +13,7 @@ from typing import Any
 from facegear.io import documents
 from facegear.io.checksums import sha256
 
-LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "numba", "pandas", "snakemake")
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pandas", "snakemake")
 
 
 def write_manifest(

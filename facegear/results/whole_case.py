@@ -31,7 +31,7 @@ NOT_COMPUTED = "not computed"
 """Beginning of the summary of a stage that failed."""
 PICTURE_ENDINGS = (".eps", ".jpg", ".pdf", ".png", ".svg", ".tif", ".webp")
 """Endings of the formats in which figures are written."""
-NOT_REPORTED = ("mesh", "mesh_law", "machine_code")
+NOT_REPORTED = ("mesh", "mesh_law")
 """Stages whose files only other programs and stages read."""
 
 

@@ -17,7 +17,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import NoReturn
 
-IMPORTED = ("numba", "pandas", "scipy.sparse.linalg", "scipy.optimize", "xarray", "pydantic", "ruamel.yaml")
+IMPORTED = ("pandas", "scipy.sparse.linalg", "scipy.optimize", "xarray", "pydantic", "ruamel.yaml")
 
 
 def run_together(
@@ -48,7 +48,6 @@ def _server() -> subprocess.Popen[str]:
 def _serve() -> None:
     for module in IMPORTED:
         import_module(module)
-    import_module("numba").njit(lambda x: x)(1.0)  # the first function loads what all need
     for request in sys.stdin:
         programs, files, environment = json.loads(request)
         children = []

@@ -25,7 +25,7 @@ from facegear.results.base import Result
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
 ROOT = Path(__file__).parents[2]
-HEAVY = "{'matplotlib', 'numba', 'skfem', 'gmsh', 'meshio', 'snakemake', 'paper', 'validation'}"
+HEAVY = "{'matplotlib', 'skfem', 'gmsh', 'meshio', 'snakemake', 'paper', 'validation'}"
 
 
 @pytest.fixture(scope="module")

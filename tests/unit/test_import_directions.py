@@ -10,7 +10,7 @@ import pytest
 pytestmark = pytest.mark.xdist_group("import_directions")  # a module is parsed once a process
 PACKAGE = Path(__file__).parents[2] / "facegear"
 FOUNDATION = {
-    *("arrays", "blas_threads", "by_content", "errors", "progress", "io", "machine_code", "number_format"),
+    *("arrays", "blas_threads", "by_content", "errors", "progress", "io", "number_format"),
     *("_kernels", "ties"),
 }
 MAY_IMPORT = {
@@ -21,7 +21,6 @@ MAY_IMPORT = {
     "number_format": set(),
     "progress": set(),
     "ties": set(),
-    "machine_code": set(),
     "io": {"errors"},
     "provenance": {"errors", "io"},
     "geometry": {"errors"},

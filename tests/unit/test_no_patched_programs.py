@@ -8,13 +8,6 @@ from foreign import OURS, complaints, own_names
 
 ROOT = Path(__file__).parents[2]
 EXCEPTED = {
-    **dict.fromkeys(
-        [
-            f"facegear/machine_code/{name}.py"
-            for name in ("addresses", "passes", "pipelines", "remembered", "rooms", "stored")
-        ],
-        "numba, until compiled kernels replace it",
-    ),
     "validation/contact/kratos_run.py": "Kratos has users override these methods of its analyses",
 }
 """Files that may do so, and why. This list may only shrink."""
@@ -56,7 +49,7 @@ def test_no_rule_uses_a_private_name():
         "import os\nos._exit(1)",
         "import threading\nthreading._shutdown()",
         "from os import _exit",
-        "import numba.core._helperlib",
+        "import scipy.sparse._index",
         "import importlib\nwriter = importlib.import_module('snakemake').Base\nwriter._write()",
         "import importlib\nwriter = importlib.import_module('snakemake').Base\nwriter.write = print",
         "from snakemake.script import PythonScript\nPythonScript.execute_script = print",

@@ -11,15 +11,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from facegear.machine_code import kept
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import fingerprint, recall, remember, stage_fingerprint
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "facegear", "paper", "validation", "config")
 SCRIPTS = sorted(path for name in FOLDERS for path in (ROOT / name / "scripts").glob("*.py"))
-SOURCES = kept.folder().with_name("sources.json")
-"""In Snakemake's folder: what counts of each source file."""
+SOURCES = ROOT / ".snakemake" / "sources.json"
+"""In the folder of the sources: what counts of each source file."""
 
 
 @dataclass(frozen=True)

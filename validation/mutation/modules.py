@@ -16,18 +16,16 @@ SURVIVED, KILLED, ENDLESS = "survived", "killed", "endless"
 
 @dataclass(frozen=True)
 class Module:
-    """Files of facegear, the tests that are their own, and whether they run without compiling."""
+    """Files of facegear, and the tests that are their own."""
 
     files: tuple[str, ...]
     tests: tuple[str, ...]
-    interpreted: bool = False
 
 
 def _tests(folder: str, *names: str) -> tuple[str, ...]:
     return tuple(f"{TESTS}{folder}/test_{name}.py" for name in names)
 
 
-ROOTS = f"{TESTS}dynamics/test_dynamics_convergence.py::test_"
 MODULES = {
     "contact solver": Module(("facegear/contact/solver.py",), _tests("contact", "contact_solver")),
     "mesh law": Module(
@@ -38,19 +36,9 @@ MODULES = {
         ),
         _tests("mesh_law", "linear_law", "load_dependent_law"),
     ),
-    "roots": Module(
-        ("facegear/dynamics/integrator/roots.py",),
-        (
-            f"{ROOTS}first_root_is_the_first_sign_change",
-            f"{ROOTS}a_zero_where_an_interval_is_halved_is_found_whatever_sign_rounding_gives_it_on_each_side",
-            f"{ROOTS}a_root_is_found_after_many_places_where_the_polynomial_nearly_touches_zero",
-        ),
-        interpreted=True,
-    ),
     "statics": Module(
-        ("facegear/transmission/statics.py", "facegear/transmission/contact_kernel.py"),
+        ("facegear/transmission/statics.py",),
         _tests("transmission", "statics", "statics_by_energy", "geometric_statics"),
-        interpreted=True,
     ),
     "geometry": Module(
         (

@@ -148,7 +148,6 @@ def tried(
         **os.environ,
         "PYTHONDONTWRITEBYTECODE": "1",
         "PYTHONPATH": str(tree),
-        "NUMBA_DISABLE_JIT": str(int(module.interpreted)),
         "OMP_NUM_THREADS": "1",
     }
     command = [str(python), str(tree / "validation/mutation/worker.py"), "job.json"]

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 from hypothesis import Phase, settings
 
-LIBRARIES = ("numpy", "scipy.linalg", "scipy.optimize", "scipy.sparse.linalg", "pandas", "numba", "pydantic")
+LIBRARIES = ("numpy", "scipy.linalg", "scipy.optimize", "scipy.sparse.linalg", "pandas", "pydantic")
 FAILED = (pytest.ExitCode.TESTS_FAILED, pytest.ExitCode.INTERRUPTED)
 LONGER, START = 3.0, 6.0
 """Tests may take this many times the processor time that they take without a mutant, and so many s more."""

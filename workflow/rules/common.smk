@@ -17,7 +17,6 @@ from facegear.config.cases import expand_cases
 from facegear.config.load import extended, load_config
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
-from facegear.machine_code import kept
 from facegear.pipeline.needs import require_section, resolved_needs, shared_sources, value_at
 from facegear.pipeline.rows.shared import MACHINE
 from facegear.pipeline.stage import FIGURES, Case, From
@@ -42,7 +41,7 @@ CASE = CONFIG.case
 config["rebuild_command"] = rebuild_command(
     workflow.main_snakefile, workflow.configfiles, GIVEN, workflow.overwrite_workdir
 )
-SOURCES = kept.folder().with_name("sources.json")
+SOURCES = ROOT / ".snakemake" / "sources.json"
 recall(SOURCES)
 
 

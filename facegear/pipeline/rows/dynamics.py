@@ -15,18 +15,6 @@ from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Stage
 
 ROWS = (
     Stage(
-        name="machine_code",
-        title="Machine code of the time integration",
-        needs={
-            "mesh_law": "mesh_stiffness.mesh_law",
-            "motion": Computed(asked.machine, ("transmission",)),
-            "side_by_side": Computed(asked.side_by_side, ("transmission", "mesh_stiffness", "lubrication")),
-        },
-        folder="machine_code",
-        asked=asked.machine,
-        priority=95,
-    ),
-    Stage(
         name="dynamics_response",
         title="Response at the nominal speed",
         needs={**MACHINE, **ACCURACY, **SPEED},

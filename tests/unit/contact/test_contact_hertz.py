@@ -66,7 +66,7 @@ def test_line_contact_converges_to_hertz():
 @against(
     "analytic",
     "Hertz: rigid sphere on a half space",
-    capability="contact machine_code",
+    capability="contact",
     module="facegear.contact.solver",
 )
 def test_point_contact_meets_hertz_within_a_percent():

@@ -1,7 +1,5 @@
 """Modes of geometric meshes, beside those of equation (13) as printed."""
 
-import subprocess
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
@@ -74,17 +72,6 @@ def test_active_sets_find_the_flank_forces_of_the_compiled_statics(seed, torque,
     event("settled" if forces is not None else "left to the compiled statics")
     if forces is not None:
         agrees("flank force, N", forces, exact, relative=1e-7, absolute=1e-9 * exact.max())
-
-
-def test_modes_of_geometric_meshes_need_no_compiled_code():
-    code = (
-        "import sys, facegear; constant = {'modal': {'stiffness': 'average'}, 'mesh_stiffness': {'mesh_law': "
-        "'constant_load'}}; example = {'extends': 'facegear/example.yaml', **constant};"
-        "found = facegear.load(example, None).modes();"
-        "print(found.values['transmission']['mesh_kinematics'], 'numba' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["geometric", "False"]
 
 
 def test_pinions_float_in_one_direction_less_and_the_rigid_modes_stay():

@@ -1,8 +1,9 @@
 // Rays from the pinion cut with the face gear's tooth.
+#include "bindings/parts.hpp"
+
 #include "flanks/placed.hpp"
 #include "flanks/rays.hpp"
 
-#include "bindings/parts.hpp"
 #include "bindings/records.hpp"
 
 namespace facegear {
@@ -51,12 +52,8 @@ Index bound_cut_rays(nb::handle blank, nb::handle sample, Given<double, 2> start
     require(sampled == 0 ? radii.size() == 0 : radii.size() > 0 && sampled % extent(radii, 0) == 0,
             "a sample must have as many points at each of its radii");
     const Blank numbers = blank_of(Record(blank));
-    const FlankSample points_of_flank{table_of(points),
-                                      table_of(normals),
-                                      list_of(rolls),
-                                      list_of(psis),
-                                      list_of(inner),
-                                      of_sample.number("spacing"),
+    const FlankSample points_of_flank{table_of(points), table_of(normals), list_of(rolls),
+                                      list_of(psis),    list_of(inner),    of_sample.number("spacing"),
                                       list_of(radii)};
     const Table<double> rows = table_of(found);
     const Hits hits{rows.row(0), rows.row(1), rows.row(2), rows.row(3), rows.row(4), part.data()};
@@ -64,11 +61,13 @@ Index bound_cut_rays(nb::handle blank, nb::handle sample, Given<double, 2> start
     return cut_rays(numbers, points_of_flank, {table_of(starts), table_of(ways), search_radius}, hits);
 }
 
-void bound_place(Given<double, 3> matrix, Given<double, 2> shift, Given<Index, 1> motion, Given<Index, 1> point,
-                 Given<double, 2> points, Given<double, 2> normals, Written<double, 2> starts, Written<double, 2> ways) {
+void bound_place(Given<double, 3> matrix, Given<double, 2> shift, Given<Index, 1> motion,
+                 Given<Index, 1> point, Given<double, 2> points, Given<double, 2> normals,
+                 Written<double, 2> starts, Written<double, 2> ways) {
     const Index motions = extent(shift, 0), count = extent(motion, 0);
-    require(extent(matrix, 0) == motions && matrix.shape(1) == 3 && matrix.shape(2) == 3 && shift.shape(1) == 3,
-            "motions must have the shapes (p, 3, 3) and (p, 3)");
+    require(
+        extent(matrix, 0) == motions && matrix.shape(1) == 3 && matrix.shape(2) == 3 && shift.shape(1) == 3,
+        "motions must have the shapes (p, 3, 3) and (p, 3)");
     require(points.shape(1) == 3 && normals.shape(1) == 3 && points.shape(0) == normals.shape(0),
             "points and normals must have one shape (m, 3)");
     require(extent(point, 0) == count && extent(starts, 0) == count && extent(ways, 0) == count &&
@@ -77,17 +76,19 @@ void bound_place(Given<double, 3> matrix, Given<double, 2> shift, Given<Index, 1
     require_within(list_of(motion), 0, motions - 1, "motions must be chosen among the given ones");
     require_within(list_of(point), 0, extent(points, 0) - 1, "points must be chosen among the given ones");
     nb::gil_scoped_release released;
-    place({matrix.data(), table_of(shift)}, {list_of(motion), list_of(point)}, table_of(points), table_of(normals),
-          table_of(starts), table_of(ways));
+    place({matrix.data(), table_of(shift)}, {list_of(motion), list_of(point)}, table_of(points),
+          table_of(normals), table_of(starts), table_of(ways));
 }
 
 } // namespace
 
 void bind_flanks(nb::module_ module) {
-    module.def("cut_rays", &bound_cut_rays, nb::arg("blank"), nb::arg("sample"), nb::arg("starts"), nb::arg("ways"),
-               nb::arg("search_radius"), nb::arg("found").noconvert(), nb::arg("part").noconvert());
-    module.def("place", &bound_place, nb::arg("matrix"), nb::arg("shift"), nb::arg("motion"), nb::arg("point"),
-               nb::arg("points"), nb::arg("normals"), nb::arg("starts").noconvert(), nb::arg("ways").noconvert());
+    module.def("cut_rays", &bound_cut_rays, nb::arg("blank"), nb::arg("sample"), nb::arg("starts"),
+               nb::arg("ways"), nb::arg("search_radius"), nb::arg("found").noconvert(),
+               nb::arg("part").noconvert());
+    module.def("place", &bound_place, nb::arg("matrix"), nb::arg("shift"), nb::arg("motion"),
+               nb::arg("point"), nb::arg("points"), nb::arg("normals"), nb::arg("starts").noconvert(),
+               nb::arg("ways").noconvert());
 }
 
 } // namespace facegear

@@ -47,7 +47,7 @@ inline void require_within(List<const Index> values, Index low, Index high, cons
 
 // Fields of a NamedTuple, or of any object that has them.
 class Record {
-public:
+  public:
     explicit Record(nb::handle object) : object(object) {}
 
     double number(const char* field) const { return get<double>(field, "a number"); }
@@ -62,7 +62,7 @@ public:
         return get<Written<Value, Dimensions>>(field, "an array that can be written in place", false);
     }
 
-private:
+  private:
     nb::handle object;
 
     template <class Type>

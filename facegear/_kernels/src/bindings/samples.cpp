@@ -1,9 +1,10 @@
 // Passes over the samples of a motion.
+#include "bindings/parts.hpp"
+
 #include <utility>
 
 #include <nanobind/stl/pair.h>
 
-#include "bindings/parts.hpp"
 #include "bindings/records.hpp"
 #include "samples/contact_loads.hpp"
 #include "samples/piecewise_cubics.hpp"
@@ -16,9 +17,11 @@ using namespace bindings;
 using namespace samples;
 
 void bound_ring_forces(Given<double, 3> displacement, Given<double, 3> speed, Given<double, 1> stiffness,
-                       Given<double, 1> clearance, double lag, Given<Index, 1> body, Written<double, 3> forces) {
+                       Given<double, 1> clearance, double lag, Given<Index, 1> body,
+                       Written<double, 3> forces) {
     const Index rings = extent(body, 0), count = extent(forces, 2);
-    require(extent(stiffness, 0) == rings && extent(clearance, 0) == rings, "stiffness and clearance must be (R,)");
+    require(extent(stiffness, 0) == rings && extent(clearance, 0) == rings,
+            "stiffness and clearance must be (R,)");
     for (const auto& each : {displacement, speed}) {
         require(extent(each, 0) == rings && each.shape(1) == 2 && extent(each, 2) == count,
                 "displacement and speed must be (R, 2, K)");
@@ -26,13 +29,14 @@ void bound_ring_forces(Given<double, 3> displacement, Given<double, 3> speed, Gi
     require(forces.shape(1) == 3, "forces must be (bodies, 3, K)");
     require_within(list_of(body), 0, extent(forces, 0) - 1, "every ring must belong to one of the bodies");
     nb::gil_scoped_release released;
-    write_ring_forces({list_of(stiffness), list_of(clearance), list_of(body), lag}, displacement.data(), speed.data(),
-                      count, forces.data());
+    write_ring_forces({list_of(stiffness), list_of(clearance), list_of(body), lag}, displacement.data(),
+                      speed.data(), count, forces.data());
 }
 
 void bound_press_in(Written<double, 3> deflections, Given<double, 2> errors, Given<double, 1> lower,
                     Given<double, 1> upper) {
-    const Deflections all{deflections.data(), extent(deflections, 0), extent(deflections, 1), extent(deflections, 2)};
+    const Deflections all{deflections.data(), extent(deflections, 0), extent(deflections, 1),
+                          extent(deflections, 2)};
     require(extent(errors, 0) == all.samples && extent(errors, 1) == all.contacts, "errors must be (K, M)");
     require(extent(lower, 0) == all.contacts && extent(upper, 0) == all.contacts, "both edges must be (M,)");
     nb::gil_scoped_release released;
@@ -59,8 +63,8 @@ void bound_evaluate(Given<double, 2> levels, Given<Index, 1> kind, Given<double,
         require(values.shape(axis) == amounts.shape(axis), "values must have the shape of the amounts");
     }
     nb::gil_scoped_release released;
-    evaluate({table_of(levels), coefficients.data(), phases}, list_of(kind), extent(amounts, 1), slopes, amounts.data(),
-             values.data());
+    evaluate({table_of(levels), coefficients.data(), phases}, list_of(kind), extent(amounts, 1), slopes,
+             amounts.data(), values.data());
 }
 
 std::pair<Index, Index> bound_tally(Given<double, 2> forces, Index per_cycle, Given<Index, 1> starts,
@@ -74,12 +78,14 @@ std::pair<Index, Index> bound_tally(Given<double, 2> forces, Index per_cycle, Gi
     require(per_cycle > 0 && count > 0 && count % per_cycle == 0, "samples must make whole mesh cycles");
     require(extent(mean, 0) == flanks && extent(largest, 0) == flanks && extent(largest_mean, 0) == meshes,
             "what is counted must have the shapes (F,) and (M,)");
-    require(extent(starts, 0) == extent(coefficients, 0) + 1, "every group must have a start, and the last an end");
+    require(extent(starts, 0) == extent(coefficients, 0) + 1,
+            "every group must have a start, and the last an end");
     require_within(list_of(starts), 0, extent(members, 0), "groups must begin among the members");
     require_within(list_of(members), 0, meshes - 1, "members must be meshes");
     nb::gil_scoped_release released;
-    const Samples samples = tally(FlankForces(table_of(forces)), per_cycle, {list_of(starts), list_of(members)},
-                                  {list_of(mean), list_of(largest), list_of(largest_mean), list_of(coefficients)});
+    const Samples samples =
+        tally(FlankForces(table_of(forces)), per_cycle, {list_of(starts), list_of(members)},
+              {list_of(mean), list_of(largest), list_of(largest_mean), list_of(coefficients)});
     return {samples.open, samples.reversed};
 }
 
@@ -89,14 +95,14 @@ void bind_samples(nb::module_ module) {
     module.def("write_ring_forces", &bound_ring_forces, nb::arg("displacement"), nb::arg("speed"),
                nb::arg("stiffness"), nb::arg("clearance"), nb::arg("lag"), nb::arg("body"),
                nb::arg("forces").noconvert());
-    module.def("press_in", &bound_press_in, nb::arg("deflections").noconvert(), nb::arg("errors"), nb::arg("lower"),
-               nb::arg("upper"));
+    module.def("press_in", &bound_press_in, nb::arg("deflections").noconvert(), nb::arg("errors"),
+               nb::arg("lower"), nb::arg("upper"));
     module.def("split_loads", &bound_split_loads, nb::arg("forces"), nb::arg("rounding"),
                nb::arg("loads").noconvert());
     module.def("evaluate", &bound_evaluate, nb::arg("levels"), nb::arg("kind"), nb::arg("coefficients"),
                nb::arg("amounts"), nb::arg("slopes"), nb::arg("values").noconvert());
-    module.def("tally", &bound_tally, nb::arg("forces"), nb::arg("per_cycle"), nb::arg("starts"), nb::arg("members"),
-               nb::arg("counted"));
+    module.def("tally", &bound_tally, nb::arg("forces"), nb::arg("per_cycle"), nb::arg("starts"),
+               nb::arg("members"), nb::arg("counted"));
 }
 
 } // namespace facegear

@@ -1,7 +1,8 @@
 // Root stress superposed from readings.
+#include "bindings/parts.hpp"
+
 #include "strength/superposed.hpp"
 
-#include "bindings/parts.hpp"
 #include "bindings/records.hpp"
 
 namespace facegear {
@@ -10,8 +11,9 @@ namespace {
 using namespace bindings;
 using namespace strength;
 
-void bound_superpose(Given<Index, 1> starts, Given<Index, 1> nodes, Given<double, 1> force, Given<Index, 1> teeth,
-                     Given<double, 5> readings, Given<Index, 2> places, Written<double, 2> stress) {
+void bound_superpose(Given<Index, 1> starts, Given<Index, 1> nodes, Given<double, 1> force,
+                     Given<Index, 1> teeth, Given<double, 5> readings, Given<Index, 2> places,
+                     Written<double, 2> stress) {
     const Index rows = extent(starts, 0) - 1, loaded = extent(teeth, 0), count = extent(places, 0);
     const Readings read{readings.data(), extent(readings, 0) / 2, extent(readings, 2), extent(readings, 3),
                         extent(readings, 4)};
@@ -20,8 +22,10 @@ void bound_superpose(Given<Index, 1> starts, Given<Index, 1> nodes, Given<double
     require(readings.shape(0) % 2 == 1 && readings.shape(1) == 2, "readings must be (2 d + 1, 2, a, b, c)");
     require(places.shape(1) == 3, "places must be (n, 3)");
     require(extent(stress, 0) == count && extent(stress, 1) == read.gauges, "stress must be (n, a)");
-    require(starts(0) == 0 && starts(static_cast<std::size_t>(rows)) == extent(nodes, 0), "rows must hold all forces");
-    for (Index row = 0; row < rows; ++row) require(starts(row) <= starts(row + 1), "rows must follow each other");
+    require(starts(0) == 0 && starts(static_cast<std::size_t>(rows)) == extent(nodes, 0),
+            "rows must hold all forces");
+    for (Index row = 0; row < rows; ++row)
+        require(starts(row) <= starts(row + 1), "rows must follow each other");
     require_within(list_of(nodes), 0, read.nodes - 1, "nodes must be those of the readings");
     const Table<const Index> given = table_of(places);
     const Index positions = rows / loaded;
@@ -39,8 +43,8 @@ void bound_superpose(Given<Index, 1> starts, Given<Index, 1> nodes, Given<double
 } // namespace
 
 void bind_strength(nb::module_ module) {
-    module.def("superpose", &bound_superpose, nb::arg("starts"), nb::arg("nodes"), nb::arg("force"), nb::arg("teeth"),
-               nb::arg("readings"), nb::arg("places"), nb::arg("stress").noconvert());
+    module.def("superpose", &bound_superpose, nb::arg("starts"), nb::arg("nodes"), nb::arg("force"),
+               nb::arg("teeth"), nb::arg("readings"), nb::arg("places"), nb::arg("stress").noconvert());
 }
 
 } // namespace facegear

@@ -1,4 +1,5 @@
-// The face gear that rays are cut with: the right side of tooth 0 in the gear's body frame (docs/geometry.md).
+// The face gear that rays are cut with: the right side of tooth 0 in the gear's body frame
+// (docs/geometry.md).
 #pragma once
 
 #include "tables.hpp"
@@ -14,15 +15,15 @@ struct Blank {
     double tip_centre;   // distance of the centre of the shaper's tip rounding from its axis
     double tip_rounding; // radius of that rounding
     double tip_roll;     // roll at which the flank ends at the fillet
-    double edge_start;   // where the rounding's centre stands from the vertical when the shaper has not turned
-    double inner;        // inner radius
-    double outer;        // outer radius
-    double tip_plane;    // height of the tip land
-    double root_plane;   // height of the root land
-    double root_start;   // angle from the tooth's centre at which the root land begins
-    double pitch;        // angle of a pitch
-    double aside;        // largest distance of points from the tooth's middle plane
-    double fillet_top;   // height that no point of the fillet exceeds
+    double edge_start; // where the rounding's centre stands from the vertical when the shaper has not turned
+    double inner;      // inner radius
+    double outer;      // outer radius
+    double tip_plane;  // height of the tip land
+    double root_plane; // height of the root land
+    double root_start; // angle from the tooth's centre at which the root land begins
+    double pitch;      // angle of a pitch
+    double aside;      // largest distance of points from the tooth's middle plane
+    double fillet_top; // height that no point of the fillet exceeds
     double fillet_start; // slope psi that no normal of the fillet falls below
 };
 

@@ -11,7 +11,8 @@
 
 namespace facegear::flanks {
 
-// Newton's method for psi at a gear radius: most steps, the largest of them, and one whose square is below rounding.
+// Newton's method for psi at a gear radius: most steps, the largest of them, and one whose square is below
+// rounding.
 constexpr int PSI_STEPS = 60;
 constexpr double LARGEST_PSI_STEP = 0.1;
 constexpr double CLOSE = 1e-8;
@@ -27,13 +28,16 @@ template <class Number>
 inline Frame<Number> flank_frame(const Blank& blank, Number roll, Turn<Number> turn, Turn<Number> psi) {
     const Number base = alike<Number>(blank.base), ratio = alike<Number>(blank.ratio);
     const Number secant = alike<Number>(1.0) / psi.cosine;
-    const Number p = base * (psi.sine - roll * psi.cosine), q = alike<Number>(blank.base / blank.ratio) * secant;
+    const Number p = base * (psi.sine - roll * psi.cosine),
+                 q = alike<Number>(blank.base / blank.ratio) * secant;
     const Number p_psi = base * (psi.cosine + roll * psi.sine), q_psi = q * psi.sine * secant;
     const Number x = p * turn.cosine - q * turn.sine, y = p * turn.sine + q * turn.cosine;
     return {
         {x, y, alike<Number>(blank.lift) - p_psi},
-        {ratio * y - base * turn.cosine * psi.cosine, -(ratio * x) - base * turn.sine * psi.cosine, -(base * psi.sine)},
-        {p_psi * turn.cosine - q_psi * turn.sine - ratio * y, p_psi * turn.sine + q_psi * turn.cosine + ratio * x, p},
+        {ratio * y - base * turn.cosine * psi.cosine, -(ratio * x) - base * turn.sine * psi.cosine,
+         -(base * psi.sine)},
+        {p_psi * turn.cosine - q_psi * turn.sine - ratio * y,
+         p_psi * turn.sine + q_psi * turn.cosine + ratio * x, p},
     };
 }
 
@@ -50,8 +54,8 @@ inline double fillet_height(const Blank& blank, double psi, double q) {
     return blank.lift - blank.tip_centre * (k * cosine * cosine + sine * w) - blank.tip_rounding * sine;
 }
 
-// The fillet; parameters are psi and q. Not a number where no normal of slope psi through the rounding's centre
-// meets the instant axis at q.
+// The fillet; parameters are psi and q. Not a number where no normal of slope psi through the rounding's
+// centre meets the instant axis at q.
 inline Frame<double> fillet_frame(const Blank& blank, double psi, double q) {
     const double centre = blank.tip_centre, rounding = blank.tip_rounding, ratio = blank.ratio;
     const auto [cosine, sine] = turn_by(psi);
@@ -68,7 +72,8 @@ inline Frame<double> fillet_frame(const Blank& blank, double psi, double q) {
     return {
         {x, y, z},
         {p_psi * turn.cosine - ratio * chi_psi * y, p_psi * turn.sine + ratio * chi_psi * x, z_psi},
-        {p_q * turn.cosine - turn.sine - ratio * chi_q * y, p_q * turn.sine + turn.cosine + ratio * chi_q * x, z_q},
+        {p_q * turn.cosine - turn.sine - ratio * chi_q * y, p_q * turn.sine + turn.cosine + ratio * chi_q * x,
+         z_q},
     };
 }
 
@@ -77,8 +82,8 @@ struct Residual {
     double value, slope;
 };
 
-// psi where a residual is zero, from where the contact path's pressure angle belongs to the gear radius; not a number
-// where it is not found.
+// psi where a residual is zero, from where the contact path's pressure angle belongs to the gear radius; not
+// a number where it is not found.
 template <class Function>
 inline double psi_of_zero(const Blank& blank, double radius, Function residual) {
     double psi = std::acos(blank.base / (blank.ratio * radius));

@@ -11,8 +11,8 @@ namespace facegear::flanks {
 
 constexpr int NEWTON_STEPS = 16;
 constexpr double LARGEST_STEP = 0.2; // of either parameter, rad
-// Distance (m) of a ray from the point reached on the flank whose square over the flank's radii of curvature is
-// below rounding: Newton's next step is exact, and its end is known without looking.
+// Distance (m) of a ray from the point reached on the flank whose square over the flank's radii of curvature
+// is below rounding: Newton's next step is exact, and its end is known without looking.
 constexpr double NEGLIGIBLE = 1e-9;
 // The same on the fillet, whose radii are smaller.
 constexpr double NEGLIGIBLE_IN_FILLET = 1e-10;
@@ -35,8 +35,8 @@ inline Across<double> across(Vector<double> way) {
     return {x, z, {way.y * z, way.z * x - way.x * z, -way.y * x}};
 }
 
-// What to take off both parameters, the square of the distance (m) of the frame's point from the ray, and where
-// the step leads, from the ray's start. Not finite where there is no step.
+// What to take off both parameters, the square of the distance (m) of the frame's point from the ray, and
+// where the step leads, from the ray's start. Not finite where there is no step.
 template <class Number>
 struct NewtonStep {
     Number first, second, off_squared;
@@ -44,7 +44,8 @@ struct NewtonStep {
 };
 
 template <class Number>
-inline NewtonStep<Number> newton_step(Vector<Number> start, const Across<Number>& beside, const Frame<Number>& frame) {
+inline NewtonStep<Number> newton_step(Vector<Number> start, const Across<Number>& beside,
+                                      const Frame<Number>& frame) {
     const Vector<Number> apart = frame.point - start;
     const Number r1 = beside.along_first(apart), r2 = beside.along_second(apart);
     const Number a1 = beside.along_first(frame.by_first), a2 = beside.along_second(frame.by_first);
@@ -59,6 +60,8 @@ inline double allowed_part(double first, double second) {
     return LARGEST_STEP / std::max({std::fabs(first), std::fabs(second), LARGEST_STEP});
 }
 
-inline bool is_finite(double first, double second) { return std::fabs(first) + std::fabs(second) < std::numeric_limits<double>::infinity(); }
+inline bool is_finite(double first, double second) {
+    return std::fabs(first) + std::fabs(second) < std::numeric_limits<double>::infinity();
+}
 
 } // namespace facegear::flanks

@@ -24,8 +24,8 @@ struct Choice {
 };
 
 // Writes points and directions (n, 3) after their motion.
-inline void place(const Motions& motions, const Choice& choice, Table<const double> points, Table<const double> normals,
-                  Table<double> starts, Table<double> ways) {
+inline void place(const Motions& motions, const Choice& choice, Table<const double> points,
+                  Table<const double> normals, Table<double> starts, Table<double> ways) {
     for (Index ray = 0; ray < choice.motion.size; ++ray) {
         const Index motion = choice.motion[ray], point = choice.point[ray];
         for (Index i = 0; i < 3; ++i) {

@@ -17,17 +17,20 @@ inline std::vector<Index> rays_near_the_tooth(const Blank& blank, const Rays& ra
     std::vector<Index> live;
     live.reserve(static_cast<std::size_t>(rays.count()));
     const double beside = std::max(rays.search_radius, blank.aside / 3);
+    const double low = std::max(blank.inner - beside, 0.0), high = blank.outer + beside;
     for (Index i = 0; i < rays.count(); ++i) {
         const auto [start, way] = rays[i];
-        const double rise = rays.search_radius * std::fabs(way.z), radius = radius_of(start);
+        const double rise = rays.search_radius * std::fabs(way.z),
+                     square = start.x * start.x + start.y * start.y;
         const bool is_high = start.z - rise < blank.tip_plane + ON_PLANE && start.z + rise > blank.root_plane;
-        const bool is_between = blank.inner - beside < radius && radius < blank.outer + beside;
+        const bool is_between = low * low < square && square < high * high;
         if (is_high && is_between && std::fabs(start.x) < blank.aside) live.push_back(i);
     }
     return live;
 }
 
-// The sampled point of the flank that the ray passes closest, if it does so within the sample's spacing, else -1.
+// The sampled point of the flank that the ray passes closest, if it does so within the sample's spacing, else
+// -1.
 inline Index nearest_sample(const Ray& ray, double search_radius, const FlankSample& sample) {
     double least = sample.spacing * sample.spacing;
     Index nearest = -1;
@@ -36,7 +39,8 @@ inline Index nearest_sample(const Ray& ray, double search_radius, const FlankSam
     for (Index row = 0; row < sample.radii.size; ++row) {
         if (std::fabs(sample.radii[row] - radius) > search_radius + sample.spacing) continue;
         for (Index k = row * each; k < (row + 1) * each; ++k) {
-            const Vector<double> apart = vector_of(sample.points, k) - ray.start, normal = vector_of(sample.normals, k);
+            const Vector<double> apart = vector_of(sample.points, k) - ray.start,
+                                 normal = vector_of(sample.normals, k);
             const double along = dot(apart, ray.way), aside = dot(apart, apart) - along * along;
             if (aside < least && std::fabs(along) <= search_radius && dot(ray.way, normal) <= -0.1) {
                 least = aside;
@@ -73,7 +77,8 @@ struct SingleRay {
     void meet_flank() {
         const Index nearest = nearest_sample(ray, search_radius, sample);
         if (nearest < 0) return;
-        const FlankHit found = cut_flank(blank, ray, sample.rolls[nearest], sample.psis[nearest], search_radius);
+        const FlankHit found =
+            cut_flank(blank, ray, sample.rolls[nearest], sample.psis[nearest], search_radius);
         if (std::fabs(found.continued) < search_radius) continued = found.continued;
         lost += !found.converged && sample.inner[nearest];
         hit = found.hit;
@@ -90,7 +95,7 @@ struct SingleRay {
         if (!is_hit()) meet_root_land();
     }
 
-private:
+  private:
     void meet_tip_land() {
         hit = cut_land(blank, ray, blank.tip_plane, search_radius);
         part = TIP_LAND;

@@ -22,7 +22,8 @@ constexpr int WIDTH = 4, GROUPS = 4, LANES = WIDTH * GROUPS;
 constexpr Index NEIGHBOURS = 64;
 // Lanes that the others do not wait for: they go on beside the next rays.
 constexpr int LATE = 4;
-// Distance (rad) between points of neighbouring rays, in roll and psi together, up to which one starts at the other.
+// Distance (rad) between points of neighbouring rays, in roll and psi together, up to which one starts at the
+// other.
 constexpr double NEAR = 0.05;
 // Roll and psi (rad) of lanes without a ray.
 constexpr double ANYWHERE = 0.4;
@@ -35,7 +36,8 @@ inline Turn<Four> turn_by_series(Four angle) {
     static constexpr auto coefficients = [] {
         std::array<double, 2 * Terms> result{};
         double factorial = 1.0;
-        for (int i = 0; i < 2 * Terms; factorial *= ++i) result[i] = (i / 2 % 2 == 0 ? 1.0 : -1.0) / factorial;
+        for (int i = 0; i < 2 * Terms; factorial *= ++i)
+            result[i] = (i / 2 % 2 == 0 ? 1.0 : -1.0) / factorial;
         return result;
     }();
     const Four square = angle * angle;
@@ -51,17 +53,17 @@ inline Turn<Four> turn_by_series(Four angle) {
 struct LaneGroup {
     Vector<Four> start, way;
     Across<Four> beside;
-    Four roll, psi;         // of a point of the flank
-    Frame<Four> frame;      // of the flank there
-    NewtonStep<Four> step;  // from there
+    Four roll, psi;        // of a point of the flank
+    Frame<Four> frame;     // of the flank there
+    NewtonStep<Four> step; // from there
     Four next_roll, next_psi;
     Four length;            // where the step leads along the ray, m
     Four cosine;            // of the ray with the flank's normal
     Four has_ray, is_going; // 1 or 0
 };
 
-// The rays of one lane: the one under way, -1 for none, the range of those to come, steps taken, and whether the
-// one before met the flank.
+// The rays of one lane: the one under way, -1 for none, the range of those to come, steps taken, and whether
+// the one before met the flank.
 struct Queue {
     Index ray = -1, next = 0, last = 0;
     int steps = 0;
@@ -69,7 +71,7 @@ struct Queue {
 };
 
 class SideBySide {
-public:
+  public:
     // known (n,): marked where Newton's method finds a hit or a miss.
     SideBySide(const Blank& blank, const Rays& rays, const Hits& hits, bool* known)
         : blank(blank), rays(rays), hits(hits), known(known) {
@@ -96,7 +98,7 @@ public:
         }
     }
 
-private:
+  private:
     const Blank& blank;
     const Rays& rays;
     const Hits& hits;
@@ -145,7 +147,9 @@ private:
     }
 
     // Newton's step from the frame that the ray before has met.
-    static void step_from_last(LaneGroup& group) { group.step = newton_step(group.start, group.beside, group.frame); }
+    static void step_from_last(LaneGroup& group) {
+        group.step = newton_step(group.start, group.beside, group.frame);
+    }
 
     void start(int k) {
         const LaneGroup& group = group_of(k);
@@ -210,7 +214,8 @@ private:
     // 1 where rays neither have met the flank nor are seen to miss it, and can go on, else 0.
     Four is_going(const LaneGroup& group) const {
         const Four off = group.step.off_squared, no = Four::splat(0.0), yes = Four::splat(1.0);
-        const Four is_far = where_positive(absolute(group.length) - Four::splat(rays.search_radius + SEEN), no, yes);
+        const Four is_far =
+            where_positive(absolute(group.length) - Four::splat(rays.search_radius + SEEN), no, yes);
         const Four size = absolute(group.step.first) + absolute(group.step.second);
         const Four is_open = where_positive(Four::splat(SEEN * SEEN) - off, is_far, yes);
         const Four is_apart = where_positive(Four::splat(NEGLIGIBLE * NEGLIGIBLE) - off, no, is_open);
@@ -223,8 +228,8 @@ private:
         return is_far && group.step.off_squared[k % WIDTH] < SEEN * SEEN;
     }
 
-    // Whether a lane's ray is done with: what was found is written. A ray that started where the one before met the
-    // flank and did not meet it starts anew.
+    // Whether a lane's ray is done with: what was found is written. A ray that started where the one before
+    // met the flank and did not meet it starts anew.
     bool finish(int k) {
         Queue& queue = queues[k];
         if (queue.ray < 0) {
@@ -234,10 +239,12 @@ private:
         if (queue.steps < NEWTON_STEPS && group_of(k).is_going[k % WIDTH] > 0.0) return false;
         const LaneGroup& group = group_of(k);
         const int at = k % WIDTH;
-        const double roll = group.roll[at] - group.step.first[at], psi = group.psi[at] - group.step.second[at];
+        const double roll = group.roll[at] - group.step.first[at],
+                     psi = group.psi[at] - group.step.second[at];
         // beyond a quarter turn the series are no cosine and sine
         const double largest_angle = std::max(std::fabs(psi), std::fabs(gear_turn(blank, roll, psi)));
-        const bool met = group.step.off_squared[at] < NEGLIGIBLE * NEGLIGIBLE && largest_angle < 0.5 * std::numbers::pi;
+        const bool met =
+            group.step.off_squared[at] < NEGLIGIBLE * NEGLIGIBLE && largest_angle < 0.5 * std::numbers::pi;
         const bool hit = met && group.cosine[at] < 0 && std::fabs(group.length[at]) < rays.search_radius;
         if (hit) {
             write(k, roll, psi);

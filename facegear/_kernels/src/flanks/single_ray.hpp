@@ -21,8 +21,8 @@ constexpr int BISECTIONS = 6;
 // Cosine of a ray with the outward normal of a land that is parallel to it.
 constexpr double PARALLEL = 1e-9;
 
-// Where a ray meets a surface: the distance (m) from its start, infinite beside the surface, where on the surface as
-// `Separation` in facegear/geometry/separation.py has it, and the gear radius (m).
+// Where a ray meets a surface: the distance (m) from its start, infinite beside the surface, where on the
+// surface as `Separation` in facegear/geometry/separation.py has it, and the gear radius (m).
 struct Hit {
     double distance, u, v, radius;
 };
@@ -35,7 +35,9 @@ struct FlankHit {
 
 inline double radius_of(Vector<double> point) { return std::sqrt(point.x * point.x + point.y * point.y); }
 
-inline bool within(const Blank& blank, double radius) { return blank.inner <= radius && radius <= blank.outer; }
+inline bool within(const Blank& blank, double radius) {
+    return blank.inner <= radius && radius <= blank.outer;
+}
 
 // Whether a point of the flank, continued, lies on the flank itself.
 inline bool on_flank(const Blank& blank, double radius, double roll, double height) {
@@ -60,7 +62,8 @@ inline FlankHit cut_flank(const Blank& blank, const Ray& ray, double roll, doubl
                 const double length = on_flank(blank, radius, roll, point.z) ? continued : MISSED;
                 return {{length, roll, psi, radius}, continued, true};
             }
-            if (std::fabs(distance) > search_radius + SEEN) return {{MISSED, roll, psi, UNKNOWN}, MISSED, true};
+            if (std::fabs(distance) > search_radius + SEEN)
+                return {{MISSED, roll, psi, UNKNOWN}, MISSED, true};
         }
         const double part = allowed_part(step.first, step.second);
         roll -= part * step.first;
@@ -80,7 +83,8 @@ inline double psi_at_height(const Blank& blank, double q, double height) {
 }
 
 // The fillet continued beyond its edges, no farther than `search_radius`; v is the gear radius.
-inline Hit cut_continued_fillet(const Blank& blank, const Ray& ray, double psi, double q, double search_radius) {
+inline Hit cut_continued_fillet(const Blank& blank, const Ray& ray, double psi, double q,
+                                double search_radius) {
     const Across<double> beside = across(ray.way);
     for (int i = 0; i < NEWTON_STEPS; ++i) {
         const auto step = newton_step(ray.start, beside, fillet_frame(blank, psi, q));

@@ -16,10 +16,10 @@ struct Rings {
     double lag;                   // damping over stiffness, s
 };
 
-// Writes forces (bodies, 3, K) along x and y of rings that have moved by `displacement` (R, 2, K) at `speed` (R, 2, K):
-// F = k (1 - c / r) (x, y), and lag times dF/dt beside it.
-inline void write_ring_forces(const Rings& rings, const double* displacement, const double* speed, Index count,
-                              double* forces) {
+// Writes forces (bodies, 3, K) along x and y of rings that have moved by `displacement` (R, 2, K) at `speed`
+// (R, 2, K): F = k (1 - c / r) (x, y), and lag times dF/dt beside it.
+inline void write_ring_forces(const Rings& rings, const double* displacement, const double* speed,
+                              Index count, double* forces) {
     for (Index r = 0; r < rings.body.size; ++r) {
         const double *x = displacement + 2 * r * count, *y = x + count;
         const double *dx = speed + 2 * r * count, *dy = dx + count;
@@ -43,9 +43,9 @@ struct Deflections {
     Index contacts, periods, samples;
 };
 
-// Turns deflections into how far contacts are pressed in: without the errors (K, M) of the period, above `upper` (M,),
-// or below `lower` (M,) as a negative amount. A contact with lower >= upper is never open: both directions count from
-// `upper`.
+// Turns deflections into how far contacts are pressed in: without the errors (K, M) of the period, above
+// `upper` (M,), or below `lower` (M,) as a negative amount. A contact with lower >= upper is never open: both
+// directions count from `upper`.
 inline void press_in(const Deflections& deflections, Table<const double> errors, List<const double> lower,
                      List<const double> upper) {
     double* value = deflections.values;
@@ -60,8 +60,8 @@ inline void press_in(const Deflections& deflections, Table<const double> errors,
     }
 }
 
-// Writes loads (2 M, K) of drive flanks, then back flanks, of forces (M, K) that meshes transmit: nothing where a force
-// is at most the part `rounding` of the largest of all.
+// Writes loads (2 M, K) of drive flanks, then back flanks, of forces (M, K) that meshes transmit: nothing
+// where a force is at most the part `rounding` of the largest of all.
 inline void split_loads(Table<const double> forces, double rounding, Table<double> loads) {
     const Index count = forces.rows * forces.columns;
     double largest = 0.0;

@@ -18,10 +18,10 @@ struct Cubics {
     }
 };
 
-// Writes the cubics, or else their slopes, of contacts (M,) of some kinds at amounts (M, B, K); `periods` is B. Zero
-// where nothing is pressed in.
-inline void evaluate(const Cubics& cubics, List<const Index> kind, Index periods, bool slopes, const double* amounts,
-                     double* values) {
+// Writes the cubics, or else their slopes, of contacts (M,) of some kinds at amounts (M, B, K); `periods` is
+// B. Zero where nothing is pressed in.
+inline void evaluate(const Cubics& cubics, List<const Index> kind, Index periods, bool slopes,
+                     const double* amounts, double* values) {
     const Index pieces = cubics.levels.columns;
     for (Index m = 0; m < kind.size; ++m) {
         const double* levels = cubics.levels.row(kind[m]);

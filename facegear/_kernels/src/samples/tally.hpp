@@ -17,22 +17,23 @@ struct Groups {
     Index count() const { return starts.size - 1; }
 };
 
-// Fields of a `Tally` in facegear/load_sharing/tally.py: of F = 2 M flanks, drive flanks first, and of G groups.
+// Fields of a `Tally` in facegear/load_sharing/tally.py: of F = 2 M flanks, drive flanks first, and of G
+// groups.
 struct Counted {
     List<double> mean, largest; // (F,), N
     List<double> largest_mean;  // (M,), N
     List<double> coefficients;  // (G,)
 };
 
-// Samples at which one of the meshes that share a load carries nothing, and at which a mesh is loaded on the flank that
-// carries less on average.
+// Samples at which one of the meshes that share a load carries nothing, and at which a mesh is loaded on the
+// flank that carries less on average.
 struct Samples {
     Index open = 0, reversed = 0;
 };
 
 // Forces (F, K), none negative, N.
 class FlankForces {
-public:
+  public:
     explicit FlankForces(Table<const double> forces) : forces(forces) {}
 
     Index flanks() const { return forces.rows; }
@@ -44,7 +45,7 @@ public:
         return std::max(forces(mesh, sample), forces(mesh + meshes(), sample));
     }
 
-private:
+  private:
     Table<const double> forces;
 };
 
@@ -90,8 +91,8 @@ inline GroupLoad group_load(const FlankForces& forces, const Groups& groups, Ind
     return result;
 }
 
-// Mean over time of the largest load of a group over its mean, not a number where nothing is ever loaded; returns the
-// number of samples at which a mesh of a group carries nothing.
+// Mean over time of the largest load of a group over its mean, not a number where nothing is ever loaded;
+// returns the number of samples at which a mesh of a group carries nothing.
 inline Index count_groups(const FlankForces& forces, const Groups& groups, const Counted& counted) {
     std::vector<double> loaded(static_cast<std::size_t>(groups.count()));
     std::fill(counted.coefficients.begin(), counted.coefficients.end(), 0.0);
@@ -109,7 +110,8 @@ inline Index count_groups(const FlankForces& forces, const Groups& groups, const
         open += is_open;
     }
     for (Index g = 0; g < groups.count(); ++g) {
-        counted.coefficients[g] = loaded[g] > 0.0 ? counted.coefficients[g] / loaded[g] : std::numeric_limits<double>::quiet_NaN();
+        counted.coefficients[g] =
+            loaded[g] > 0.0 ? counted.coefficients[g] / loaded[g] : std::numeric_limits<double>::quiet_NaN();
     }
     return open;
 }
@@ -125,7 +127,8 @@ inline Index count_reversed(const FlankForces& forces, const Counted& counted) {
     return std::count(is_reversed.begin(), is_reversed.end(), 1);
 }
 
-inline Samples tally(const FlankForces& forces, Index per_cycle, const Groups& groups, const Counted& counted) {
+inline Samples tally(const FlankForces& forces, Index per_cycle, const Groups& groups,
+                     const Counted& counted) {
     count_flanks(forces, counted);
     count_cycles(forces, per_cycle, counted);
     return {count_groups(forces, groups, counted), count_reversed(forces, counted)};

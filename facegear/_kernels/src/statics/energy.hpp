@@ -13,7 +13,8 @@ namespace facegear::statics {
 
 using Values = std::vector<double>;
 
-// A machine with its law at one position, phase number `phase`; gap (F,): a flank is pressed in by J q - gap, m.
+// A machine with its law at one position, phase number `phase`; gap (F,): a flank is pressed in by J q - gap,
+// m.
 template <class Law>
 struct Position {
     const Springs& springs;
@@ -22,17 +23,21 @@ struct Position {
     const double* gap;
 };
 
-// Equations of a Newton step, upper triangles only: of each pinion a block (3, 3 + g + 1), its own unknowns, the g of
-// the core and the right side; of the core (g, g + 1).
+// Equations of a Newton step, upper triangles only: of each pinion a block (3, 3 + g + 1), its own unknowns,
+// the g of the core and the right side; of the core (g, g + 1).
 struct Equations {
     Values block_values, core_values;
     Index blocks, gears;
 
     Equations(Index pinions, Index gears)
         : block_values(static_cast<std::size_t>(pinions * 3 * (4 + gears))),
-          core_values(static_cast<std::size_t>(gears * (gears + 1))), blocks(pinions), gears(gears) {}
+          core_values(static_cast<std::size_t>(gears * (gears + 1))),
+          blocks(pinions),
+          gears(gears) {}
 
-    Table<double> block(Index pinion) { return {block_values.data() + pinion * 3 * (4 + gears), 3, 4 + gears}; }
+    Table<double> block(Index pinion) {
+        return {block_values.data() + pinion * 3 * (4 + gears), 3, 4 + gears};
+    }
     Table<double> core() { return {core_values.data(), gears, gears + 1}; }
     void clear() {
         std::fill(block_values.begin(), block_values.end(), 0.0);
@@ -43,12 +48,14 @@ struct Equations {
 // Writes how far each flank is pressed in, negative where it is open, m.
 template <class Law>
 inline void penetrate(const Position<Law>& at, const Values& displacement, Values& over) {
-    for (Index f = 0; f < at.springs.flanks(); ++f) over[f] = along(at.springs, f, displacement.data()) - at.gap[f];
+    for (Index f = 0; f < at.springs.flanks(); ++f)
+        over[f] = along(at.springs, f, displacement.data()) - at.gap[f];
 }
 
 // Writes the forces out of balance; returns the largest single force.
 template <class Law>
-inline double balance(const Position<Law>& at, const Values& over, const Values& displacement, Values& gradient) {
+inline double balance(const Position<Law>& at, const Values& over, const Values& displacement,
+                      Values& gradient) {
     const Springs& springs = at.springs;
     double largest = 0.0;
     for (Index j = 0; j < springs.unknowns(); ++j) {
@@ -92,8 +99,8 @@ inline void add_flank(const Springs& springs, Index flank, double stiffness, Equ
     }
 }
 
-// Writes second derivatives of the energy, with springs `tie` to ground, and the right side; closed (F,): which
-// flanks count as pressed in.
+// Writes second derivatives of the energy, with springs `tie` to ground, and the right side; closed (F,):
+// which flanks count as pressed in.
 template <class Law>
 inline void assemble(const Position<Law>& at, const Values& over, const std::vector<char>& closed,
                      const Values& displacement, const Values& gradient, double tie, Equations& equations) {
@@ -126,10 +133,11 @@ struct Rise {
     double slope, curvature;
 };
 
-// Along `step`, which presses flanks in at `rate` (F,), at a fraction of it from where they are pressed in by `over`.
+// Along `step`, which presses flanks in at `rate` (F,), at a fraction of it from where they are pressed in by
+// `over`.
 template <class Law>
-inline Rise rise_along(const Position<Law>& at, const Values& over, const Values& rate, const Values& displacement,
-                       const Values& step, double fraction) {
+inline Rise rise_along(const Position<Law>& at, const Values& over, const Values& rate,
+                       const Values& displacement, const Values& step, double fraction) {
     const Springs& springs = at.springs;
     double slope = 0.0, curvature = 0.0;
     const auto there = [&](Index unknown) { return displacement[unknown] + fraction * step[unknown]; };

@@ -1,14 +1,14 @@
 // Where all bodies stand when every flank, bearing and torque is in balance, position by position.
 //
-// The energy of one-sided flanks, bearings (with clearance or without) and torques is convex and, with a linear law
-// and but for the clearances, quadratic between changes of contact: a semismooth Newton method (Hintermueller et al.
-// 2003), each step an active set with its equations solved, with an exact line search that makes it global. Pinions
-// touch each other through the gears only, so each is eliminated by itself (3 x 3) and the gears remain (4 or 6
-// unknowns each).
+// The energy of one-sided flanks, bearings (with clearance or without) and torques is convex and, with a
+// linear law and but for the clearances, quadratic between changes of contact: a semismooth Newton method
+// (Hintermueller et al. 2003), each step an active set with its equations solved, with an exact line search
+// that makes it global. Pinions touch each other through the gears only, so each is eliminated by itself (3 x
+// 3) and the gears remain (4 or 6 unknowns each).
 //
 // A body that nothing holds may be stopped by a flank that only just closes, by less than its position can be
-// resolved. Such a flank counts as closed in the next step, unless that would pull it open: the search would else
-// stay where it is.
+// resolved. Such a flank counts as closed in the next step, unless that would pull it open: the search would
+// else stay where it is.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,8 @@ constexpr int MAX_STEPS = 200;
 // Part of a whole step's approach by which a flank that stopped the step may still be open.
 constexpr double JUST_CLOSED = 1e-9;
 
-// Factorises the leading 3 x 3 (upper triangle) by Cholesky's method, and applies the factor to the columns right of it.
+// Factorises the leading 3 x 3 (upper triangle) by Cholesky's method, and applies the factor to the columns
+// right of it.
 inline void eliminate(Table<double> block) {
     for (Index r = 0; r < 3; ++r) {
         const double root = std::sqrt(block(r, r));
@@ -94,24 +95,33 @@ struct Settled {
 // Searches the positions of one machine one after the other, each from where the one before was found.
 template <class Law>
 class Search {
-public:
+  public:
     Search(const Springs& springs, const Law& law, double tolerance, const double* start)
-        : springs(springs), law(law), tolerance(tolerance), displacement(start, start + springs.unknowns()),
-          gradient(displacement.size()), step(displacement.size()), over(count(springs.flanks())),
-          rate(over.size()), stops(over.size()), closed(over.size()),
+        : springs(springs),
+          law(law),
+          tolerance(tolerance),
+          displacement(start, start + springs.unknowns()),
+          gradient(displacement.size()),
+          step(displacement.size()),
+          over(count(springs.flanks())),
+          rate(over.size()),
+          stops(over.size()),
+          closed(over.size()),
           equations(springs.pinions(), springs.core_size()) {}
 
-    // Settles the machine at phase number `phase`, with gaps (F,); `tie` as TIE. Returns the residual, which is
-    // above the tolerance where the position is not solved.
+    // Settles the machine at phase number `phase`, with gaps (F,); `tie` as TIE. Returns the residual, which
+    // is above the tolerance where the position is not solved.
     double settle(Index phase, const double* gap, double tie) {
         const Position<Law> at{springs, law, phase, gap};
         const double* stiffness = law.stiffness.row(phase);
-        const double stiffest = springs.flanks() > 0 ? *std::max_element(stiffness, stiffness + springs.flanks()) : 0.0;
+        const double stiffest =
+            springs.flanks() > 0 ? *std::max_element(stiffness, stiffness + springs.flanks()) : 0.0;
         std::fill(stops.begin(), stops.end(), 0);
         double residual = 0.0;
         for (int i = 0; i < MAX_STEPS; ++i) {
             penetrate(at, displacement, over);
-            const double size = balance(at, over, displacement, gradient), worst = largest_magnitude(gradient);
+            const double size = balance(at, over, displacement, gradient),
+                         worst = largest_magnitude(gradient);
             residual = size > 0.0 ? worst / size : 0.0;
             if (worst <= tolerance * size) break;
             take_newton_step(at, tie * stiffest);
@@ -131,12 +141,13 @@ public:
         }
     }
 
-private:
+  private:
     const Springs& springs;
     const Law& law;
     double tolerance;
     Values displacement, gradient, step, over, rate;
-    std::vector<char> stops, closed; // flanks that stopped the last step by just closing; flanks taken as closed
+    std::vector<char> stops,
+        closed; // flanks that stopped the last step by just closing; flanks taken as closed
     Equations equations;
 
     static std::size_t count(Index size) { return static_cast<std::size_t>(size); }
@@ -165,12 +176,15 @@ private:
         }
         double* of_core = step.data() + springs.first();
         solve_core(equations.core(), of_core);
-        for (Index i = 0; i < springs.pinions(); ++i) substitute_back(equations.block(i), of_core, &step[3 * i]);
+        for (Index i = 0; i < springs.pinions(); ++i)
+            substitute_back(equations.block(i), of_core, &step[3 * i]);
     }
 
     // Where the energy is least along the step: 1 as long as no contact changes.
     double line_minimum(const Position<Law>& at, double noise) const {
-        const auto rise_at = [&](double fraction) { return rise_along(at, over, rate, displacement, step, fraction); };
+        const auto rise_at = [&](double fraction) {
+            return rise_along(at, over, rate, displacement, step, fraction);
+        };
         const double start = rise_at(0.0).slope, close = 1e-9 * std::fabs(start) + noise;
         double low = 0.0, high = 1.0, fraction = 1.0;
         Rise rise = rise_at(1.0);

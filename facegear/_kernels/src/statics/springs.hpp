@@ -7,18 +7,18 @@
 
 namespace facegear::statics {
 
-// F flanks, P pinions, n unknowns: x, y and turn of every pinion, then w of every gear; all are lengths. Each flank
-// joins one pinion and one gear; pinions touch each other through the other unknowns only. N, m.
+// F flanks, P pinions, n unknowns: x, y and turn of every pinion, then w of every gear; all are lengths. Each
+// flank joins one pinion and one gear; pinions touch each other through the other unknowns only. N, m.
 struct Springs {
     Table<const double> jacobian;       // (F, 3 + w), by the unknowns of a flank's pinion and of its gear
     List<const Index> pinion;           // (F,), the first unknown of that pinion
     List<const Index> gear;             // (F,), the first unknown of that gear
     Table<const double> pinion_bearing; // (P, 3): xx, xy, yy
     List<const double> clearance;       // (P,), where positive with xx = yy and xy = 0
-    List<const Index> core_row;         // (E,), upper entries of the stiffness among the other unknowns, counted
-    List<const Index> core_column;      // (E,)  from the first of them
-    List<const double> core_value;      // (E,)
-    List<const double> loads;         // (n,), forces
+    List<const Index> core_row;    // (E,), upper entries of the stiffness among the other unknowns, counted
+    List<const Index> core_column; // (E,)  from the first of them
+    List<const double> core_value; // (E,)
+    List<const double> loads;      // (n,), forces
 
     Index flanks() const { return jacobian.rows; }
     Index pinions() const { return pinion_bearing.rows; }

@@ -5,8 +5,8 @@
 
 namespace facegear::strength {
 
-// Forces on the nodes of loaded teeth at the positions of a passage, tooth by tooth and position by position: those of
-// row r on nodes[starts[r]] to nodes[starts[r + 1] - 1], N.
+// Forces on the nodes of loaded teeth at the positions of a passage, tooth by tooth and position by position:
+// those of row r on nodes[starts[r]] to nodes[starts[r + 1] - 1], N.
 struct Forces {
     List<const Index> starts, nodes;
     List<const double> force;
@@ -14,8 +14,8 @@ struct Forces {
     Index positions;
 };
 
-// Stress of unit forces, Pa/N: (2 d + 1, 2, a, b, c) by the number of teeth from the loaded one to that which is read,
-// fillet, gauges down the fillet, planes along the face and nodes.
+// Stress of unit forces, Pa/N: (2 d + 1, 2, a, b, c) by the number of teeth from the loaded one to that which
+// is read, fillet, gauges down the fillet, planes along the face and nodes.
 struct Readings {
     const double* stress;
     Index reach, gauges, planes, nodes; // d, a, b, c
@@ -27,8 +27,8 @@ struct Readings {
     Index stride() const { return planes * nodes; }
 };
 
-// Where stress is read: a tooth, counted from the one before the first loaded, a position, and a plane, those of the
-// second fillet after those of the first.
+// Where stress is read: a tooth, counted from the one before the first loaded, a position, and a plane, those
+// of the second fillet after those of the first.
 struct Place {
     Index tooth, position, plane;
 };

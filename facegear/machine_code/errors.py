@@ -1,5 +1,0 @@
-"""Errors of compiled functions."""
-
-
-class NotStored(LookupError):
-    """A function would have to be compiled where nothing may be."""
