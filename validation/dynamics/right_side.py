@@ -23,8 +23,9 @@ def compiled_right_side(integrator: Integrator) -> Callable[[float, Array], Arra
 
 
 def fixed_rk4(integrator: Integrator, state: Array, per_sample: int, width: float, samples: int) -> Array:
-    """States (samples, 2 n) of the classical Runge-Kutta method with fixed steps of a width, in rad: one every
-    `per_sample` steps from a state (2, n) on.
+    """States (samples, 2 n) of the classical Runge-Kutta method with fixed steps of a width, in rad.
+
+    One is kept every `per_sample` steps from a state (2, n) on.
     """
     derivative, z, s = compiled_right_side(integrator), state.ravel().copy(), 0.0
     out = np.empty((samples, z.size))
