@@ -210,13 +210,19 @@ def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
             new_machine,
             options,
         )
-    for key, words in (
-        ("mesh_error", "halve the deviations of the idlers' meshes"),
-        ("position", "halve the deviations of the idlers' positions"),
+    for now, tighter, words in (
+        (
+            options.mesh_error,
+            replace(options, mesh_error=SOFTER * options.mesh_error),
+            "halve the deviations of the idlers' meshes",
+        ),
+        (
+            options.position,
+            replace(options, position=SOFTER * options.position),
+            "halve the deviations of the idlers' positions",
+        ),
     ):
-        now = float(getattr(options, key))
         if idlers and now > 0.0:
-            tighter = replace(options, **{key: SOFTER * now})
             yield Change(words, f"{1e6 * now:.3g} to {1e6 * SOFTER * now:.3g} um", mapped, tighter)
 
 
