@@ -182,11 +182,10 @@ def rim_slopes(
 ATTACHED_FREQUENCY = 4.0
 """Frequency of an attached coordinate over that of the fastest mode kept of its gear.
 
-The modes that it stands for lie above all that are kept, and its own motion changes an answer at f by the square
+The modes that it stands for lie above all that are kept. Its own motion changes an answer at f by the square
 of f over its frequency. Larger factors cost shorter steps."""
 ATTACHED_DAMPING = 0.1
-"""Damping ratio of an attached coordinate, so that its own vibration dies out. Compliance at rest does not depend
-on it."""
+"""Damping ratio of an attached coordinate, so that its own vibration dies out. It has no effect at rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,6 +259,9 @@ class ElasticGears:
         column[[mesh, mesh + len(layout.meshes)], 0] = way, np.copysign(way, between)
         lumped = model.mass_damping + model.bearing_damping * omega**2
         none, spin = np.zeros((1, 1)), model.spin
+        if spin is not None:
+            turning = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
+            spin = Spin(*(bordered(each, none) for each in turning))
         return replace(
             model,
             labels=(*model.labels, f"attached:{layout.mesh_names[mesh]}"),
@@ -271,10 +273,7 @@ class ElasticGears:
             lengths=np.append(model.lengths, way),
             dampers=bordered(model.dampers, np.array([[2.0 * ATTACHED_DAMPING * omega - lumped]])),
             slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool), np.zeros((2, 0, 1))),
-            spin=spin
-            and Spin(
-                *(bordered(each, none) for each in (spin.gyroscopic, spin.circulatory, spin.centrifugal))
-            ),
+            spin=spin,
         )
 
     def _with_gear(self, model: LinearModel, gear: int, body: ReducedBody) -> LinearModel:

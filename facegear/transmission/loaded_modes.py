@@ -91,8 +91,8 @@ def _attached(bodies: ElasticGears, meshes: tuple[int, ...]) -> ElasticGears:
 
 
 def _wedged_meshes(machine: Machine) -> list[int]:
-    """Return the numbers of the meshes whose flanks both press, and are coupled by what the modes leave out."""
-    if not coupled_meshes(machine, np.ones(2 * len(machine.layout.meshes), dtype=bool)).size:
+    """Return the numbers of wedged meshes whose flanks are coupled by what the modes leave out."""
+    if machine.softening is None or not machine.softening[:, 0, 1].any():
         return []
     contacts = loaded_contacts(machine)
     closed = np.array([state is Contact.CLOSED for state in contacts.flank_states()])

@@ -133,7 +133,7 @@ def test_wedged_machine_vibrates_as_one_with_springs_of_its_bodies_between_the_f
     agrees("stiffness of the flanks over k", springs / K, expected / K, absolute=1e-9)
     assert np.abs(np.diag(expected, 4)).min() > 0.02 * K
     (modes,) = machine_at_speeds(machine, [SPEED])
-    computed = vibrations(linear, expected, machine.damping.mesh, SPEED) / (2 * np.pi)
+    computed = vibrations(linear, expected, 0.5 * machine.damping.mesh, SPEED) / (2 * np.pi)
     agrees("damped frequencies, Hz", modes.frequencies, computed, relative=1e-7)
     uncoupled = replace(machine, softening=machine.softening * np.eye(2))
     (apart,) = machine_at_speeds(uncoupled, [SPEED])
@@ -199,18 +199,23 @@ def test_errors_of_wedged_flanks_that_turn_slowly_change_forces_as_equilibria_do
 @pytest.mark.parametrize("seed", [0, 3, 7])
 def test_attached_coordinates_couple_wedged_flanks_the_better_the_faster_they_are(seed, monkeypatch):
     machine = wedged_pinions(seed, Harmonics(np.zeros(1), np.array([K])))
+
+    def off(other):
+        """Relative change of the frequencies between 1 Hz and 2.5 kHz."""
+        found = loaded_modes(other).frequencies[: expected.size]
+        return np.abs(found / expected - 1.0)[slow].max()
+
     expected = loaded_modes(machine).frequencies
-    count = expected.size
-    apart = loaded_modes(replace(machine, softening=machine.softening * np.eye(2))).frequencies
+    slow = (expected > 1.0) & (expected < 2500.0)
+    dropped = off(replace(machine, softening=machine.softening * np.eye(2)))
     errors = []
     for factor in (elastic_gears.ATTACHED_FREQUENCY, 3.0 * elastic_gears.ATTACHED_FREQUENCY):
         monkeypatch.setattr(elastic_gears, "ATTACHED_FREQUENCY", factor)
-        moving = machine_in_motion(machine)
+        moving = machine_in_motion(replace(machine, bodies=replace(machine.bodies)))
         assert moving.bodies.attached == (0, 1, 2, 3)
-        errors.append(np.abs(loaded_modes(moving).frequencies[:count] / expected - 1.0).max())
-        machine = replace(machine, bodies=replace(machine.bodies))
-    assert errors[0] < 0.15 * np.abs(apart / expected - 1.0).max()
-    agrees("error of frequencies at three times the frequency", errors[1], errors[0] / 9.0, relative=0.3)
+        errors.append(off(moving))
+    assert errors[0] < 0.15 * dropped
+    agrees("error at three times the frequency", errors[1], errors[0] / 9.0, relative=0.3)
 
 
 def test_only_wedged_meshes_have_attached_coordinates():
@@ -225,7 +230,8 @@ def test_only_wedged_meshes_have_attached_coordinates():
 def test_motion_of_wedged_meshes_comes_to_that_with_all_modes():
     """The frequency that the coupling moves most; nothing is left out of the body with all its modes."""
     whole = gear_bodies.reference_modes()
-    exact = loaded_modes(pressed_into_mesh(replace(whole, static=whole.modal))).frequencies
+    whole = replace(whole, static=whole.modal)
+    exact = loaded_modes(pressed_into_mesh(whole)).frequencies
     stiffest = int(np.argmin(np.abs(exact - 1714.3)))
     machine = pressed_into_mesh(below(whole, 4e3))
     moving = loaded_modes(machine_in_motion(machine)).frequencies[stiffest]
@@ -243,12 +249,11 @@ def test_multipliers_of_wedged_meshes_are_those_of_flanks_that_are_coupled():
     machine = wedged_pinions(0, Harmonics(np.zeros(1), np.array([K])))
     response = simulate(build_model(machine), SPEED)
     assert response.label == "period-1"
-    found = np.sort_complex(response.multipliers)
-    period = 60.0 / (23 * SPEED)
-    errors = []
-    for springs in (pressed_springs(machine)[1], np.diag(np.diagonal(pressed_springs(machine)[1]))):
-        roots = damped_exponents(machine.linear, springs, machine.damping.mesh, SPEED)
-        slow = roots[np.abs(roots) < 2.0 * np.pi * 2500.0]
-        away = np.abs(np.exp(slow * period)[:, None] - found).min(axis=1)
-        errors.append(away.max())
-    assert errors[0] < 0.2 * errors[1]
+    period, errors = 60.0 / (23 * SPEED), []
+    coupled = pressed_springs(machine)[1]
+    for springs in (coupled, np.diag(np.diagonal(coupled))):
+        roots = damped_exponents(machine.linear, springs, 0.5 * machine.damping.mesh, SPEED)
+        slow = roots[(np.abs(roots) > 1.0) & (np.abs(roots) < 2.0 * np.pi * 2500.0)]
+        nearest = np.abs(np.exp(slow * period)[:, None] - response.multipliers).min(axis=1)
+        errors.append(nearest.max())
+    agrees("distance of a multiplier", errors[0], 0.0, absolute=0.15 * errors[1])
