@@ -42,9 +42,19 @@ class PairAtPosition(Protocol):
     def base_radius(self) -> float: ...
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
-        """Solve for the contact of what a rotation of the pinion by `limit` (rad) would close.
+        """Solve for the contact of what a rotation of the pinion would close.
 
-        `torques` (t,) N m, the largest first.
+        Parameters
+        ----------
+        torques : Array
+            Torques (t,) N m, the largest first.
+        limit : float
+            Rotation, rad.
+
+        Returns
+        -------
+        PositionContact
+            Contact under these torques (t,), in SI units (N, m, rad).
         """
 
 
@@ -151,7 +161,7 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
             limit = MARGIN * float(contact.rotation[0])
             continue
         for torque, steps, residual in zip(loads, contact.steps, contact.residual, strict=True):
-            check_solved(int(steps), float(residual), contact.sought, where(torque))
+            check_solved(int(steps), float(residual), contact.strip_size, where(torque))
         return contact
     tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
     raise NotConverged("contact", where(max(torques)), tried)

@@ -71,6 +71,10 @@ class MeshLaw(Protocol):
         """
 
     @property
+    def numbers(self) -> dict[str, Any]:
+        """Its arrays and numbers by the names that the integrator's function for this law takes."""
+
+    @property
     def compiled(self) -> Any:
         """What the integrator takes of it, one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -136,15 +137,20 @@ class LinearLaw:
         """k at some phases."""
         return LinearHeld(self.stiffness(cycles))
 
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers as the integrator takes them."""
+        return {
+            "fourier": np.ascontiguousarray(self.fourier, dtype=float),
+            "kind": np.ascontiguousarray(self.kind, np.int64),
+            "breaks": 2.0 * np.pi * self.breaks,
+            "pieces": _pieces(self),
+        }
+
     @cached_property
     def compiled(self) -> motion.LinearLaw:
         """What the integrator takes of it."""
-        return motion.linear_law(
-            np.ascontiguousarray(self.fourier, dtype=float),
-            np.ascontiguousarray(self.kind, np.int64),
-            2.0 * np.pi * self.breaks,
-            _pieces(self),
-        )
+        return motion.linear_law(**self.numbers)
 
 
 def linear_law(series: Sequence[Harmonics]) -> LinearLaw:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -120,12 +121,16 @@ class LoadDependentLaw:
             self.kind,
         )
 
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers as the integrator takes them."""
+        kind = np.ascontiguousarray(self.kind, np.int64)
+        return {"table": _columns(self), "levels": self._levels, "kind": kind}
+
     @cached_property
     def compiled(self) -> motion.LoadDependentLaw:
         """What the integrator takes of it."""
-        return motion.load_dependent_law(
-            _columns(self), self._levels, np.ascontiguousarray(self.kind, np.int64)
-        )
+        return motion.load_dependent_law(**self.numbers)
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:

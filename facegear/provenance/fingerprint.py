@@ -20,6 +20,8 @@ from facegear.io.atomic import atomic_path
 
 PACKAGES = ("facegear", "paper", "validation")
 """The library and, in a checkout, what stands beside it."""
+BESIDE = ("*.j2", "src/**/*.cpp", "src/**/*.hpp")
+"""Files that count with the package that they lie in: templates, and sources of compiled kernels."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +76,9 @@ def _version() -> str:
 def fingerprint(script: str | Path, root: str | Path, modules: Sequence[str] = ()) -> str:
     """Hash of a script's own code and of all package modules below `root` that it reaches by imports.
 
-    Templates (`*.j2`) count with the package they lie in. Where the script calls `modules` that it does not
-    import itself, their own fingerprint follows after a dot, so that results can be known without the script.
+    Templates and the C++ sources of kernels (BESIDE) count with the package they lie in. Where the script
+    calls `modules` that it does not import itself, their own fingerprint follows after a dot, so that results
+    can be known without the script.
     """
     root, script = Path(root), Path(script)
     own = _hash(_source(script).code, reached_modules(script, root), root)
@@ -95,8 +98,10 @@ def _hash(code: str, modules: Iterable[str], root: Path, *more: str) -> str:
         file = _file(module, root)
         digest.update(module.encode() + b"\0" + _source(file).code.encode())
         if file.name == "__init__.py":
-            for template in sorted(file.parent.glob("*.j2")):
-                digest.update(template.read_bytes())
+            for pattern in BESIDE:
+                for beside in sorted(file.parent.glob(pattern)):
+                    status = os.stat(beside)
+                    digest.update(_text_hash(str(beside), status.st_size, status.st_mtime_ns))
     return digest.hexdigest()[:16]
 
 
@@ -111,6 +116,11 @@ def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
             reached.add(module)
             todo.extend(_source(_file(module, root)).names)
     return tuple(sorted(reached))
+
+
+@cache
+def _text_hash(path: str, size: int, modified: int) -> bytes:
+    return hashlib.sha256(Path(path).read_bytes()).digest()
 
 
 def _source(path: Path) -> _Source:

@@ -138,7 +138,7 @@ def environment() -> dict[str, str]:
 
 
 def copy_sources(target: Path) -> Path:
-    """A copy of the tracked and new source files, with their times."""
+    """A copy of the tracked and new source files, with their times, and of the compiled kernels."""
     listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard", "Snakefile", *FOLDERS],
         cwd=ROOT,
@@ -146,6 +146,8 @@ def copy_sources(target: Path) -> Path:
         text=True,
         check=True,
     ).stdout.splitlines()
+    kernels = (ROOT / "facegear" / "_kernels").iterdir()
+    listed += [str(file.relative_to(ROOT)) for file in kernels if file.suffix in (".so", ".pyd")]
     for name in listed:
         if (ROOT / name).is_file():
             (target / name).parent.mkdir(parents=True, exist_ok=True)

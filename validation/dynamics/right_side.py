@@ -66,6 +66,7 @@ def plain_right_side(system: System, frequency: float) -> Callable[[float, Array
     """f(s, z) in NumPy as people write it."""
     n = system.size
     elastic = plain_forces(system)
+    always = system.damping_when_open | (system.lower >= system.upper)
     order_e = np.arange(system.error.shape[2])
     error, load = system.error[system.error_kind], system.load
 
@@ -79,7 +80,8 @@ def plain_right_side(system: System, frequency: float) -> Callable[[float, Array
         applied = load[:, 0] @ np.sin(order_f * s) + load[:, 1] @ np.cos(order_f * s)
         d = system.mesh_jacobian @ displacement - e
         gap = np.where(d > system.upper, d - system.upper, np.where(d < system.lower, d - system.lower, 0.0))
-        force = elastic(s, gap) + system.mesh_damping * (system.mesh_jacobian @ velocity - e_rate)
+        acting = np.where(always | (gap != 0.0), system.mesh_damping, 0.0)
+        force = elastic(s, gap) + acting * (system.mesh_jacobian @ velocity - e_rate)
         acceleration = (
             applied
             - system.damping * velocity

@@ -66,6 +66,20 @@ def test_only_reached_code_counts(package, file, text, changes):
     assert (fingerprint(package / "script.py", package) != before) is changes
 
 
+@pytest.mark.parametrize("name", ["flanks/rays.hpp", "bindings/flanks.cpp"])
+def test_sources_of_compiled_kernels_count_for_what_reaches_them(package, name):
+    """A changed formula in C++ would otherwise leave the stored results of the one before."""
+    kernels = package / "facegear/_kernels"
+    (kernels / "src" / name).parent.mkdir(parents=True)
+    edit(kernels / "__init__.py", "")
+    edit(kernels / "src" / name, "1")
+    without = fingerprint(package / "script.py", package)
+    edit(package / "script.py", (package / "script.py").read_text() + "import facegear._kernels\n")
+    before = fingerprint(package / "script.py", package)
+    edit(kernels / "src" / name, "2")
+    assert without != before != fingerprint(package / "script.py", package)
+
+
 def test_package_never_imports_snakemake():
     guilty = [
         str(path)

@@ -1,4 +1,6 @@
 // Motion of machines: systems, their laws, and runs over whole mesh periods.
+#include "bindings/parts.hpp"
+
 #include <memory>
 #include <utility>
 
@@ -10,7 +12,6 @@
 
 #include "bindings/arrays.hpp"
 #include "bindings/motion_runners.hpp"
-#include "bindings/parts.hpp"
 #include "motion/roots.hpp"
 
 namespace nb = nanobind;
