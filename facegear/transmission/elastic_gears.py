@@ -222,15 +222,18 @@ class ElasticGears:
         return left_out
 
     def residuals(self) -> Array:
-        """Return the compliance of each mesh that the modes leave out, (meshes, 2, 2), m/N.
+        """Compute the compliance of each mesh that the modes leave out: the residual of MacNeal 1971.
 
-        Entry [m, i, j] is the motion of flank i against its own force by a unit force on flank j; 0 is the
-        drive flank, 1 the back flank. It is the residual of MacNeal 1971, without mass.
+        Returns
+        -------
+        Array
+            Shape (meshes, 2, 2), m/N. Entry [m, i, j] is the motion of flank i against its own force by a
+            unit force on flank j; 0 is the drive flank, 1 the back flank.
         """
         sine, cosine = np.sin(self.layout.pressure_angle), np.cos(self.layout.pressure_angle)
         directions = np.array([[-sine, cosine], [-sine, -cosine]])
-        given = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
-        return np.array([given.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
+        of_gears = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
+        return np.array([of_gears.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
     def __call__(self, lumped: LinearModel) -> LinearModel:
         """The model with the coordinates of every gear behind its own.
@@ -251,17 +254,16 @@ class ElasticGears:
         `between` is the motion of either flank by a unit force on the other, m/N.
         """
         layout, gear = self.layout, self.layout.meshes[mesh][1]
-        own = layout.gears[gear]
-        modes = coordinates(self.bodies[gear], own.sign, layout.angles, layout.pressure_angle)
+        modes = coordinates(self.bodies[gear], layout.gears[gear].sign, layout.angles, layout.pressure_angle)
         omega = ATTACHED_FREQUENCY * float(np.sqrt(modes.stiffness.max()))
         way = np.sqrt(abs(between)) * omega
         column = np.zeros((len(model.rows), 1))
         column[[mesh, mesh + len(layout.meshes)], 0] = way, np.copysign(way, between)
-        lumped = model.mass_damping + model.bearing_damping * omega**2
-        none, spin = np.zeros((1, 1)), model.spin
+        damping_of_lumped_model = model.mass_damping + model.bearing_damping * omega**2
+        spin = model.spin
         if spin is not None:
             turning = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
-            spin = Spin(*(bordered(each, none) for each in turning))
+            spin = Spin(*(bordered(matrix, np.zeros((1, 1))) for matrix in turning))
         return replace(
             model,
             labels=(*model.labels, f"attached:{layout.mesh_names[mesh]}"),
@@ -271,7 +273,9 @@ class ElasticGears:
             torques=np.append(model.torques, 0.0),
             forces=np.append(model.forces, 0.0),
             lengths=np.append(model.lengths, way),
-            dampers=bordered(model.dampers, np.array([[2.0 * ATTACHED_DAMPING * omega - lumped]])),
+            dampers=bordered(
+                model.dampers, np.array([[2.0 * ATTACHED_DAMPING * omega - damping_of_lumped_model]])
+            ),
             slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool), np.zeros((2, 0, 1))),
             spin=spin,
         )

@@ -95,8 +95,8 @@ def _wedged_meshes(machine: Machine) -> list[int]:
     if machine.softening is None or not machine.softening[:, 0, 1].any():
         return []
     contacts = loaded_contacts(machine)
-    closed = np.array([state is Contact.CLOSED for state in contacts.flank_states()])
-    return coupled_meshes(machine, closed).tolist()
+    contact_mask = np.array([state is Contact.CLOSED for state in contacts.flank_states()])
+    return coupled_meshes(machine, contact_mask).tolist()
 
 
 def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...], speed: float) -> Modes:
