@@ -124,7 +124,7 @@ struct BoundPoints {
         require(starts.size() == teeth.size() + 1, "there is a first point for each pair of teeth and an end");
         require_ends(facegear::view(starts), static_cast<Index>(count), "first points rise from 0 to the number of points");
         for (const Index tooth : facegear::view(teeth)) {
-            require(std::abs(tooth) <= MOST_TEETH, "a tooth's number is out of range");
+            require(tooth >= -MOST_TEETH && tooth <= MOST_TEETH, "a tooth's number is out of range");
         }
     }
 
