@@ -33,7 +33,7 @@ def write_zig_scripts(folder: Path) -> Path:
     """
     if importlib.util.find_spec("ziglang") is None:
         raise SystemExit("There is no C++ compiler: install g++ or clang++, or `pip install ziglang`")
-    compile_for = "-O3 -s -mcpu=baseline"
+    compile_for = "-O3 -s -Qunused-arguments -mcpu=baseline"
     if sys.platform == "linux":
         library = "musl" if "musl" in sysconfig.get_config_var("SOABI") else f"gnu.{GLIBC}"
         compile_for += f" -target {platform.machine()}-linux-{library}"
@@ -90,4 +90,7 @@ def run(*command: object) -> None:
 if __name__ == "__main__":
     if sys.argv[1:] == ["--has-compiler"]:
         sys.exit(not compiler_is_installed())
-    build_in_place()
+    if sys.argv[1:2] == ["--zig"]:  # for wheels that run on older systems than this one
+        print(write_zig_scripts(Path(sys.argv[2]).resolve()))
+    else:
+        build_in_place()

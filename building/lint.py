@@ -12,7 +12,7 @@ SOURCES = kernels.ROOT / "facegear" / "_kernels" / "src"
 def main() -> int:
     """Print what the two programs find; 0 if that is nothing."""
     files = sorted([*SOURCES.rglob("*.cpp"), *SOURCES.rglob("*.hpp")])
-    commands = [["clang-format", "--dry-run", "--Werror", *files]]
+    commands = [["clang-format", "--dry-run", "--Werror", "--ferror-limit=1", *files]]
     if kernels.compiler_is_installed():
         # Headers are checked with the files that include them.
         tidy = ["clang-tidy", "--quiet", "-p", kernels.build_folder()]

@@ -38,14 +38,25 @@ class FacingPoints(NamedTuple):
     area: Array
 
     def part(self, rows: slice) -> "FacingPoints":
-        """Return the points of some rows."""
+        """Return some of the points.
+
+        Parameters
+        ----------
+        rows : slice
+            Rows of the points.
+
+        Returns
+        -------
+        FacingPoints
+            Points of these rows.
+        """
         gap, lever_arm, pinion, gear, functions, values, area = self
         return FacingPoints(
             gap[rows], lever_arm[rows], pinion[rows], gear[rows], functions[rows], values[rows], area[rows]
         )
 
 
-class Facing:
+class FacingPairs:
     """Facing points of the pairs of teeth at a position, pair by pair.
 
     Parameters
@@ -100,7 +111,7 @@ class BasisFunctions(NamedTuple):
     Attributes
     ----------
     pair : (m,)
-        Row of the function's pair in `Facing.teeth`.
+        Row of the function's pair in `FacingPairs.teeth`.
     node : (m,)
         Node of the pinion's lattice, of a function along an edge the nearest.
     gap, lever_arm : (m,)
@@ -119,13 +130,41 @@ class BasisFunctions(NamedTuple):
     average: Rows
 
 
-def functions_within(facing: Facing, cover: Cover, limit: float) -> BasisFunctions:
-    """Return the basis functions whose gap a rotation of the pinion by `limit` (rad) would close."""
-    return BasisFunctions(**kernels.find_functions(facing.kernel, cover.kernel, limit))
+def functions_within(facing_pairs: FacingPairs, cover: Cover, limit: float) -> BasisFunctions:
+    """Find the basis functions whose gap a rotation of the pinion would close.
+
+    Parameters
+    ----------
+    facing_pairs : FacingPairs
+        Points of a position that may touch.
+    cover : Cover
+        All basis functions of a pair.
+    limit : float
+        Rotation, rad.
+
+    Returns
+    -------
+    BasisFunctions
+        Functions with gap < limit * lever arm.
+    """
+    return BasisFunctions(**kernels.find_functions(facing_pairs.kernel, cover.kernel, limit))
 
 
 def chosen_rows(rows: Rows, keep: Mask) -> Rows:
-    """Return the rows marked (m,)."""
+    """Choose some of sparse rows.
+
+    Parameters
+    ----------
+    rows : Rows
+        All rows (m,).
+    keep : Mask
+        Whether a row is kept (m,).
+
+    Returns
+    -------
+    Rows
+        The kept rows (k,), whose weights have the unit of those given.
+    """
     pointer, index, weight = rows
     counts = np.diff(pointer)
     entries = np.repeat(keep, counts)

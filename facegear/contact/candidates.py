@@ -6,7 +6,14 @@ import numpy as np
 import scipy.sparse as sp
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.basis_functions import Cover, Facing, FacingPoints, Rows, chosen_rows, functions_within
+from facegear.contact.basis_functions import (
+    Cover,
+    FacingPairs,
+    FacingPoints,
+    Rows,
+    chosen_rows,
+    functions_within,
+)
 from facegear.contact.lattice import Lattice
 
 
@@ -69,12 +76,18 @@ def candidates_of(
     """
     starts, teeth = np.array([0, points.gap.size]), np.array([tooth])
     cover = Cover(min_area, first, pinion.shape, (pinion.flank_end, gear.flank_end))
-    found = functions_within(Facing(points, starts, teeth), cover, limit)
-    if found.node.size == 0:
+    functions = functions_within(FacingPairs(points, starts, teeth), cover, limit)
+    if functions.node.size == 0:
         return []
-    at = points.pinion, points.gear
     return [
         Candidates(
-            tooth, found.node, found.gap, found.lever_arm, found.fillet, found.average, at, (pinion, gear)
+            tooth=tooth,
+            hats=functions.node,
+            gap=functions.gap,
+            lever_arm=functions.lever_arm,
+            fillet=functions.fillet,
+            averages=functions.average,
+            at=(points.pinion, points.gear),
+            lattices=(pinion, gear),
         )
     ]

@@ -40,5 +40,5 @@ def product(first: sp.csr_matrix, compliance: Array | None, second: sp.csr_matri
     """
     if compliance is None:
         return np.zeros((first.shape[0], second.shape[0]))
-    used = np.unique(second.indices)
-    return np.asarray((second[:, used] @ (first @ compliance[:, used]).T).T)
+    columns = np.unique(second.indices)
+    return np.asarray((second[:, columns] @ (first @ compliance[:, columns]).T).T)

@@ -51,29 +51,58 @@ class Lattice:
         return LINEAR_STEPS if self.linear else QUADRATIC_STEPS
 
     def in_fillet(self, at: Array) -> Mask:
-        """Which points at refined coordinates (q, 2) lie beyond the flank."""
+        """Return which points lie beyond the flank.
+
+        Parameters
+        ----------
+        at : Array
+            Refined lattice coordinates (q, 2), dimensionless.
+
+        Returns
+        -------
+        Mask
+            Whether a point lies in the fillet (q,).
+        """
         return np.asarray(at[:, 0] > self.flank_end)
 
-    def interpolated(self) -> Rows:
-        """Displacements of the refined nodes as sums of those of the nodes before refinement: shared."""
-        return _interpolated(self)
+    def interpolation_rows(self) -> Rows:
+        """Interpolate from the nodes before refinement to the refined ones.
 
-    def loads(self, rows: Rows, at: Array, refined: bool = True) -> sp.csr_matrix:
-        """Nodal forces (m, nodes) of unit forces, spread by `rows` over points at refined coordinates (q, 2).
+        Returns
+        -------
+        Rows
+            Weights (n, c), dimensionless, of the displacements before refinement; shared by all callers.
+        """
+        return _interpolation_rows(self)
 
-        The nodes are the refined ones, or those before refinement.
+    def loads(self, rows: Rows, at: Array, is_refined: bool = True) -> sp.csr_matrix:
+        """Spread unit forces on nodes.
+
+        Parameters
+        ----------
+        rows : Rows
+            By which parts (m, q) each unit force acts at points, dimensionless.
+        at : Array
+            Refined lattice coordinates (q, 2) of the points, dimensionless.
+        is_refined : bool
+            Whether the nodes are the refined ones, not those before refinement.
+
+        Returns
+        -------
+        csr_matrix
+            Force (m, n) on each node by each unit force, N/N.
         """
         pointer, index, weight = rows
-        points, place = np.unique(index, return_inverse=True)
-        spread = sp.csr_matrix((weight, place, pointer), shape=(pointer.size - 1, points.size))
-        if refined:
+        points, column = np.unique(index, return_inverse=True)
+        spread = sp.csr_matrix((weight, column, pointer), shape=(pointer.size - 1, points.size))
+        if is_refined:
             return spread @ interpolation(at[points], self.shape, self.linear)
         return spread @ interpolation(at[points] / self.factors, self.coarse, self.linear)
 
 
 @lru_cache(maxsize=8)
-def _interpolated(lattice: Lattice) -> Rows:
-    refined = np.argwhere(np.ones(lattice.shape)) / lattice.factors
-    matrix = interpolation(refined, lattice.coarse, lattice.linear)
+def _interpolation_rows(lattice: Lattice) -> Rows:
+    nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
+    matrix = interpolation(nodes, lattice.coarse, lattice.linear)
     matrix.eliminate_zeros()
     return matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data

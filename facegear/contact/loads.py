@@ -58,24 +58,24 @@ def gathered(
     number, ends, gap, gear = hits
     pairs, beside = edge.gap.shape
 
-    def placed(on_edge: AnyArray, on_pinion: AnyArray) -> AnyArray:
+    def join_points(on_edge: AnyArray, on_pinion: AnyArray) -> AnyArray:
         """Return values (p, e, ...) of the edge's points and (q, ...) of the pinion's as one array."""
         parts = (on_pinion[first:last] for first, last in pairwise(ends.tolist()))
         return np.concatenate([*chain.from_iterable(zip(on_edge, parts, strict=True)), on_pinion[:0]])
 
     def at_each_pair(values: AnyArray, columns: int) -> AnyArray:
         """Return values (e, c) at the edge's points of each pair (p, e, columns), 0 in further columns."""
-        filled = np.pad(values, ((0, 0), (0, columns - values.shape[1])))
-        return np.broadcast_to(filled, (pairs, *filled.shape))
+        padded_values = np.pad(values, ((0, 0), (0, columns - values.shape[1])))
+        return np.broadcast_to(padded_values, (pairs, *padded_values.shape))
 
     gathered_points = FacingPoints(
-        gap=placed(edge.gap, gap),
-        lever_arm=placed(edge.lever_arm, points.lever_arm[number]),
-        pinion=placed(edge.pinion, points.at[number]),
-        gear=placed(at_each_pair(edge.gear, 2), gear),
-        functions=placed(at_each_pair(edge.hats, 4), points.hats[number] + first),
-        values=placed(at_each_pair(edge.values, 4), points.values[number]),
-        area=placed(np.full((pairs, beside), OF_AN_EDGE), points.area[number]),
+        gap=join_points(edge.gap, gap),
+        lever_arm=join_points(edge.lever_arm, points.lever_arm[number]),
+        pinion=join_points(edge.pinion, points.at[number]),
+        gear=join_points(at_each_pair(edge.gear, 2), gear),
+        functions=join_points(at_each_pair(edge.hats, 4), points.hats[number] + first),
+        values=join_points(at_each_pair(edge.values, 4), points.values[number]),
+        area=join_points(np.full((pairs, beside), OF_AN_EDGE), points.area[number]),
     )
     return gathered_points, ends + beside * np.arange(pairs + 1)
 

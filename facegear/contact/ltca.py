@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.contact.basis_functions import Facing
+from facegear.contact.basis_functions import FacingPairs
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.flanks import FlankPair
 from facegear.contact.known_contact import KnownContact
@@ -112,10 +112,10 @@ class _Searched:
     options: ContactOptions
     placements: list[tuple[float, float]]
     known: KnownContact | None
-    ahead: dict[int, Facing] = field(default_factory=dict)
+    ahead: dict[int, FacingPairs] = field(default_factory=dict)
     limit: float = 0.0
 
-    def at(self, row: int, limit: float) -> Facing:
+    def at(self, row: int, limit: float) -> FacingPairs:
         """Points of a position that a turn by `limit` (rad) would close, and perhaps a few more."""
         if row not in self.ahead or limit > self.limit:
             last = row + (AT_ONCE if row else 1)  # the first position says how far teeth give way
@@ -168,6 +168,6 @@ class _PairAtPosition:
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         """Solve for the contact of what a rotation of the pinion by `limit` (rad) would close."""
-        facing = self.searched.at(self.row, limit)
-        strip = self.searched.strip(self.row, facing.teeth)
-        return self.searched.solver.solve(facing, torques, limit, strip)
+        facing_pairs = self.searched.at(self.row, limit)
+        strip = self.searched.strip(self.row, facing_pairs.teeth)
+        return self.searched.solver.solve(facing_pairs, torques, limit, strip)

@@ -42,9 +42,19 @@ class PairAtPosition(Protocol):
     def base_radius(self) -> float: ...
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
-        """Solve for the contact of what a rotation of the pinion by `limit` (rad) would close.
+        """Solve for the contact of what a rotation of the pinion would close.
 
-        `torques` (t,) N m, the largest first.
+        Parameters
+        ----------
+        torques : Array
+            Torques (t,) N m, the largest first.
+        limit : float
+            Rotation, rad.
+
+        Returns
+        -------
+        PositionContact
+            Contact under these torques (t,), in SI units (N, m, rad).
         """
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from facegear._kernels import contact as kernels
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.basis_functions import Cover, Facing
+from facegear.contact.basis_functions import Cover, FacingPairs
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.lattice import Lattice
 from facegear.contact.search_strip import SearchStrip
@@ -28,8 +28,8 @@ class PositionContact:
         How many basis functions the limit of the rotation closes.
     forward
         How many of them can carry the torque.
-    sought
-        Among how many the solution is.
+    strip_size
+        Among how many functions the solution is.
     overlap
         Rotation (rad) that would part the teeth where they stand in each other.
     pair, node, lever_arm, fillet : (m,)
@@ -47,7 +47,7 @@ class PositionContact:
     steps: Integers
     candidates: int
     forward: int
-    sought: int
+    strip_size: int
     overlap: float
     pair: Integers
     node: Integers
@@ -67,7 +67,7 @@ class PositionSolver:
         Basis functions of the pair.
     lattices, bodies : Sequence
         Contact surface and compliance of pinion and gear.
-    coupled : bool
+    is_coupled : bool
         Whether a loaded tooth moves its neighbours.
     """
 
@@ -76,17 +76,19 @@ class PositionSolver:
         cover: Cover,
         lattices: Sequence[Lattice],
         bodies: Sequence[FlankCompliance],
-        coupled: bool = True,
+        is_coupled: bool = True,
     ) -> None:
-        pinion, gear = (_surface(*each) for each in zip(lattices, bodies, strict=True))
-        self._kernel = kernels.PositionSolver(cover.kernel, pinion, gear, coupled, NEWTON_STEPS, TOLERANCE)
+        pinion, gear = map(_surface, lattices, bodies)
+        self._kernel = kernels.PositionSolver(cover.kernel, pinion, gear, is_coupled, NEWTON_STEPS, TOLERANCE)
 
-    def solve(self, facing: Facing, torques: Array, limit: float, strip: SearchStrip) -> PositionContact:
+    def solve(
+        self, facing_pairs: FacingPairs, torques: Array, limit: float, strip: SearchStrip
+    ) -> PositionContact:
         """Solve for the contact of what a rotation of the pinion by `limit` closes.
 
         Parameters
         ----------
-        facing : Facing
+        facing_pairs : FacingPairs
             Points of the position that may touch.
         torques : Array
             Torques (t,) N m, the largest first.
@@ -94,34 +96,59 @@ class PositionSolver:
             Rotation, rad. If the first torque turns the pinion further, only its rotation is of use.
         strip : SearchStrip
             Where contact is sought at first.
+
+        Returns
+        -------
+        PositionContact
+            Contact under these torques (t,), in SI units (N, m, rad).
         """
-        found = self._kernel.solve(facing.kernel, torques, limit, *strip)
-        return PositionContact(teeth=facing.teeth, **found)
+        answer = self._kernel.solve(facing_pairs.kernel, torques, limit, *strip)
+        return PositionContact(teeth=facing_pairs.teeth, **answer)
 
-    def influence(self, facing: Facing, limit: float) -> Array:
-        """Return the influence matrix (m, m), m/N, of the basis functions that `limit` (rad) closes."""
-        return self._kernel.influence(facing.kernel, limit)
-
-    def approach(self, facing: Facing, limit: float, forces: Array, cases: Integers) -> Array:
-        """Return the approach (k, t), m, of the basis functions that `limit` (rad) closes, by forces on them.
+    def influence(self, facing_pairs: FacingPairs, limit: float) -> Array:
+        """Compute the influence matrix of all basis functions that a rotation of the pinion closes.
 
         Parameters
         ----------
-        facing, limit
-            As in `influence`.
-        forces : Array
-            Forces (t, m) on all of these functions, N.
-        cases : Integers
-            How many of the load cases each function (m,) is asked for, from the first on; the approach is 0
-            in others, and functions that are asked for in none are left out.
+        facing_pairs : FacingPairs
+            Points of the position that may touch.
+        limit : float
+            Rotation, rad.
+
+        Returns
+        -------
+        Array
+            Approach (m, m) of each function by a unit force on each, m/N.
         """
-        return self._kernel.approach(facing.kernel, limit, forces, cases)
+        return self._kernel.influence(facing_pairs.kernel, limit)
+
+    def approach(self, facing_pairs: FacingPairs, limit: float, forces: Array, cases: Integers) -> Array:
+        """Compute the approach of basis functions by forces on them.
+
+        Parameters
+        ----------
+        facing_pairs : FacingPairs
+            Points of the position that may touch.
+        limit : float
+            Rotation (rad) of the pinion that closes the functions (m,).
+        forces : Array
+            Forces (t, m) on all of them, N.
+        cases : Integers
+            Number of load cases, from the first on, in which the approach of each function (m,) is wanted.
+
+        Returns
+        -------
+        Array
+            Approach (k, t), m, of the functions that are wanted in any case; 0 in the others.
+        """
+        return self._kernel.approach(facing_pairs.kernel, limit, forces, cases)
 
 
 def _surface(lattice: Lattice, body: FlankCompliance) -> kernels.Surface:
     """Return the contact surface of a gear as the compiled kernels take it."""
-    own, others = (np.ascontiguousarray(array) for array in (_by_rows(body.own), body.others))
-    return kernels.Surface(lattice.shape, lattice.steps, *lattice.interpolated(), own, others, body.scale)
+    interpolation = lattice.interpolation_rows()
+    on_tooth, on_neighbours = map(np.ascontiguousarray, (_by_rows(body.own), body.others))
+    return kernels.Surface(lattice.shape, lattice.steps, *interpolation, on_tooth, on_neighbours, body.scale)
 
 
 def _by_rows(symmetric: Array) -> Array:

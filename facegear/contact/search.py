@@ -7,7 +7,7 @@ from itertools import chain, pairwise
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.basis_functions import Cover, Facing, FacingPoints
+from facegear.contact.basis_functions import Cover, FacingPairs, FacingPoints
 from facegear.contact.bodies.surface import edge_hats
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import FlankPair
@@ -53,8 +53,8 @@ def find_candidates(
     placement: angles phi1, phi2 (rad) of the unloaded gears. Pairs without any are left out.
     """
     cover, lattices = cover_of(pair, options), (pair.pinion.lattice, pair.gear.lattice)
-    facing = facing_points(pair, [placement], [teeth], limit, options)[0]
-    parts = [facing.points.part(slice(*ends)) for ends in pairwise(facing.starts.tolist())]
+    facing_pairs = facing_points(pair, [placement], [teeth], limit, options)[0]
+    parts = [facing_pairs.points.part(slice(*ends)) for ends in pairwise(facing_pairs.starts.tolist())]
     return list(
         chain(
             *(
@@ -80,7 +80,7 @@ def facing_points(
     teeth: Sequence[Integers],
     limit: float,
     options: ContactOptions,
-) -> list[Facing]:
+) -> list[FacingPairs]:
     """Points near the flank opposite, and those of both tip edges, at several placements, each with its own
     teeth: those under all hats that a turn by `limit` (rad) would close.
 
@@ -93,7 +93,7 @@ def facing_points(
     parts = []
     for (begin, end), numbers in zip(pairwise(np.cumsum([0, *counts])), teeth, strict=True):
         begun = starts[begin : end + 1]
-        parts.append(Facing(points.part(slice(begun[0], begun[-1])), begun - begun[0], numbers))
+        parts.append(FacingPairs(points.part(slice(begun[0], begun[-1])), begun - begun[0], numbers))
     return parts
 
 

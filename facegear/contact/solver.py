@@ -70,12 +70,12 @@ def solve_contact(
         raise ValueError(f"torque = {torque}: must be positive")
     if not (lever_arm > 0.0).any():
         raise NotConverged("contact", where, "no candidate point can carry the torque")
-    problem = (np.ascontiguousarray(each, float) for each in (compliance, gap, lever_arm))
+    problem = (np.ascontiguousarray(array, float) for array in (compliance, gap, lever_arm))
     begin = np.zeros(gap.size, bool) if start is None else np.ascontiguousarray(start)
-    found = kernels.solve_active_set(*problem, torque, begin, NEWTON_STEPS, TOLERANCE)
-    check_solved(found["steps"], found["residual"], gap.size, where)
-    del found["force_change"]
-    return ContactSolution(torque=torque, **found)
+    answer = kernels.solve_active_set(*problem, torque, begin, NEWTON_STEPS, TOLERANCE)
+    check_solved(answer["steps"], answer["residual"], gap.size, where)
+    del answer["force_change"]
+    return ContactSolution(torque=torque, **answer)
 
 
 def check_solved(steps: int, residual: float, points: int, where: str) -> None:
@@ -97,13 +97,13 @@ def kkt_residual(
 ) -> float:
     """Largest relative violation of balance, no tension, no penetration and complementarity."""
     distance = gap + compliance @ force - rotation * lever_arm
-    touching = force != 0.0
-    scale = np.abs(rotation * lever_arm).max() + np.abs(gap[touching]).max(initial=0.0)
+    is_pressed = force != 0.0
+    scale = np.abs(rotation * lever_arm).max() + np.abs(gap[is_pressed]).max(initial=0.0)
     return float(
         max(
             abs(lever_arm @ force - torque) / torque,
             -force.min() / force.max(),
             -distance.min() / scale,
-            np.abs(distance[touching]).max(initial=0.0) / scale,
+            np.abs(distance[is_pressed]).max(initial=0.0) / scale,
         )
     )

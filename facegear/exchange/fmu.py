@@ -1,31 +1,41 @@
-"""The dynamic model as an FMU (FMI 3.0, co-simulation) of C sources, which needs no Python where it runs."""
+"""The dynamic model as an FMU (FMI 3.0, co-simulation) of C++ sources, which needs no Python to run."""
 
 import hashlib
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from itertools import count
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree as Xml
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import AnyArray, Arrays
+from facegear.dynamics.integrator.compiled import system_numbers
+from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
-from facegear.errors import FacegearError
 from facegear.io.atomic import atomic_path
-from facegear.mesh_law.linear import LinearLaw
 from facegear.transmission.flanks import mesh_contacts
 from facegear.transmission.machine import Machine
 
 TOLERANCE = 1e-12
 """Error of a step over the length scale of the machine."""
+SLOWEST_RPM = 1.0
+"""Smallest speed of the pinions, as in a config: time is counted as mesh phase, which must go forward."""
+KERNELS = "facegear._kernels", "src"
+"""Package and folder of the sources of the motion."""
+INCLUDES = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 IDENTIFIER = "facegear_machine"
 UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}, "N.m": {"kg": "1", "m": "2", "s": "-2"}}
 """Units by their exponents of base units; rpm has a factor."""
 LETTERS = "xyz"
+COUPLING = ("dampers", "gyroscopic", "circulatory", "centrifugal")
+"""Matrices that couple coordinates, in the order of the integrator's argument."""
+SERIES = ("error", "load", "rubbing_ratios", "fourier")
+"""Names of Fourier series among the numbers of a system and of its law."""
 SHOWN_PERIODS, STEPS_PER_PERIOD = 64, 64
 """Mesh periods and communication steps in each that an importing program is offered as its experiment.
 
@@ -35,12 +45,13 @@ The motion does not depend on them: the FMU integrates with steps of its own.
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of the FMU; `start` for an input."""
+    """One variable of the FMU; `start`, and where there is one the `minimum`, for an input."""
 
     name: str
     description: str
     unit: str
     start: float | None = None
+    minimum: float | None = None
 
     @property
     def causality(self) -> str:
@@ -53,21 +64,18 @@ def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
 
     Inputs, held through a step: speed of the pinions, torque on each body; the rigid rotation of all bodies
     together is left out, so that only their balance acts. Outputs: deflection (m) and elastic force (N) of
-    every contact, force of every body on its bearing (N). Raises FacegearError for what it cannot hold:
-    forces that depend on the load, friction, bearing clearance and what turning bodies add.
+    every contact, force of every body on its bearing (N).
     """
     path, model = Path(path), build_model(machine)
-    _require_plain(model)
     header = _header(model, speed_rpm)
     token = hashlib.sha256(header.encode()).hexdigest()[:32]
-    header += f'#define TOKEN "{token}"\n'
+    sources = {**motion_sources(), "model.hpp": header.replace("TOKEN", token)}
     contents = {
         "modelDescription.xml": _description(
             _variables(machine, speed_rpm), _mesh_period(machine, speed_rpm), token
         ),
         "sources/buildDescription.xml": _build_description(),
-        "sources/fmu.c": (files("facegear.exchange") / "fmu.c").read_text(encoding="utf-8"),
-        "sources/model.h": header,
+        **{f"sources/{name}": sources[name] for name in sorted(sources)},
     }
     with atomic_path(path) as temporary, ZipFile(temporary, "w") as archive:
         for name, text in contents.items():
@@ -75,18 +83,22 @@ def write_fmu(path: str | Path, machine: Machine, speed_rpm: float) -> Path:
     return path
 
 
-def _require_plain(model: Model) -> None:
-    system, law = model.system, model.system.law
-    lost = {
-        "forces that depend on the load (mesh_law)": not isinstance(law, LinearLaw) or bool(law.pieces),
-        "friction as an excitation": system.rubbing is not None,
-        "periodic torques (excitations)": system.load.shape[2] > 1,
-        "bearing clearance": bool(system.ring_stiffness.size),
-        "coupling of turning bodies or dampers of torsional springs": system.coupling is not None,
-    }
-    for what, there in lost.items():
-        if there:
-            raise FacegearError(f"an FMU cannot hold {what}: leave it out to export this machine")
+def motion_sources() -> dict[str, str]:
+    """Collect the sources of an FMU without the numbers of the machine.
+
+    Returns
+    -------
+    dict
+        Texts by their paths below `sources`: fmu.cpp, and all headers of the motion that it includes.
+    """
+    package, folder = KERNELS
+    kernels = files(package) / folder
+    texts = {"fmu.cpp": (files("facegear.exchange") / "fmu.cpp").read_text(encoding="utf-8")}
+    names = set(INCLUDES.findall(texts["fmu.cpp"]))
+    while names := names - set(texts) - {"model.hpp"}:
+        texts |= {name: kernels.joinpath(name).read_text(encoding="utf-8") for name in names}
+        names = {name for text in texts.values() for name in INCLUDES.findall(text)}
+    return texts
 
 
 def _contacts(machine: Machine) -> list[tuple[str, str]]:
@@ -111,7 +123,7 @@ def _variables(machine: Machine, speed_rpm: float) -> list[Variable]:
     bodies = machine.layout.body_names
     contacts = _contacts(machine)
     variables = [
-        Variable("speed", "Speed of the pinions", "rpm", speed_rpm),
+        Variable("speed", "Speed of the pinions", "rpm", speed_rpm, SLOWEST_RPM),
         *(
             Variable(f"torque_{body}", f"Torque on {body}", "N.m", float(torque))
             for body, torque in zip(bodies, machine.torques, strict=True)
@@ -147,62 +159,113 @@ def unique_words(names: Sequence[str]) -> list[str]:
 
 
 def _header(model: Model, speed_rpm: float) -> str:
-    """The numbers of the machine as C."""
-    machine, system, reduced = model.machine, model.system, model.reduced
-    linear, layout = machine.linear, machine.layout
-    spins = reduced.basis[machine.torque_coordinates].T  # load of each coordinate by each body's torque
-    law = system.law
-    assert isinstance(law, LinearLaw)
+    """Write the numbers of the machine as C++; TOKEN stands for what the sources are recognised by."""
+    machine, linear, law = model.machine, model.machine.linear, model.system.law
+    spins = model.reduced.basis[machine.torque_coordinates].T  # load of each coordinate by each body's torque
+    load = model.system.load.copy()
+    load[:, 1, 0] -= spins @ machine.torques
+    kernel_law = type(law.compiled).__name__
     held = linear.translations.ravel()
-    bearing = linear.stiffness[held] @ reduced.basis
-    damping = linear.bearing_damping * bearing + linear.dampers[held] @ reduced.basis
-    stiffness, error = law.fourier[law.kind], system.error[system.error_kind]
-    sizes = {
-        "COORDINATES": system.size,
-        "CONTACTS": system.contacts,
-        "BODIES": len(layout.bodies),
-        "STIFFNESS_TERMS": stiffness.shape[2],
-        "ERROR_TERMS": error.shape[2],
-        "PINION_TEETH": layout.pinion_teeth,
-        "DAMPING_WHEN_OPEN": int(system.damping_when_open),
-        "PUSH_ONLY": int(system.push_only),
+    bearing = linear.stiffness[held] @ model.reduced.basis
+    dampers = linear.bearing_damping * bearing + linear.dampers[held] @ model.reduced.basis
+    in_rings = (3 * linear.rings.body[:, None] + [0, 1]).ravel()  # their forces are the motion's own
+    bearing[in_rings] = dampers[in_rings] = 0.0
+    constants = {
+        "bodies": len(machine.layout.bodies),
+        "pinion_teeth": machine.layout.pinion_teeth,
+        "order": Settings(tolerance=TOLERANCE).taylor_order,
     }
-    scale = system.scale / float(np.abs(system.mesh_jacobian).max())
-    rate = float(np.sqrt(max(system.omega_squared.max(), 1.0)))
-    scales = {"TOLERANCE": TOLERANCE, "COORDINATE_SCALE": scale, "RATE_SCALE": rate}
     arrays = {
-        "jacobian": system.mesh_jacobian,
-        "omega_squared": system.omega_squared,
-        "damping": system.damping,
-        "mesh_damping": system.mesh_damping,
-        "lower": system.lower,
-        "upper": system.upper,
-        "stiffness_sine": stiffness[:, 0],
-        "stiffness_cosine": stiffness[:, 1],
-        "error_sine": error[:, 0],
-        "error_cosine": error[:, 1],
-        "load": system.load[:, 1, 0] - spins @ machine.torques,
         "load_of_torque": spins,
         "bearing_stiffness": bearing,
-        "bearing_damping": damping,
+        "bearing_damping": dampers,
+        "body_in_ring": linear.rings.body.astype(np.int64),
         "start_coordinates": static_start(model).displacement,
         "start_input": np.append(speed_rpm, machine.torques),
     }
-    lines = [f"#define {name} {value}" for name, value in sizes.items()]
-    lines += [f"#define {name} {value!r}" for name, value in scales.items()]
-    lines += [_c_array(name, np.asarray(values, dtype=float)) for name, values in arrays.items()]
-    return "\n".join(lines) + "\n"
+    numbers = {**system_numbers(model.system), "load": load}
+    return "\n".join(
+        [
+            "// Numbers of the machine.",
+            "#pragma once",
+            "",
+            '#include "motion/system.hpp"',
+            "",
+            "namespace model {",
+            "",
+            "using facegear::motion::Index;",
+            "using facegear::motion::infinity;",
+            f"using Law = facegear::motion::{kernel_law};",
+            "",
+            'constexpr char token[] = "TOKEN";',
+            *(f"constexpr Index {name} = {value};" for name, value in constants.items()),
+            f"constexpr double tolerance = {TOLERANCE!r}, slowest = {SLOWEST_RPM!r};",
+            "",
+            *(_function(name, values) for name, values in arrays.items()),
+            "",
+            "inline facegear::motion::System make_system() {",
+            "    facegear::motion::System s;",
+            *(f"    {line}" for line in _system_lines(numbers)),
+            "    const auto law = std::make_shared<Law>();",
+            *(f"    {line}" for line in _law_lines(law.numbers)),
+            "    s.law = std::shared_ptr<const Law>(law);",
+            "    s.prepare();",
+            "    return s;",
+            "}",
+            "",
+            "} // namespace model",
+            "",
+        ]
+    )
 
 
-def _c_array(name: str, values: Array) -> str:
-    sizes = "".join(f"[{size}]" for size in values.shape)
-    return f"static const double {name}{sizes} = {_c_values(values)};"
+def _function(name: str, values: AnyArray) -> str:
+    kind = "Index" if values.dtype.kind == "i" else "double"
+    return f"inline std::vector<{kind}> {name}() {{ return {_list(values)}; }}"
 
 
-def _c_values(values: Array) -> str:
-    if values.ndim == 0:
-        return repr(float(values)).replace("inf", "INFINITY")
-    return "{" + ", ".join(_c_values(part) for part in values) + "}"
+def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
+    """Statements that fill facegear::motion::System."""
+    rows, n = numbers["jacobian"].shape
+    contacts = rows - 3 * numbers["ring_stiffness"].size
+    yield f"s.n = {n}, s.m = {rows}, s.contacts = {contacts};"
+    yield f"s.coupled = {_text_of(numbers['coupling'].size > 0)};"
+    for name, values in numbers.items():
+        if name == "coupling":
+            for part, matrix in zip(COUPLING, values, strict=False):
+                yield f"s.coupling.{part} = {_list(matrix)};"
+        else:
+            yield f"s.{name} = {_series(values) if name in SERIES else _value(values)};"
+
+
+def _law_lines(numbers: Arrays) -> Iterator[str]:
+    """Statements that fill one of the laws of facegear::motion."""
+    for name, values in numbers.items():
+        if name == "table":
+            kinds, levels, harmonics = values.shape[:3]
+            yield f"law->kinds = {kinds}, law->level_count = {levels}, law->harmonics = {harmonics};"
+        if name == "pieces":
+            yield f"law->degrees = {values.shape[1]};"
+        yield f"law->{name} = {_series(values) if name in SERIES else _list(values)};"
+
+
+def _series(values: AnyArray) -> str:
+    """Fourier series (kinds, 2, harmonics + 1) as facegear::motion::FourierRows."""
+    return f"{{{values.shape[0]}, {values.shape[2]}, {_list(values)}}}"
+
+
+def _value(value: Any) -> str:
+    return _list(value) if isinstance(value, np.ndarray) else _text_of(value)
+
+
+def _list(values: AnyArray) -> str:
+    return "{" + ", ".join(_text_of(value) for value in values.ravel().tolist()) + "}"
+
+
+def _text_of(value: float | bool) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value).replace("inf", "infinity")
 
 
 def _mesh_period(machine: Machine, speed_rpm: float) -> float:
@@ -241,8 +304,9 @@ def _description(variables: Sequence[Variable], mesh_period: float, token: str) 
     for reference, variable in enumerate(variables, start=1):
         keys = {"name": variable.name, "valueReference": str(reference), "causality": variable.causality}
         keys |= {"variability": "continuous", "description": variable.description, "unit": variable.unit}
-        start = {} if variable.start is None else {"start": repr(variable.start)}
-        Xml.SubElement(listed, "Float64", {**keys, **start})
+        for key, value in (("min", variable.minimum), ("start", variable.start)):
+            keys |= {} if value is None else {key: repr(value)}
+        Xml.SubElement(listed, "Float64", keys)
     structure = Xml.SubElement(root, "ModelStructure")
     for kind in ("Output", "InitialUnknown"):
         for reference, variable in enumerate(variables, start=1):
@@ -254,8 +318,9 @@ def _description(variables: Sequence[Variable], mesh_period: float, token: str) 
 def _build_description() -> str:
     root = Xml.Element("fmiBuildDescription", fmiVersion="3.0")
     build = Xml.SubElement(root, "BuildConfiguration", modelIdentifier=IDENTIFIER)
-    sources = Xml.SubElement(build, "SourceFileSet", language="C99")
-    Xml.SubElement(sources, "SourceFile", name="fmu.c")
+    sources = Xml.SubElement(build, "SourceFileSet", language="C++17")
+    Xml.SubElement(sources, "SourceFile", name="fmu.cpp")
+    Xml.SubElement(sources, "IncludeDirectory", name=".")
     return _text(root)
 
 

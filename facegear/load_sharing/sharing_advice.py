@@ -39,7 +39,7 @@ SOFTER, STIFFER = 0.5, 2.0
 TOLERANCE = 1e-6
 """Relative difference of stiffnesses, angles or radii below which they count as equal."""
 ADVICE_COLUMNS = (
-    *("group", "kind", "change", "from_to", "k_gamma", "predicted", "found", "gain"),
+    *("group", "kind", "change", "from_to", "k_gamma", "found", "gain", "predicted_gain"),
     *("worst", "worst_found"),
 )
 IDLERS = (Role.IDLER, Role.TAIL)
@@ -84,21 +84,24 @@ def advice(machine: Machine, options: MapOptions) -> pd.DataFrame:
     -------
     pd.DataFrame
         ADVICE_COLUMNS, one row a change and group, the largest gain of each group first. k_gamma and found
-        are the percentile JUDGED_LEVEL of idlers, or the value of an input, before and after; predicted is
-        the closed form's, nan where it has none. worst and worst_found: the largest of all groups before and
-        after, by which the machine as a whole is judged. Raises NotConverged.
+        are the percentile JUDGED_LEVEL of idlers, or the value of an input, before and after, gain their
+        difference; predicted_gain is that of the closed forms alone, nan where there is none. worst and
+        worst_found: the largest of all groups before and after, by which the machine as a whole is judged.
+        Raises NotConverged.
     """
     mapped, rows = MappedMachine(machine), []
     groups = [group for group in split_groups(machine.layout) if _is_loaded(mapped, group)]
     before = {group.name: judged_factor(mapped, group, options) for group in groups}
+    closed_before = {group.name: predicted_factor(mapped, group, options) for group in groups}
     for change in _changes(machine, options):
         after = {group.name: judged_factor(change.machine, group, change.options) for group in groups}
         for group in groups:
-            predicted = predicted_factor(change.machine, group, change.options, change.freedom)
+            closed_after = predicted_factor(change.machine, group, change.options, change.freedom)
             now, factor_after = before[group.name], after[group.name]
             key = (group.name, group.kind.value, change.words, change.from_to)
             worst = max(before.values()), max(after.values())
-            rows.append((*key, now, predicted, factor_after, now - factor_after, *worst))
+            gains = now - factor_after, closed_before[group.name] - closed_after
+            rows.append((*key, now, factor_after, *gains, *worst))
     table = pd.DataFrame(rows, columns=list(ADVICE_COLUMNS))
     order = {group.name: number for number, group in enumerate(groups)}
     return table.sort_values(
@@ -150,8 +153,10 @@ def predicted_factor(
     -------
     float
         Dimensionless: the loop formula for an input, the percentile JUDGED_LEVEL for idlers; nan where
-        there is no closed form.
+        there is no closed form, as for a gear that floats while inputs guide it.
     """
+    if freedom is not None and input_groups(mapped.machine):
+        return float("nan")
     if group.kind is GroupKind.INPUTS:
         return loop_factor(mapped, group)
     even = float(mapped.even(group).sum())
@@ -187,14 +192,16 @@ def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
                 now = mapped.bearing(groups[0])
                 words = f"{verb} the radial stiffness of the bearings of the {name}"
                 new_machine = MappedMachine(with_scaled_bearings(machine, roles, factor))
-                yield Change(words, f"{now:.3g} to {factor * now:.3g} N/m", new_machine, options)
+                yield Change(
+                    words, f"{1e-6 * now:.3g} to {1e-6 * factor * now:.3g} N/um", new_machine, options
+                )
     for floating, sides in FLOATING.items():
         if floating == AS_GIVEN or not idlers or floating_machine(machine, idlers[0], floating) is None:
             continue
         words = "let both face gears float" if len(sides) > 1 else f"let the {floating} face gear float"
         stiffness = min(gear.body.bearing[0] for gear in machine.layout.gears if gear.side in sides)
         floating_gear = MappedMachine(floated(machine, sides))
-        yield Change(words, f"{stiffness:.3g} to 0 N/m in its plane", floating_gear, options, 1.0)
+        yield Change(words, f"{1e-6 * stiffness:.3g} to 0 N/um in its plane", floating_gear, options, 1.0)
     if (half := float(machine.half_backlashes.mean())) > 0.0:
         new_machine = MappedMachine(with_half_backlash(machine, SOFTER * half))
         yield Change(

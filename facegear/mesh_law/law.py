@@ -4,7 +4,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Arrays
 
 
 class Held(Protocol):
@@ -69,6 +69,10 @@ class MeshLaw(Protocol):
         """The law at K phases for statics. Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any
         other, statics asks the law itself, position by position.
         """
+
+    @property
+    def numbers(self) -> Arrays:
+        """Its arrays by the names that the integrator's function for this law takes."""
 
     @property
     def compiled(self) -> Any:

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from facegear._kernels import motion
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Arrays, Integers
 from facegear.harmonics.series import Harmonics, stacked, stacked_values
 from facegear.mesh_law.laws_at_phases import LinearHeld
 
@@ -136,15 +136,20 @@ class LinearLaw:
         """k at some phases."""
         return LinearHeld(self.stiffness(cycles))
 
+    @property
+    def numbers(self) -> Arrays:
+        """Its arrays as the integrator takes them."""
+        return {
+            "fourier": np.ascontiguousarray(self.fourier, dtype=float),
+            "kind": np.ascontiguousarray(self.kind, np.int64),
+            "breaks": 2.0 * np.pi * self.breaks,
+            "pieces": _pieces(self),
+        }
+
     @cached_property
     def compiled(self) -> motion.LinearLaw:
         """What the integrator takes of it."""
-        return motion.linear_law(
-            np.ascontiguousarray(self.fourier, dtype=float),
-            np.ascontiguousarray(self.kind, np.int64),
-            2.0 * np.pi * self.breaks,
-            _pieces(self),
-        )
+        return motion.linear_law(**self.numbers)
 
 
 def linear_law(series: Sequence[Harmonics]) -> LinearLaw:

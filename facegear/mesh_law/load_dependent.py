@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from facegear._kernels import motion
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Arrays, Integers
 from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
 from facegear.mesh_law.laws_at_phases import LoadDependentHeld
 from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
@@ -120,12 +120,16 @@ class LoadDependentLaw:
             self.kind,
         )
 
+    @property
+    def numbers(self) -> Arrays:
+        """Its arrays as the integrator takes them."""
+        kind = np.ascontiguousarray(self.kind, np.int64)
+        return {"table": _columns(self), "levels": self._levels, "kind": kind}
+
     @cached_property
     def compiled(self) -> motion.LoadDependentLaw:
         """What the integrator takes of it."""
-        return motion.load_dependent_law(
-            _columns(self), self._levels, np.ascontiguousarray(self.kind, np.int64)
-        )
+        return motion.load_dependent_law(**self.numbers)
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:

@@ -45,7 +45,7 @@ def campbell(
     marks += _marks(jumps[irregular], "speed_after_rpm", teeth, "plus", "irregular motion")
     speed = Axis("Input speed", "rpm", low=0.0, high=last_rpm)
     panel = Panel(speed, Axis("Frequency", "kHz", low=0.0, high=1e-3 * top), marks, height=3.8)
-    return Figure([panel], legend_title="modes by class, and what the sweep found at the strongest mode")
+    return Figure([panel], legend_title="modes by class, and what the sweep found")
 
 
 def _on_line(orders: pd.Series) -> pd.Series:

@@ -146,7 +146,7 @@ def _title(arrays: Arrays, torque: float) -> str:
     pressure, error = (1e-6 * arrays[f"line_{name}_pa"][on][at] for name in ("pressure", "error"))
     tips = np.isin(arrays["line_where"][on], [EDGES.index("pinion tip"), EDGES.index("gear tip")])
     tip = 1e-3 * arrays["line_load_n_per_m"][on][tips].max(initial=0.0)
-    edge = f"; tip edges up to {format_number(tip)} N/mm" if tip > 0 else ""
+    edge = f"; tip edges {format_number(tip)} N/mm" if tip > 0 else ""
     return (
         f"{format_number(torque, 4)} N m: {format_number(pressure)} ± {format_number(round(error))} MPa{edge}"
     )

@@ -5,6 +5,7 @@ Texts are plain, with line ends where they are wanted. Numbers are in the unit t
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import log10
 from typing import Any, Literal
 
 import numpy as np
@@ -20,6 +21,8 @@ NARROW = 4.7
 """Width in inches of figures that a telephone shows whole: at 500 px their 9 pt text is 12 px high."""
 MARGIN = 0.05
 """Room beside the data on an axis without limits, in its range."""
+NO_RANGE = 1e-5
+"""Range of values, over the largest, up to which they are drawn as equal: rounding alone moves them."""
 
 
 @dataclass(frozen=True)
@@ -361,6 +364,12 @@ class Figure:
             for panel in self.panels
         )
 
+    @property
+    def shared_scale(self) -> ColourScale | None:
+        """Colour scale of several panels, whose bar lies above them; None where each has its own."""
+        scales = [scale for panel in self.panels for scale in panel.scales()]
+        return scales[0] if len(scales) > 1 and len(set(scales)) == 1 else None
+
     def shows_x(self, number: int) -> bool:
         """Return whether a panel has the label of its x axis below it.
 
@@ -375,6 +384,21 @@ class Figure:
             False where a panel below shares the axis.
         """
         return not self.shared_x or number + self.columns >= len(self.panels)
+
+    def shows_y(self, number: int) -> bool:
+        """Return whether a panel has the label of its y axis beside it.
+
+        Parameters
+        ----------
+        number : int
+            Number of the panel, from 0, dimensionless.
+
+        Returns
+        -------
+        bool
+            False where a panel at its left shares the axis.
+        """
+        return not self.shared_y or number % self.columns == 0
 
     def limits(self, number: int, letter: Letter) -> tuple[float, float]:
         """Return the ends of an axis of a panel; panels that share the axis have the same.
@@ -529,22 +553,26 @@ def _extent_of_bars(bars: Bars, letter: Letter) -> list[float]:
 
 
 def _limits(panels: Sequence[Panel], letter: Letter) -> tuple[float, float]:
-    axes = [getattr(panel, letter) for panel in panels]
+    axes: list[Axis] = [getattr(panel, letter) for panel in panels]
     values = np.concatenate(
         [np.zeros(0), *(extent(mark, letter) for panel in panels for mark in panel.marks)]
     )
-    logarithmic = axes[0].logarithmic
-    if logarithmic:
-        values = np.log10(values[values > 0.0])
-    low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 1.0)
-    margin = MARGIN * (high - low) or max(MARGIN * abs(high), MARGIN)
-    ends = (low - margin, high + margin)
-    limits_given = [
-        [getattr(axis, end) for axis in axes if getattr(axis, end) is not None] for end in ("low", "high")
-    ]
-    values_found = [10.0**end if logarithmic else end for end in ends]
-    first, last = (
-        choose(limits_known) if limits_known else end
-        for choose, limits_known, end in zip((min, max), limits_given, values_found, strict=True)
-    )
-    return (first, last) if first < last else (first, first + 1.0)
+    lows = [axis.low for axis in axes if axis.low is not None]
+    highs = [axis.high for axis in axes if axis.high is not None]
+    if axes[0].logarithmic:
+        logarithms = np.log10(values[values > 0.0])
+        ends = _with_margin(logarithms, [log10(low) for low in lows], [log10(high) for high in highs])
+        return 10.0 ** ends[0], 10.0 ** ends[1]
+    return _with_margin(values, lows, highs)
+
+
+def _with_margin(values: Array, lows: Sequence[float], highs: Sequence[float]) -> tuple[float, float]:
+    """Ends that are given, and else room beside the values."""
+    low = min(lows) if lows else float(values.min(initial=np.inf))
+    high = max(highs) if highs else float(values.max(initial=-np.inf))
+    if not np.isfinite([low, high]).all() or high - low <= NO_RANGE * max(abs(low), abs(high)):
+        middle = next((end for end in (low, high) if np.isfinite(end)), 0.5)
+        reach = max(MARGIN * abs(middle), MARGIN)
+        return (middle if lows else middle - reach), middle + reach
+    margin = MARGIN * (high - low)
+    return (low if lows else low - margin), (high if highs else high + margin)

@@ -88,7 +88,7 @@ MARKERS = {
 """Markers of matplotlib by the names that plotly.js has for them."""
 MANY_MARKS = 1000
 """Marks of one curve from which a svg holds them as an image."""
-LETTER, HANDLE, LINE_HEIGHT = 0.067, 0.56, 0.18
+LETTER, HANDLE, LINE_HEIGHT = 0.064, 0.53, 0.18
 """In inches: width of a letter of 9 pt, of an entry of the legend without its name, height of a line."""
 TICKS = 0.2
 """Inches of the numbers below an axis."""
@@ -227,7 +227,7 @@ def _height(figure: Figure) -> float:
             height += LINE_HEIGHT * max(_lines(panel.x.label) for panel in panels) if last else 0.0
     shared_keys = entries([panel for panel in figure.panels if not panel.own_legend], figure.keys)
     height += _legend_height(shared_keys, figure.width) + LINE_HEIGHT * bool(figure.legend_title)
-    height += 0.55 * _has_bar_above(figure)
+    height += 0.55 * (figure.shared_scale is not None)
     return height + LINE_HEIGHT * _lines(wrap_text(figure.title, figure.width))
 
 
@@ -236,11 +236,10 @@ def _lines(text: str) -> int:
 
 
 def _columns(keys: Sequence[Key], width: float) -> int:
-    """Most columns of a legend that fit into a width; entries stand below each other first."""
+    """Most columns of a legend that fit into a width; matplotlib fills one after the other."""
+    lengths = [len(key.name) for key in keys]
     for columns in range(len(keys), 1, -1):
-        rows = ceil(len(keys) / columns)
-        parts = [keys[first : first + rows] for first in range(0, len(keys), rows)]
-        if sum(HANDLE + LETTER * max(len(key.name) for key in part) for part in parts) < width:
+        if sum(HANDLE + LETTER * part.max() for part in np.array_split(lengths, columns)) < width:
             return columns
     return 1
 
@@ -300,7 +299,7 @@ def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
         if axis.logarithmic:
             getattr(on, f"set_{letter}scale")("log")
         getattr(on, f"set_{letter}lim")(*((high, low) if axis.is_falling else (low, high)))
-        if letter == "y" or figure.shows_x(number):
+        if figure.shows_y(number) if letter == "y" else figure.shows_x(number):
             getattr(on, f"set_{letter}label")(axis.label)
         _ticks(getattr(on, f"{letter}axis"), axis, log10(high / low) if axis.logarithmic else 0.0, letter)
     if panel.equal:
@@ -369,16 +368,9 @@ def _handle(key: Key) -> Any:
     )
 
 
-def _has_bar_above(figure: Figure) -> bool:
-    """Whether all panels share one colour scale whose bar lies above them."""
-    scales = [scale for panel in figure.panels for scale in panel.scales()]
-    return len(figure.panels) > 1 and len(scales) > 1 and len(set(scales)) == 1
-
-
 def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) -> None:
     """Bars of colours: one above all panels that share a scale, else one beside each."""
-    if _has_bar_above(figure):
-        (scale,) = {scale for panel in figure.panels for scale in panel.scales()}
+    if scale := figure.shared_scale:
         mpl_figure.colorbar(_colours(scale), ax=list(axes), location="top", aspect=40, label=scale.label)
         return
     for panel, on in zip(figure.panels, axes, strict=True):

@@ -27,6 +27,7 @@ from facegear.plots.plotly_marks import (
     Part,
     PlotlyAxes,
     key_trace,
+    legend_text,
     level_bar,
     markup,
     note,
@@ -42,11 +43,18 @@ for half of a number at the right; height of the numbers below an axis.
 """
 MIN_HEIGHT = 280
 """Pixels that every figure is high."""
-LEGEND_WIDTH, ENTRY, LETTER = 430, 50, 6.5
-"""In pixels: the narrowest legend; of its entries the part without letters, and each letter."""
-UPRIGHT, LABEL = 7, 42
+LEGEND_WIDTH, NARROW_WIDTH, ENTRY, LETTER = 380, 255, 48, 6.6
+"""In pixels: width of a legend beside other figures and on a telephone; of its entries the part without
+letters, and each letter.
+"""
+ENTRY_HEIGHT, WHOLE_LEGEND = 28, 2000
+"""In pixels: height of an entry of a legend; height from which a legend would be rolled."""
+UPRIGHT, LABEL = 7, 46
 """Letters of a tick's name that stand upright, and of the longest line of a label or title."""
-APART = 0.16
+BAR = 58
+"""Pixels of a bar of colours that lies above all panels, with its numbers and its label."""
+LETTERS: tuple[Letter, Letter] = ("x", "y")
+APART = 0.2
 """Room between columns of panels, in the width of all."""
 SHORT = 1.3
 """Decades of a logarithmic axis below which it names 1, 2 and 5 of each."""
@@ -63,7 +71,8 @@ def interactive(figure: Figure) -> dict[str, Any]:
     Returns
     -------
     dict
-        `title`, `data` and `layout`; no data where it is a drawing, which the page shows as it stands.
+        `title`, `data` and `layout`, and by how many pixels it is higher on a telephone (`narrow_px`); no
+        data where it is a drawing, which the page shows as it stands.
     """
     if figure.is_drawing:
         return {"title": "", "data": [], "layout": {}}
@@ -86,8 +95,8 @@ def interactive(figure: Figure) -> dict[str, Any]:
     _list_once(data)
     in_legend = {trace["name"] for trace in data if trace.get("showlegend")}
     keys = entries(figure.panels, figure.keys)
-    data += [key_trace(key) for key in keys if markup(key.name) not in in_legend]
-    layout = _layout(figure, targets, domains, [key.name for key in keys])
+    data += [key_trace(key) for key in keys if legend_text(key.name) not in in_legend]
+    layout = _layout(figure, targets, domains)
     marks = [(target, mark) for target in targets for mark in target.panel.marks]
     layout["shapes"] = [shape(target, mark) for target, mark in marks if isinstance(mark, Line | Span)]
     layout["annotations"] = [
@@ -95,7 +104,8 @@ def interactive(figure: Figure) -> dict[str, Any]:
         *(_title(target) for target in targets if target.panel.title),
     ]
     layout["hovermode"] = "closest" if closest else "x unified"
-    return {"title": markup(figure.title), "data": data, "layout": layout}
+    narrow_px = _legend_height(figure, NARROW_WIDTH) - _legend_height(figure, LEGEND_WIDTH)
+    return {"title": markup(figure.title), "data": data, "layout": layout, "narrow_px": round(narrow_px)}
 
 
 def write(figure: Figure, path: Path) -> None:
@@ -198,30 +208,34 @@ def _title(target: PlotlyAxes) -> Part:
     }
 
 
-def _layout(
-    figure: Figure, targets: Sequence[PlotlyAxes], domains: Any, names: Sequence[str]
-) -> dict[str, Any]:
+def _layout(figure: Figure, targets: Sequence[PlotlyAxes], domains: Any) -> dict[str, Any]:
     """Layout without shapes and annotations: axes, legend, margins and height."""
     across, upwards, inside = domains
-    above = GAP + LINE * max(_lines(panel.title) for panel in figure.panels[: figure.columns])
+    below_legend = _above(figure) + BAR * (figure.shared_scale is not None)
     layout: dict[str, Any] = {
         "legend": {
             "orientation": "h",
             "x": 0,
             "xanchor": "left",
-            "y": 1.0 + above / inside,
+            "y": 1.0 + below_legend / inside,
             "yanchor": "bottom",
-            "title": {"text": markup(figure.legend_title), "side": "top"},
+            "title": {"text": markup(narrow(figure.legend_title)), "side": "top"},
+            "maxheight": WHOLE_LEGEND,
         },
         "barmode": "overlay",
-        "margin": {"l": GAP, "r": EDGE + _width_beside(figure), "t": round(above), "b": GAP},
+        "margin": {"l": GAP, "r": EDGE + _width_beside(figure), "t": round(below_legend), "b": GAP},
         "separators": ".,",
     }
     middle = figure.rows // 2 * figure.columns
     for number, target in enumerate(targets):
         row, column = divmod(number, figure.columns)
         label = "\n".join(
-            text for text in (target.panel.y.label, figure.y_label if number == middle else "") if text
+            text
+            for text in (
+                target.panel.y.label if figure.shows_y(number) else "",
+                figure.y_label if number == middle else "",
+            )
+            if text
         )
         layout[f"yaxis{target.y[1:]}"] = {
             **_axis(target.panel.y, label, figure.limits(number, "y")),
@@ -241,15 +255,31 @@ def _layout(
                     )
                 },
             }
-    height = inside + above + _legend_height(figure.legend_title, names) + _below(targets[-1].panel.x) + GAP
+    height = inside + below_legend + _legend_height(figure, LEGEND_WIDTH) + _below(targets[-1].panel.x) + GAP
     layout["height"] = round(max(height, MIN_HEIGHT))
     return layout
 
 
-def _legend_height(title: str, names: Sequence[str]) -> float:
-    """Pixels that a legend takes where there is least room for it."""
-    rows = np.ceil(sum(ENTRY + LETTER * len(name) for name in names) / LEGEND_WIDTH)
-    return float(LINE * ((title != "") + 1.2 * rows))
+def _above(figure: Figure) -> float:
+    """Pixels that titles of the first row, and texts at the upper ends of its panels, take above it."""
+    lines = 0
+    for number, panel in enumerate(figure.panels[: figure.columns]):
+        top = figure.limits(number, "y")[1]
+        texts = [mark for mark in panel.marks if isinstance(mark, Text) and mark.upright == "bottom"]
+        lines = max(lines, _lines(panel.title) + any(mark.y >= 0.99 * top for mark in texts))
+    return GAP + LINE * lines
+
+
+def _legend_height(figure: Figure, width: float) -> float:
+    """Pixels that the legend takes in a width: its entries stand beside each other as long as they fit."""
+    height, row, row_width = float(LINE * _lines(figure.legend_title)), 0.0, 0.0
+    for key in entries(figure.panels, figure.keys):
+        lines = legend_text(key.name).split("<br>")
+        entry = ENTRY + LETTER * max(map(len, lines))
+        if row_width + entry > width or not row_width:
+            height, row, row_width = height + row, 0.0, 0.0
+        row, row_width = max(row, ENTRY_HEIGHT + LINE * (len(lines) - 1)), row_width + entry
+    return height + row
 
 
 def _width_beside(figure: Figure) -> int:
@@ -267,7 +297,7 @@ def _axis(axis: Axis, label: str, ends: tuple[float, float]) -> dict[str, Any]:
     """Label, range, kind and named ticks of an axis."""
     limits = np.log10(ends) if axis.logarithmic else np.array(ends)
     layout_axis: dict[str, Any] = {
-        "title": {"text": markup(narrow(label)), "standoff": 5},
+        "title": {"text": markup(narrow(label))},
         "type": "log" if axis.logarithmic else "linear",
         "range": numbers(limits[::-1] if axis.is_falling else limits),
         "automargin": True,
@@ -275,8 +305,8 @@ def _axis(axis: Axis, label: str, ends: tuple[float, float]) -> dict[str, Any]:
     if axis.ticks:
         layout_axis["tickvals"] = [float(at) for at, _ in axis.ticks]
         layout_axis["ticktext"] = [markup(name) for _, name in axis.ticks]
-    elif axis.logarithmic:
-        layout_axis["dtick"] = "D2" if np.ptp(limits) < SHORT else 1
+    elif axis.logarithmic and np.ptp(limits) < SHORT:
+        layout_axis["dtick"] = "D2"
     elif axis.integer:
         layout_axis["tickformat"] = ",d"
     return layout_axis
@@ -285,20 +315,19 @@ def _axis(axis: Axis, label: str, ends: tuple[float, float]) -> dict[str, Any]:
 def _colour_bars(
     figure: Figure, targets: Sequence[PlotlyAxes], traces_by_panel: Sequence[list[Part]], domains: Any
 ) -> None:
-    """Give maps and coloured points their bar of colours; those with one scale share it."""
-    _, upwards, _ = domains
-    users = [scale for target in targets for scale in target.panel.scales()]
+    """Give maps and coloured points their bar of colours: beside a panel, or above all that share it."""
+    _, upwards, inside = domains
     scales_shown = set()
     for number, (target, own_traces) in enumerate(zip(targets, traces_by_panel, strict=True)):
         for scale in target.panel.scales():
-            low, high = (0.0, 1.0) if users.count(scale) > 1 else upwards[number // figure.columns]
-            bar = {
-                "title": {"text": markup(narrow(scale.label)), "side": "right"},
-                "len": round(high - low, 5),
-                "y": round(0.5 * (low + high), 5),
-                "thickness": 14,
-                "outlinewidth": 0,
-            }
+            low, high = upwards[number // figure.columns]
+            bar = {"len": round(high - low, 5), "y": round(0.5 * (low + high), 5)}
+            if figure.shared_scale:
+                lying = {"orientation": "h", "x": 0, "xanchor": "left", "len": 1}
+                bar = {**lying, "y": 1.0 + _above(figure) / inside, "yanchor": "bottom"}
+            side = "top" if figure.shared_scale else "right"
+            title = {"text": markup(narrow(scale.label)), "side": side}
+            bar |= {"title": title, "thickness": 14, "outlinewidth": 0}
             for trace in own_traces:
                 coloured = trace if trace["type"] == "heatmap" else trace.get("marker", {})
                 if "colorscale" in coloured:
@@ -307,6 +336,3 @@ def _colour_bars(
                 x, y = (float(np.mean(figure.limits(number, letter))) for letter in LETTERS)
                 own_traces.append(level_bar(target, scale, (x, y), bar))
             scales_shown.add(scale)
-
-
-LETTERS: tuple[Letter, Letter] = ("x", "y")

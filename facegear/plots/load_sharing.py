@@ -51,10 +51,10 @@ def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band |
     time = 1e3 * curve["time_s"]
     if (curve["envelope_high"] - curve["envelope_low"]).max() > ENVELOPE:
         yield Band(time, curve["envelope_low"], curve["envelope_high"], colour=colour, opacity=0.12)
-    width = f" ± {format_number(mean['half_width'], 2)}" if mean["half_width"] > 0.005 else ""
+    width = f" ± {format_number(mean['half_width'], 1)}" if mean["half_width"] > 0.005 else ""
     name = f"{curve['label'].iloc[0]}: mean {format_number(mean['mean'])}{width}, {mean['motion']}"
     if mean["undefined_fraction"] > 0.005:
-        name += f", no load {format_number(100 * mean['undefined_fraction'], 2)} % of the time"
+        name += f", unloaded {format_number(100 * mean['undefined_fraction'], 2)} %"
     yield Curve(time, curve["coefficient"], name, colour, LINES[number % len(LINES)], width=1.3)
 
 

@@ -50,9 +50,10 @@ def force_surface(law: Arrays) -> Figure:
     surface = Surface(*np.meshgrid(phases, 1e6 * amounts), forces)
     panel = Panel(
         Axis("Mesh period", "", low=0.0, high=1.0),
-        Axis("Deflection", "µm", "from first contact"),
+        Axis("Deflection", "µm"),
         [surface],
-        height=3.7,
+        title="Deflection: counted from first contact",
+        height=3.5,
         z=Axis("Mesh force", "kN"),
         view=(24.0, -128.0),
     )

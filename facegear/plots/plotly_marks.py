@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,8 @@ DIGITS, MAP_DIGITS = 6, 4
 """Significant digits of a value of a curve and of a map."""
 ROWS = 160
 """Rows of a map whose own rows are not even, drawn again on even ones."""
+LEGEND_LETTERS = 42
+"""Letters of a line of a legend."""
 STEPS = 12
 """Colours that stand for a scale."""
 VALUE_FORMAT, POSITION_FORMAT = ",.4~r", ",.5~r"
@@ -106,6 +109,22 @@ def markup(text: str) -> str:
         The text with marks of HTML.
     """
     return escape(text, quote=False).replace("\n", "<br>")
+
+
+def legend_text(name: str) -> str:
+    """Write a name as the legend of plotly.js takes it.
+
+    Parameters
+    ----------
+    name : str
+        The name.
+
+    Returns
+    -------
+    str
+        The name in lines that a telephone shows whole.
+    """
+    return markup("\n".join(wrap(name, LEGEND_LETTERS)))
 
 
 def numbers(values: Any, digits: int = DIGITS) -> list[float | None]:
@@ -201,7 +220,7 @@ def note(target: PlotlyAxes, mark: Text) -> Part:
         "yshift": round(PIXELS * mark.shift[1], 1),
         "xanchor": mark.across,
         "yanchor": "middle" if mark.upright == "center" else mark.upright,
-        "font": {"size": 12, "color": mark.colour},
+        "font": {"size": 11, "color": mark.colour},
     }
 
 
@@ -218,7 +237,7 @@ def key_trace(key: Key) -> Part:
     dict
         A trace without points.
     """
-    blank = {"type": "scatter", "x": [None], "y": [None], "showlegend": True, "name": markup(key.name)}
+    blank = {"type": "scatter", "x": [None], "y": [None], "showlegend": True, "name": legend_text(key.name)}
     if key.area:
         square = {"symbol": "square", "size": 10, "color": css_colour(key.colour, key.opacity)}
         return {**blank, "mode": "markers", "marker": square}
@@ -328,7 +347,7 @@ def _marker(marker: str, colour: str, size: float, hollow: bool) -> Part:
 def _identity(target: PlotlyAxes, name: str, colour: str, in_legend: bool = True) -> Part:
     """Name of a trace and its place in the legend."""
     return {
-        "name": markup(name or target.panel.y.name),
+        "name": legend_text(name) if name else markup(target.panel.y.name),
         "legendgroup": f"{name} {colour}" if name else "",
         "showlegend": bool(name) and in_legend,
     }

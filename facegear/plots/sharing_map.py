@@ -1,28 +1,31 @@
 """Map of load sharing: K_gamma of idlers and of inputs over the numbers that decide it."""
 
-import matplotlib.pyplot as plt
+from collections.abc import Mapping
+
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from facegear.load_sharing.sharing_map import AS_GIVEN
-from facegear.plots.style import COLOURS, NARROW, legend_above, styled
+from facegear.plots.colours import BLACK, BLUE, GREEN, PURPLE, RED, colour_of, grey
+from facegear.plots.description import Axis, Curve, Figure, LineStyle, Panel
 
-CURVES = {
-    AS_GIVEN: ("as given", COLOURS[0]),
-    "upper": ("upper gear floats", COLOURS[1]),
-    "lower": ("lower gear floats", COLOURS[2]),
-    "both": ("both gears float", COLOURS[3]),
+FLOATING: Mapping[str, tuple[str, str]] = {
+    AS_GIVEN: ("as given", BLACK),
+    "upper": ("upper gear floats", BLUE),
+    "lower": ("lower gear floats", RED),
+    "both": ("both gears float", GREEN),
 }
-
+"""Name and colour of each curve of the idlers."""
+OTHER_LEVELS: Mapping[int, LineStyle] = {50: "dash", 99: "dashdot"}
+"""Percentiles that are drawn beside P95 for the machine as given."""
 ALL_CARRY = 1.0 - 1e-9
 """Fraction of samples in which every path carries, from which the closed form may hold."""
 HOLDS = 0.02
 """Relative difference from the statics below which a closed form is drawn: little beside what it explains."""
+CLOSED = "closed form"
 
 
 def figures(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> tuple[Figure, ...]:
-    """Draw the map.
+    """Describe the map.
 
     Parameters
     ----------
@@ -38,7 +41,7 @@ def figures(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) ->
 
 
 def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> Figure:
-    """Draw a panel for the idlers, and one for the inputs.
+    """Describe a panel for the idlers, and one for the inputs.
 
     Parameters
     ----------
@@ -50,58 +53,62 @@ def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.Da
     Figure
         Closed forms are broad grey lines where they hold; the machine is a point at each torque.
     """
-    kinds = [kind for kind, rows in (("idlers", curves), ("inputs", inputs)) if len(rows)]
-    with styled():
-        panels = max(len(kinds), 1)
-        figure, axes = plt.subplots(panels, 1, figsize=(NARROW, 0.4 + 3.8 * panels), squeeze=False)
-        for axis, kind in zip(axes[:, 0], kinds, strict=False):
-            if kind == "idlers":
-                _draw_idlers(axis, curves)
-            else:
-                _draw_inputs(axis, inputs)
-            points_of_kind = points[points["kind"] == kind]
-            at = points_of_kind["number"], points_of_kind["k_gamma_p95"]
-            axis.plot(*at, "o", mfc="none", color=COLOURS[4], label="this machine")
-            legend_above(axis, 2)
-    return figure
+    panels = []
+    if len(curves):
+        number, factor = Axis("Lateness of idlers kₑ σ / W", ""), Axis("Kᵧ of the idlers", "")
+        marks = [*_idlers(curves), _machine(points, "idlers")]
+        panels.append(Panel(number, factor, marks, height=2.6, own_legend=True))
+    if len(inputs):
+        number, factor = Axis("Misfit of inputs 2 b k / W", ""), Axis("Largest Kᵧ of the inputs", "")
+        marks = [*_inputs(inputs), _machine(points, "inputs")]
+        panels.append(Panel(number, factor, marks, height=2.6, own_legend=True))
+    return Figure(panels, title="Load sharing over what decides it, at rest", shared_x=False)
 
 
-def _draw_idlers(axis: Axes, curves: pd.DataFrame) -> None:
-    """The percentile judged for each floating gear; for the machine as given the other two as well."""
-    by_floating = [(str(floating), rows) for floating, rows in curves.groupby("floating", sort=False)]
-    _draw_closed(axis, [(rows["number"], rows["closed_p95"]) for _, rows in by_floating if _is_close(rows)])
-    for floating, rows in by_floating:
-        words, colour = CURVES[floating]
-        axis.plot(rows["number"], rows["k_gamma_p95"], color=colour, label=f"P95, {words}")
+def _machine(points: pd.DataFrame, kind: str) -> Curve:
+    """The machine at each of its torques."""
+    rows = points[points["kind"] == kind]
+    at = rows["number"].to_numpy(), rows["k_gamma_p95"].to_numpy()
+    return Curve(*at, "this machine", PURPLE, "none", marker="circle", size=6.0, hollow=True)
+
+
+def _idlers(curves: pd.DataFrame) -> list[Curve]:
+    """P95 for each floating gear; for the machine as given the other percentiles as well."""
+    broad: list[Curve] = []
+    marks: list[Curve] = []
+    for floating, rows in curves.groupby("floating", sort=False):
+        words, colour = FLOATING[str(floating)]
+        number = rows["number"].to_numpy()
+        if _is_close(rows):
+            broad.append(_closed_form(number, rows["closed_p95"], not broad))
+        marks.append(Curve(number, rows["k_gamma_p95"].to_numpy(), f"P95, {words}", colour))
         if floating == AS_GIVEN:
-            for level, style in ((50, "--"), (99, "-.")):
-                label = f"P{level}, {words}"
-                axis.plot(rows["number"], rows[f"k_gamma_p{level}"], style, lw=0.9, color=colour, label=label)
-    axis.set_xlabel(r"Lateness of idlers $k_e\,\sigma\,/\,W$")
-    axis.set_ylabel(r"$K_\gamma$ of the idlers")
+            for level, line in OTHER_LEVELS.items():
+                values = rows[f"k_gamma_p{level}"].to_numpy()
+                marks.append(Curve(number, values, f"P{level}, {words}", colour, line, width=0.9))
+    return broad + marks
 
 
 def _is_close(rows: pd.DataFrame) -> bool:
     """Whether the closed form holds for a curve as long as every path carries."""
-    rows_closed = rows[rows["all_carry"] >= ALL_CARRY]
-    return bool((rows_closed["k_gamma_p95"] / rows_closed["closed_p95"] - 1.0).abs().max() < HOLDS)
+    valid = rows[rows["all_carry"] >= ALL_CARRY]
+    return bool((valid["k_gamma_p95"] / valid["closed_p95"] - 1.0).abs().max() < HOLDS)
 
 
-def _draw_inputs(axis: Axes, inputs: pd.DataFrame) -> None:
+def _inputs(inputs: pd.DataFrame) -> list[Curve]:
     """The input that shares worst, for each bearing stiffness."""
+    broad: list[Curve] = []
+    marks: list[Curve] = []
     worst = inputs.groupby(["bearing_n_per_m", "number"])[["k_gamma", "closed"]].max().reset_index()
-    by_bearing = [(float(bearing), rows) for bearing, rows in worst.groupby("bearing_n_per_m")]
-    near = [rows for _, rows in by_bearing if (rows["k_gamma"] / rows["closed"] - 1.0).abs().max() < HOLDS]
-    _draw_closed(axis, [(rows["number"], rows["closed"]) for rows in near])
-    for colour, (bearing, rows) in zip(COLOURS, by_bearing, strict=False):
-        label = f"bearings of {bearing:.2g} N/m"
-        axis.plot(rows["number"], rows["k_gamma"], color=colour, label=label)
-    axis.set_xlabel(r"Misfit of inputs $2\,b\,k\,/\,W$")
-    axis.set_ylabel(r"Largest $K_\gamma$ of the inputs")
+    for place, (bearing, rows) in enumerate(worst.groupby("bearing_n_per_m")):
+        number, factor = rows["number"].to_numpy(), rows["k_gamma"].to_numpy()
+        if (rows["k_gamma"] / rows["closed"] - 1.0).abs().max() < HOLDS:
+            broad.append(_closed_form(number, rows["closed"], not broad))
+        name = f"bearings {1e-6 * float(bearing):.3g} N/µm"
+        marks.append(Curve(number, factor, name, colour_of(place)))
+    return broad + marks
 
 
-def _draw_closed(axis: Axes, lines: list[tuple[pd.Series, pd.Series]]) -> None:
-    """Closed forms as broad lines below the computed curves, named once."""
-    for number, (at, values) in enumerate(lines):
-        label = "closed form" if number == 0 else None
-        axis.plot(at, values, color="0.8", lw=4.0, solid_capstyle="butt", label=label)
+def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
+    """A broad line below the computed one, in the legend once."""
+    return Curve(number, values.to_numpy(), CLOSED, grey(0.8), width=4.0, in_legend=is_first)

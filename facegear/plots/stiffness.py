@@ -52,8 +52,8 @@ def stiffness_against_load(table: pd.DataFrame) -> Figure:
     note = "mean and range over a pitch"
     return Figure(
         [
-            Panel(torques, Axis("Mesh stiffness", "N/µm", note, low=0.0), above, height=1.9),
-            Panel(torques, Axis("First harmonic", "% of the mean", low=0.0), below, height=1.9),
+            Panel(torques, Axis("Mesh stiffness", "N/µm", note, low=0.0), above, height=2.1),
+            Panel(torques, Axis("First harmonic", "% of the mean", low=0.0), below, height=2.1),
         ]
     )
 

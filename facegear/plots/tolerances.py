@@ -86,7 +86,7 @@ def worst_first(percentiles: pd.DataFrame) -> list[str]:
 def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Figure:
     """Share of the samples above each value, one panel a quantity, with its percentiles."""
     names = worst_first(percentiles)
-    up = Axis("Above", "% of samples", low=0.0, high=100.0)
+    up = Axis("", "", low=0.0, high=100.0)
     panels = [
         Panel(
             axis_of(name),
@@ -102,7 +102,8 @@ def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Fig
     ]
     above = " (film: above)" if "smallest_film_um" in names else ""
     title = f"Distributions; lines: 50 %, 95 % and 99 % stay below{above}"
-    return Figure(panels or [Panel(Axis("", ""), up, [])], title=title, shared_x=False)
+    shown_panels = panels or [Panel(Axis("", ""), up, [])]
+    return Figure(shown_panels, title=title, shared_x=False, y_label="Share of samples above (%)")
 
 
 def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame) -> Figure:
@@ -129,7 +130,7 @@ def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indic
         marks.append(Bars(positions, lengths, in_words(name), colour, 0.95 * height, flat=True, **ends))
     ticks = [(float(position), cause.replace("_", " ")) for position, cause in enumerate(causes)]
     panel = Panel(
-        Axis("Total Sobol index" if value == "total" else "Rank correlation", ""),
+        Axis("Total Sobol index", "", low=0.0) if value == "total" else Axis("Rank correlation", ""),
         Axis("", "", low=-0.6, high=max(len(causes), 1) - 0.4, ticks=ticks),
         marks,
         height=0.5 + 0.17 * max(len(names), 1) * max(len(causes), 1),

@@ -72,7 +72,7 @@ def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure
 def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
     """Sections of both teeth with limits and radii, from `geometry/pair.json` and `flanks.npz`."""
     panels = [_pinion_section(record, flanks), _gear_sections(record, flanks)]
-    return Figure(panels, shared_x=False, legend_title="section of the face gear's tooth at a radius of")
+    return Figure(panels, shared_x=False, legend_title="face gear tooth at radius")
 
 
 def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
@@ -132,7 +132,7 @@ def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> P
         label = name.removeprefix("pinion_").replace("_", " ")
         height = min(np.sqrt(radius**2 - reach**2), height - apart)
         marks.append(Text(reach, height, f"{label} {radius:.3f}"))
-    across = Axis("Across", "mm", low=-reach, high=1.75 * reach)
+    across = Axis("Across", "mm", low=-reach, high=2.05 * reach)
     return Panel(across, Axis("Radius", "mm"), marks, title="Pinion tooth", equal=True, height=2.9)
 
 
@@ -159,8 +159,9 @@ def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Pa
     limits, radii = record["limits_mm"], record["radii_mm"]
     inner, outer = (format_number(radii[f"gear_{end}"], 4) for end in ("inner", "outer"))
     note = (
-        f"undercut below {limits['inner_undercut']:.3f} mm, face {inner} to {outer} mm,\n"
-        f"pointed above {limits['outer_pointing']:.3f} mm, {path_text(record)}"
+        f"undercut below {limits['inner_undercut']:.3f} mm\n"
+        f"face {inner} to {outer} mm, pointed above {limits['outer_pointing']:.3f} mm\n"
+        f"{path_text(record)}"
     )
     return Panel(
         Axis("Arc", "mm", note), Axis("z", "mm"), marks, title="Face gear tooth", equal=True, height=2.4
@@ -196,8 +197,8 @@ def separation(
     marks.append(Curve(*path, "contact path", RED, line="none", marker="dot"))
     gap_record = record["smallest_gap"]
     title = (
-        f"Drive flank of the gear; smallest gap elsewhere\n{format_number(gap_record['gap_um'])} µm at "
-        f"{format_number(gap_record['gear_radius_mm'], 4)} mm (gear {gap_record['gear_part']}, "
+        f"Drive flank; smallest gap elsewhere {format_number(gap_record['gap_um'])} µm\n"
+        f"at {format_number(gap_record['gear_radius_mm'], 4)} mm (gear {gap_record['gear_part']}, "
         f"pinion {gap_record['pinion_part']})"
     )
     ends = np.hypot(top[[0, -1], 0], top[[0, -1], 1])

@@ -60,7 +60,7 @@ def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
     return [
         *marks,
         Curve(*apart(face, flat), "nominal", grey(0.6), width=0.8),
-        Curve(*apart(face, lifted), "measured", grey(0.25), width=0.7),
+        Curve(*apart(face, lifted), "flank with its deviations", grey(0.25), width=0.7),
         Curve(*apart(np.broadcast_to(face[:, None], lifted.T.shape), lifted.T), colour=grey(0.25), width=0.4),
         Curve(np.array([beside, beside]), ends, width=2.0),
         Text(beside, float(profile.mean()), f"{format_number(bar)} µm", shift=(4.0, 0.0)),

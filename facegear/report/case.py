@@ -184,7 +184,7 @@ def case_report(
             for name in shown
             if name in pictures and name not in (drawing, "machine")
         ]
-        own = _tables(title, tables, values["dynamics"]["speed_rpm"])
+        own = _tables(title, with_study_titles(tables, values["studies"]), values["dynamics"]["speed_rpm"])
         seen = {"Loaded contact": view, "Modes": bodies}.get(title)
         said = pose_text(tables) if title == POSES else ""
         if title == SHARING_MAP:
@@ -239,6 +239,30 @@ def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
         rows.append((which, times, mode["frequency_hz"], mode["symbols"], mode["class"]))
         first += count
     return pd.DataFrame(rows, columns=["modes", "times", "frequency_hz", "what_moves", "class"])
+
+
+def with_study_titles(
+    tables: Mapping[str, pd.DataFrame], studies: Sequence[Mapping[str, Any]]
+) -> dict[str, pd.DataFrame]:
+    """Write the titles of studies into tables in place of their names.
+
+    Parameters
+    ----------
+    tables : mapping of str to DataFrame
+        Tables of the report by name.
+    studies : sequence of mapping
+        The config's studies.
+
+    Returns
+    -------
+    dict
+        Tables whose column `study` reads as the captions of the studies' figures; the others unchanged.
+    """
+    titles = {study["name"]: study["title"] for study in studies}
+    return {
+        name: table.assign(study=table["study"].replace(titles)) if "study" in table else table
+        for name, table in tables.items()
+    }
 
 
 def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:

@@ -3,7 +3,7 @@
 (() => {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const NARROW = 480; // px of a figure below which titles of panels are set left
+  const NARROW = 480, PHONE = 400; // px of a figure below which titles of panels are smaller, and its legend is higher
   const ranges = new Map();
   let library = null, specs = null;
 
@@ -22,7 +22,7 @@
       : (colour.match(/[\d.]+/g) || []).map(Number);
     const [r, g, b, alpha] = parts;
     if (!dark.matches) return colour;
-    const grey = Math.max(r, g, b) - Math.min(r, g, b) <= 24, dim = !area && 0.3 * r + 0.6 * g + 0.1 * b < 80;
+    const grey = Math.max(r, g, b) - Math.min(r, g, b) <= 24, dim = !area && 0.3 * r + 0.6 * g + 0.1 * b < 95;
     if (!grey && !dim) return colour;
     const turned = [r, g, b].map((part) => Math.round(grey ? 235 - 0.85 * part : part + 0.4 * (255 - part)));
     return `rgba(${turned.join(",")},${alpha === undefined ? 1 : alpha})`;
@@ -39,11 +39,10 @@
     return Object.fromEntries(Object.entries(part).map(([name, item]) => [name, themed(item, name, filled)]));
   }
 
-  // on a narrow screen a centred title of a panel would begin outside the figure
+  // on a narrow screen a title of a panel would end outside the figure
   function narrow(layout) {
     for (const note of layout.annotations || [])
-      if (/domain$/.test(note.xref) && /domain$/.test(note.yref) && note.y === 1 && note.xanchor !== "right")
-        Object.assign(note, { x: 0, xanchor: "left", align: "left", font: { ...note.font, size: 11 } });
+      if (/domain$/.test(note.xref) && /domain$/.test(note.yref)) note.font = { ...note.font, size: 11 };
   }
 
   function layoutOf(spec, width) {
@@ -51,12 +50,13 @@
     for (const [name, axis] of Object.entries(layout)) {
       if (!/^[xy]axis/.test(name)) continue;
       Object.assign(axis, { gridcolor: grid, linecolor: style("--quiet"), zeroline: false, ticks: "outside", tickcolor: grid });
-      axis.title.font = { size: 13 };
+      axis.title.font = { size: 12 };
       axis.exponentformat = axis.type === "log" ? "power" : "none";
       const kept = ranges.get(axis.title.text);
       if (name[0] === "x" && kept) axis.range = kept;
     }
     if (width < NARROW) narrow(layout);
+    if (width < PHONE) layout.height += spec.narrow_px;
     return Object.assign(layout, {
       modebar: { bgcolor: "rgba(0,0,0,0)", color: style("--quiet"), activecolor: style("--text") },
       autosize: true, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
@@ -121,10 +121,10 @@
         if (entry.isIntersecting) { watcher.unobserve(entry.target); draw(entry.target); }
     }, { rootMargin: "400px" });
     for (const figure of figures) {
-      const { title, layout } = specs[figure.id];
+      const { title, layout, narrow_px } = specs[figure.id], live = figure.querySelector(".live");
       figure.querySelector(".title").innerHTML = title;
-      figure.querySelector(".live").style.minHeight = `${layout.height}px`; // nothing moves when it is drawn
       figure.classList.add("interactive");
+      live.style.minHeight = `${layout.height + (live.clientWidth < PHONE ? narrow_px : 0)}px`; // nothing moves when it is drawn
       watcher.observe(figure);
     }
     dark.addEventListener("change", () => {

@@ -7,6 +7,7 @@ UNITS = {
     "n_per_um": "N/µm",
     "n_per_mm": "N/mm",
     "n_per_m": "N/m",
+    "n_s_per_m": "N s/m",
     "n_m_per_rad": "N m/rad",
     "n_m": "N m",
     "rpm": "rpm",
@@ -20,10 +21,20 @@ UNITS = {
     "kg": "kg",
     "urad": "µrad",
     "percent": "%",
+    "m_per_s": "m/s",
+    "rad_per_s": "rad/s",
+    "per_s": "1/s",
+    "w_per_m": "W/m",
+    "w_per_k": "W/K",
+    "hours": "h",
+    "w": "W",
+    "k": "K",
+    "c": "°C",
+    "s": "s",
     "n": "N",
 }
-"""Units that end a column's name, as they are written."""
-ENGINEERING = {"n_per_m": ("n_per_um", 1e-6, 0.0), "n": ("kn", 1e-3, 1e3)}
+"""Units that end a column's name, as they are written; those that end another one stand after it."""
+ENGINEERING = {"n_per_m": ("n_per_um", 1e-6, 0.0), "n": ("kn", 1e-3, 1e3), "w": ("kw", 1e-3, 1e3)}
 """Unit in which a table is written instead, its factor, and the largest number from which it is."""
 
 UNNAMED = ("transmission", "tooth_pair", "dynamics", "contact", "load_sharing")
@@ -68,6 +79,8 @@ def value_in_words(key: str, value: object) -> str:
     words = " ".join(f"{part} ".replace(f"_{ending} ", " ").strip() for part in key_parts).replace("_", " ")
     if isinstance(value, bool) or not isinstance(value, int | float):
         return f"{words} {value}"
-    unit, factor, _ = ENGINEERING.get(ending, (ending, 1.0, 0.0)) if ending != "n" else (ending, 1.0, 0.0)
+    unit, factor, least = ENGINEERING.get(ending, (ending, 1.0, 0.0))
+    if least > 0.0:  # which depends on all numbers of a table
+        unit, factor = ending, 1.0
     number = format_number(factor * value, 4)
     return f"{words} {number} {UNITS[unit]}" if unit else f"{words} {number}"

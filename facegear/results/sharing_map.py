@@ -8,7 +8,7 @@ from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
 if TYPE_CHECKING:
-    from facegear.plots.style import Figure
+    from facegear.plots.description import Figure
 
 
 class SharingMapResult(Result):
@@ -22,8 +22,8 @@ class SharingMapResult(Result):
         Returns
         -------
         pd.DataFrame
-            Columns group, kind, change, from_to, k_gamma, predicted (closed form), found, gain, worst and
-            worst_found (the largest of all groups); the largest gain of each group first.
+            Columns group, kind, change, from_to, k_gamma, found, gain, predicted_gain (closed form), worst
+            and worst_found (the largest of all groups); the largest gain of each group first.
         """
         return self.content["advice"].copy()
 

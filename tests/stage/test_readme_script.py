@@ -23,6 +23,9 @@ FILES = {
 
 
 TENANTS = ("paper", "validation")
+HELD = {"facegear", "snakemake_logger_plugin_facegear", "bin"}
+BUILT = ("--config-settings=wheel.cmake=false", "--config-settings=wheel.py-api=py3")
+"""The kernels are not compiled again: those of the checkout are put into the installed package."""
 
 
 def pip(*arguments):
@@ -35,15 +38,17 @@ def pip(*arguments):
 def installed(tmp_path_factory):
     """Where the wheel of the sources as they stand is installed; no network, nothing of the checkout."""
     sources, wheels, site = (tmp_path_factory.mktemp(name) for name in ("sources", "wheels", "site"))
-    for name in ("facegear", *TENANTS):
+    for name in ("facegear", "snakemake_logger_plugin_facegear", "building", *TENANTS):
         ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
         shutil.copytree(ROOT / name, sources / name, ignore=ignored)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
+    for name in ("pyproject.toml", "README.md", "LICENSE", "CMakeLists.txt"):
         shutil.copy(ROOT / name, sources)
     offline = ("--no-deps", "--no-index", "--no-cache-dir")
-    pip("wheel", *offline, "--no-build-isolation", "--wheel-dir", str(wheels), str(sources))
+    pip("wheel", *offline, *BUILT, "--no-build-isolation", "--wheel-dir", str(wheels), str(sources))
     (wheel,) = wheels.glob("facegear-*.whl")
     pip("install", *offline, "--no-compile", "--target", str(site), str(wheel))
+    for module in (ROOT / "facegear" / "_kernels").glob("_*.so"):
+        shutil.copy(module, site / "facegear" / "_kernels")
     return site
 
 
@@ -74,7 +79,7 @@ def test_wheel_holds_every_module_template_and_schema(installed):
 
 @pytest.mark.xdist_group("wheel")
 def test_wheel_holds_neither_the_reproduction_nor_the_validation(installed):
-    assert {path.name for path in installed.iterdir() if path.suffix != ".dist-info"} == {"facegear", "bin"}
+    assert {path.name for path in installed.iterdir() if path.suffix != ".dist-info"} == HELD
 
 
 @pytest.mark.xdist_group("wheel")

@@ -11,11 +11,30 @@ from facegear.contact.solver import solve_contact
 
 
 def solve_candidates(
-    pairs: Sequence[Candidates], influence: Callable[[], Array], torques: Array, where: str
+    pairs: Sequence[Candidates], influence: Callable[[], Array], torques: Array, description: str
 ) -> PositionContact:
-    """Solve for the contact of candidates under torques (t,) N m, the largest first.
+    """Solve for the contact among all candidates.
 
-    `influence` (m, m) of all of them, m/N. Raises NotConverged naming `where`.
+    Parameters
+    ----------
+    pairs : Sequence of Candidates
+        Candidates (m,) of each pair of teeth.
+    influence : Callable
+        Makes the influence matrix (m, m) of all of them, m/N.
+    torques : Array
+        Torques (t,) N m, the largest first.
+    description : str
+        Names the position in an error.
+
+    Returns
+    -------
+    PositionContact
+        Contact under these torques (t,), in SI units (N, m, rad).
+
+    Raises
+    ------
+    NotConverged
+        If the active set finds no solution.
     """
     gap, lever_arm, node, fillet = (
         np.concatenate([np.zeros(0), *(getattr(pair, name) for pair in pairs)])
@@ -25,7 +44,9 @@ def solve_candidates(
     forward = lever_arm > 0
     matrix = influence() if len(pairs) else np.zeros((0, 0))
     contacts = [
-        solve_contact(matrix, gap, lever_arm, torque, None, where) for torque in torques if forward.any()
+        solve_contact(matrix, gap, lever_arm, torque, None, description)
+        for torque in torques
+        if forward.any()
     ]
     force = np.array([contact.force for contact in contacts]).reshape(-1, gap.size)
     on_pinion, on_gear = (
@@ -50,7 +71,7 @@ def solve_candidates(
         steps=np.array([contact.steps for contact in contacts], dtype=np.int64),
         candidates=int(ends[-1]),
         forward=int(forward.sum()),
-        sought=int(ends[-1]),
+        strip_size=int(ends[-1]),
         overlap=float(np.max(-gap[forward] / lever_arm[forward], initial=0.0)),
         pair=number,
         node=node.astype(np.int64),

@@ -64,9 +64,9 @@ class _SectorAtPosition:
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         sectors, flanks = self.sectors, self.sectors.flanks
-        loaded = np.array(sorted({seen for seen, _ in sectors.pinion}))
+        teeth = np.array(sorted({tooth for tooth, _ in sectors.pinion}))
         placement = angles_at(flanks.design, self.position)
-        pairs = find_candidates(flanks, placement, loaded, limit, ContactOptions())
+        pairs = find_candidates(flanks, placement, teeth, limit, ContactOptions())
 
         def influence() -> Array:
             return _influence(pairs, sectors.pinion, sectors.gear)

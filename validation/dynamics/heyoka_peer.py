@@ -15,7 +15,6 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import MIN_CLEARANCE, TAU
-from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
 from validation.dynamics.problems import SAMPLES, Problem
 from validation.dynamics.right_side import linear
@@ -120,28 +119,18 @@ def _rate(row: Array) -> Array:
     return np.array([-j * row[1], j * row[0]])
 
 
-@kernel
 def contact_parameters(
     jacobian: Array, error: Array, lower: Array, upper: Array, phase: float, state: Array, parameters: Array
 ) -> None:
     """Write the parameters (2 meshes,) that belong to a state (at least 2 n,) at a phase."""
-    meshes, n = jacobian.shape
-    for m in range(meshes):
-        deflection = rate = 0.0
-        for k in range(n):
-            deflection += jacobian[m, k] * state[k]
-            rate += jacobian[m, k] * state[n + k]
-        for j in range(error.shape[2]):
-            sine, cosine = np.sin(j * phase), np.cos(j * phase)
-            deflection -= error[m, 0, j] * sine + error[m, 1, j] * cosine
-            rate -= j * (error[m, 0, j] * cosine - error[m, 1, j] * sine)
-        touching, edge = 0.0, 0.0
-        if deflection > upper[m] + EDGE or (abs(deflection - upper[m]) <= EDGE and rate > 0.0):
-            touching, edge = 1.0, upper[m]
-        elif deflection < lower[m] - EDGE or (abs(deflection - lower[m]) <= EDGE and rate < 0.0):
-            touching, edge = 1.0, lower[m]
-        parameters[2 * m] = touching
-        parameters[2 * m + 1] = edge
+    n, order = jacobian.shape[1], np.arange(error.shape[2])
+    sine, cosine = np.sin(order * phase), np.cos(order * phase)
+    deflection = jacobian @ state[:n] - error[:, 0] @ sine - error[:, 1] @ cosine
+    rate = jacobian @ state[n : 2 * n] - error[:, 0] @ (order * cosine) + error[:, 1] @ (order * sine)
+    drive = (deflection > upper + EDGE) | ((np.abs(deflection - upper) <= EDGE) & (rate > 0.0))
+    back = (deflection < lower - EDGE) | ((np.abs(deflection - lower) <= EDGE) & (rate < 0.0))
+    parameters[::2] = drive | back
+    parameters[1::2] = np.where(drive, upper, np.where(back, lower, 0.0))
 
 
 @dataclass(frozen=True, eq=False)

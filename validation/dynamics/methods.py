@@ -10,13 +10,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from facegear.dynamics.abreast.wide import WIDTH
 from scipy.integrate import solve_ivp
 
 from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.many import run_many
+from facegear.dynamics.many import WIDTH, run_many
 from facegear.dynamics.steady_state.orbits import monodromy
 from validation.dynamics import heyoka_peer
 from validation.dynamics.problems import SAMPLES, Compared, Problem
@@ -42,9 +41,9 @@ class Method:
     together: int = 1
 
 
-def prepared(problem: Problem, tolerance: float = 1e-2, order: int | None = None) -> tuple[Integrator, Array]:
+def prepared(problem: Problem, tolerance: float = 1e-2) -> tuple[Integrator, Array]:
     """Our integrator and the start (2, n): coordinates, and rates by phase."""
-    integrator = Integrator(problem.system, problem.frequency, tolerance, order)
+    integrator = Integrator(problem.system, problem.frequency, tolerance)
     return integrator, integrator.by_phase(problem.start)
 
 
@@ -98,16 +97,13 @@ def our_tangents(problem: Problem, tolerance: float) -> Solve:
 
 
 def rk4(problem: Problem, steps: float) -> Solve:
-    """Fixed steps, all compiled, no event location."""
-    integrator, state = prepared(problem, order=2)
-    packed, work, start = integrator.packed, integrator.work, integrator.padded(state).ravel()
-    out = np.empty((problem.periods * SAMPLES, start.size))
-    stages = np.empty((5, start.size))
+    """Fixed steps with compiled accelerations, no event location."""
+    integrator, start = prepared(problem)
     per_sample = round(steps) // SAMPLES
 
     def run() -> Array:
-        fixed_rk4(packed, work, start.copy(), stages, per_sample, TAU / steps, out)
-        return out[:, : packed.n]
+        count = problem.periods * SAMPLES
+        return fixed_rk4(integrator, start, per_sample, TAU / steps, count)[:, : integrator.size]
 
     return run
 
@@ -116,11 +112,11 @@ def scipy_method(name: str, plain: bool = False) -> Prepare:
     """SciPy's solve_ivp on the compiled right-hand side, or on plain NumPy."""
 
     def prepare(problem: Problem, tolerance: float) -> Solve:
-        integrator, state = prepared(problem, order=2)
-        start = integrator.padded(state).ravel()
+        integrator, state = prepared(problem)
+        start = state.ravel()
         derivative = compiled_right_side(integrator)
         if plain:
-            derivative = plain_right_side(problem.system, problem.frequency, start.size // 2)
+            derivative = plain_right_side(problem.system, problem.frequency)
         times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
 
         def run() -> Array:
@@ -147,8 +143,8 @@ def cvode(method: str) -> Prepare:
     from sksundae.cvode import CVODE
 
     def prepare(problem: Problem, tolerance: float) -> Solve:
-        integrator, state = prepared(problem, order=2)
-        start = integrator.padded(state).ravel()
+        integrator, state = prepared(problem)
+        start = state.ravel()
         compiled = compiled_right_side(integrator)
         times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
 

@@ -5,86 +5,39 @@ from collections.abc import Callable
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU, Packed
-from facegear.dynamics.integrator.excitation import excitation
+from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import Work
-from facegear.machine_code.lanes import LANES, load, multiply, multiply_add, splat, store
 from facegear.mesh_law.linear import LinearLaw
 
 
-@kernel
-def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> None:
-    """Derivative by s of z (2 n,) into out, for a linear law; work must be of order 1 or more."""
-    n, width = packed.mesh_jacobian.shape
-    excitation(packed, work, s, 0, 2)
-    minus = splat(-1.0)
-    for c in range(0, width, LANES):
-        level, rate = multiply(minus, load(work.error, c)), multiply(minus, load(work.error, width + c))
-        for k in range(packed.n):
-            direction = load(packed.mesh_jacobian, k * width + c)
-            level = multiply_add(direction, splat(z[k]), level)
-            rate = multiply_add(direction, splat(z[n + k]), rate)
-        store(work.deflection, c, level)
-        store(work.deflection, width + c, rate)
-    for m in range(packed.m):
-        d = work.deflection[0, m]
-        beyond = max(d - packed.upper[m], 0.0) + min(d - packed.lower[m], 0.0)
-        touching = packed.damping_when_open or beyond != 0.0
-        if packed.lower[m] >= packed.upper[m]:
-            beyond, touching = d - packed.upper[m], True
-        acting = packed.mesh_damping[m] if touching else 0.0
-        push = work.law.slope[0, m] * beyond + acting * work.deflection[1, m]
-        pulls = packed.push_only and packed.lower[m] < packed.upper[m] and push * beyond < 0.0
-        work.force[m] = 0.0 if pulls else push
-    for c in range(0, n, LANES):
-        velocity = load(z, n + c)
-        store(out, c, velocity)
-        total = multiply_add(multiply(minus, load(packed.damping, c)), velocity, load(work.load, c))
-        total = multiply_add(multiply(minus, load(packed.omega_squared, c)), load(z, c), total)
-        for m in range(packed.m):
-            total = multiply_add(load(packed.transposed, m * n + c), splat(-work.force[m]), total)
-        store(out, n + c, total)
-
-
-@kernel
-def fixed_rk4(
-    packed: Packed, work: Work, z: Array, scratch: Array, per_sample: int, width: float, out: Array
-) -> None:
-    """Classical Runge-Kutta with fixed steps; out (samples, 2 n) is filled every `per_sample` steps."""
-    size = z.size
-    s = 0.0
-    for sample in range(out.shape[0]):
-        for i in range(size):
-            out[sample, i] = z[i]
-        for _ in range(per_sample):
-            right_side(packed, work, s, z, scratch[0])
-            for i in range(size):
-                scratch[4, i] = z[i] + 0.5 * width * scratch[0, i]
-            right_side(packed, work, s + 0.5 * width, scratch[4], scratch[1])
-            for i in range(size):
-                scratch[4, i] = z[i] + 0.5 * width * scratch[1, i]
-            right_side(packed, work, s + 0.5 * width, scratch[4], scratch[2])
-            for i in range(size):
-                scratch[4, i] = z[i] + width * scratch[2, i]
-            right_side(packed, work, s + width, scratch[4], scratch[3])
-            for i in range(size):
-                z[i] += width / 6.0 * (scratch[0, i] + 2.0 * (scratch[1, i] + scratch[2, i]) + scratch[3, i])
-            s += width
-
-
 def compiled_right_side(integrator: Integrator) -> Callable[[float, Array], Array]:
-    """f(s, z) for SciPy, on the compiled code of an integrator of order 1 or more."""
-    packed, work = integrator.packed, integrator.work
+    """f(s, z) with accelerations from the kernels of an integrator."""
+    n = integrator.size
 
     def derivative(s: float, z: Array) -> Array:
-        out = np.empty(z.size)
-        right_side(packed, work, s, np.ascontiguousarray(z), out)
-        return out
+        state = np.asarray(z).reshape(2, n)
+        return np.concatenate([state[1], integrator.accelerations(s % TAU, state)])
 
     return derivative
+
+
+def fixed_rk4(integrator: Integrator, state: Array, per_sample: int, width: float, samples: int) -> Array:
+    """States (samples, 2 n) of the classical Runge-Kutta method with fixed steps of a width, in rad: one every
+    `per_sample` steps from a state (2, n) on.
+    """
+    derivative, z, s = compiled_right_side(integrator), state.ravel().copy(), 0.0
+    out = np.empty((samples, z.size))
+    for sample in out:
+        sample[:] = z
+        for _ in range(per_sample):
+            first = derivative(s, z)
+            second = derivative(s + 0.5 * width, z + 0.5 * width * first)
+            third = derivative(s + 0.5 * width, z + 0.5 * width * second)
+            fourth = derivative(s + width, z + width * third)
+            z += width / 6.0 * (first + 2.0 * (second + third) + fourth)
+            s += width
+    return out
 
 
 def linear(system: System) -> LinearLaw:
@@ -108,15 +61,15 @@ def plain_forces(system: System) -> Callable[[float, Array], Array]:
     return forces
 
 
-def plain_right_side(system: System, frequency: float, width: int) -> Callable[[float, Array], Array]:
-    """f(s, z) in NumPy as people write it, z padded to 2 * width."""
+def plain_right_side(system: System, frequency: float) -> Callable[[float, Array], Array]:
+    """f(s, z) in NumPy as people write it."""
     n = system.size
     elastic = plain_forces(system)
     order_e = np.arange(system.error.shape[2])
     error, load = system.error[system.error_kind], system.load
 
     def derivative(s: float, z: Array) -> Array:
-        displacement, velocity = z[:n], z[width : width + n] * frequency
+        displacement, velocity = z[:n], z[n:] * frequency
         e = error[:, 0] @ np.sin(order_e * s) + error[:, 1] @ np.cos(order_e * s)
         e_rate = frequency * (
             error[:, 0] @ (order_e * np.cos(order_e * s)) - error[:, 1] @ (order_e * np.sin(order_e * s))
@@ -134,7 +87,7 @@ def plain_right_side(system: System, frequency: float, width: int) -> Callable[[
         )
         out = np.zeros_like(z)
         out[:n] = velocity / frequency
-        out[width : width + n] = acceleration / frequency**2
+        out[n:] = acceleration / frequency**2
         return out
 
     return derivative

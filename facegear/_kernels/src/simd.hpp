@@ -137,12 +137,33 @@ inline unsigned positive_lanes(Lanes<Width> value) {
     return bits;
 }
 
+// Rows of four become columns.
+inline void transpose(Lanes<4>& a, Lanes<4>& b, Lanes<4>& c, Lanes<4>& d) {
+#if defined(FACEGEAR_VECTOR_EXTENSION) && (defined(__clang__) || __GNUC__ >= 12)
+    const FourDoubles low_1 = __builtin_shufflevector(a.lane, b.lane, 0, 4, 2, 6);
+    const FourDoubles high_1 = __builtin_shufflevector(a.lane, b.lane, 1, 5, 3, 7);
+    const FourDoubles low_2 = __builtin_shufflevector(c.lane, d.lane, 0, 4, 2, 6);
+    const FourDoubles high_2 = __builtin_shufflevector(c.lane, d.lane, 1, 5, 3, 7);
+    a.lane = __builtin_shufflevector(low_1, low_2, 0, 1, 4, 5);
+    b.lane = __builtin_shufflevector(high_1, high_2, 0, 1, 4, 5);
+    c.lane = __builtin_shufflevector(low_1, low_2, 2, 3, 6, 7);
+    d.lane = __builtin_shufflevector(high_1, high_2, 2, 3, 6, 7);
+#else
+    Lanes<4>* rows[] = {&a, &b, &c, &d};
+    for (int i = 0; i < 4; ++i) {
+        for (int j = i + 1; j < 4; ++j) {
+            const double upper = (*rows[i])[j];
+            rows[i]->set(j, (*rows[j])[i]);
+            rows[j]->set(i, upper);
+        }
+    }
+#endif
+}
+
 // The sums of the lanes of four vectors.
 inline Lanes<4> lane_sums(Lanes<4> a, Lanes<4> b, Lanes<4> c, Lanes<4> d) {
-    Lanes<4> result = Lanes<4>::splat(0.0);
-    const Lanes<4> all[] = {a, b, c, d};
-    for (int i = 0; i < 4; ++i) result.set(i, (all[i][0] + all[i][2]) + (all[i][1] + all[i][3]));
-    return result;
+    transpose(a, b, c, d);
+    return (a + b) + (c + d);
 }
 
 #if defined(FACEGEAR_VECTOR_EXTENSION) && defined(__AVX__)

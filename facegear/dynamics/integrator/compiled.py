@@ -1,6 +1,7 @@
 """A system as the kernels take it (facegear/_kernels/src/motion/system.hpp), and at one mesh frequency."""
 
 from functools import cache, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -29,35 +30,48 @@ def fastest(system: System, frequency: float) -> float:
 @lru_cache(maxsize=16)
 def packed_system(system: System) -> motion.System:
     """A system at 1 rad/s."""
+    return motion.system(law=system.law.compiled, **system_numbers(system))
+
+
+def system_numbers(system: System) -> dict[str, Any]:
+    """Return the numbers of a system at 1 rad/s without its law, by the names of facegear::motion::System.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+
+    Returns
+    -------
+    dict
+        Arrays, numbers and flags in SI units; what `motion.system` takes.
+    """
     n, rubbing = system.size, system.rubbing
-    return motion.system(
-        jacobian=_contiguous(system.mesh_jacobian),
-        omega_squared=_contiguous(system.omega_squared),
-        damping=_contiguous(system.damping),
-        weights=weights_of(system),
-        mesh_damping=_contiguous(system.mesh_damping),
-        lower=edges_of(system)[0],
-        upper=edges_of(system)[1],
-        leverage=(system.mesh_jacobian**2).sum(axis=1),
-        law=system.law.compiled,
-        error=_contiguous(system.error),
-        error_kind=np.ascontiguousarray(system.error_kind, np.int64),
-        load=_contiguous(system.load),
-        damping_when_open=bool(system.damping_when_open),
+    return {
+        "jacobian": _contiguous(system.mesh_jacobian),
+        "omega_squared": _contiguous(system.omega_squared),
+        "damping": _contiguous(system.damping),
+        "weights": weights_of(system),
+        "mesh_damping": _contiguous(system.mesh_damping),
+        "lower": edges_of(system)[0],
+        "upper": edges_of(system)[1],
+        "leverage": (system.mesh_jacobian**2).sum(axis=1),
+        "error": _contiguous(system.error),
+        "error_kind": np.ascontiguousarray(system.error_kind, np.int64),
+        "load": _contiguous(system.load),
+        "damping_when_open": bool(system.damping_when_open),
         # Without dampers that could pull nothing is cut.
-        push_only=bool(system.push_only and not system.damping_when_open and system.mesh_damping.any()),
-        pairs=system.pairs,
-        scale=float(system.scale),
-        ring_stiffness=_contiguous(system.ring_stiffness),
-        ring_clearance=_contiguous(system.ring_clearance),
-        ring_lag=float(system.ring_lag),
-        rubbing_flank=np.zeros(0, np.int64)
-        if rubbing is None
-        else np.ascontiguousarray(rubbing.flank, np.int64),
-        rubbing_ratios=np.zeros((0, 2, 1)) if rubbing is None else _contiguous(rubbing.ratios),
-        rubbing_directions=np.zeros((0, n)) if rubbing is None else _contiguous(rubbing.directions),
-        coupling=_coupling(system.coupling, n),
-    )
+        "push_only": bool(system.push_only and not system.damping_when_open and system.mesh_damping.any()),
+        "pairs": system.pairs,
+        "scale": float(system.scale),
+        "ring_stiffness": _contiguous(system.ring_stiffness),
+        "ring_clearance": _contiguous(system.ring_clearance),
+        "ring_lag": float(system.ring_lag),
+        "rubbing_flank": np.ascontiguousarray([] if rubbing is None else rubbing.flank, np.int64),
+        "rubbing_ratios": np.zeros((0, 2, 1)) if rubbing is None else _contiguous(rubbing.ratios),
+        "rubbing_directions": np.zeros((0, n)) if rubbing is None else _contiguous(rubbing.directions),
+        "coupling": _coupling(system.coupling, n),
+    }
 
 
 @lru_cache(maxsize=16)

@@ -122,7 +122,7 @@ def test_contact_sought_beside_a_known_one_is_the_same_among_fewer_hats(model_of
     class CountingSolver(PositionSolver):
         def solve(self, *given):
             contact = super().solve(*given)
-            sought.append(contact.sought)
+            sought.append(contact.strip_size)
             return contact
 
     monkeypatch.setattr(ltca, "PositionSolver", CountingSolver)
@@ -213,7 +213,7 @@ def test_loads_before_refinement_follow_from_the_refined_ones(linear):
     matrix = sp.random_array((12, 40), density=0.2, format="csr", rng=rng)
     rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
     refined, coarse = (lattice.loads(rows, points, finer) for finer in (True, False))
-    pointer, index, weight = lattice.interpolated()
+    pointer, index, weight = lattice.interpolation_rows()
     interpolated = sp.csr_matrix((weight, index, pointer), shape=(refined.shape[1], 35))
     np.testing.assert_allclose((refined @ interpolated).toarray(), coarse.toarray(), atol=1e-13)
 

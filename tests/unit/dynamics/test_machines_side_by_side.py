@@ -20,6 +20,7 @@ from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.dynamics.stretch import Stretch
 from facegear.errors import NotConverged
 from facegear.mesh_law.load_dependent import load_dependent_law
+from facegear.mesh_law.power import PowerLaw
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.machine import FlankTables, OpenFlanks
 from facegear.transmission.mesh_friction import PARTS, MeshFriction
@@ -75,6 +76,7 @@ OSCILLATORS = {
     "oscillator that only pushes": (PUSH_ONLY, 0.7),
     "stiffness in pieces": (IN_PIECES, 0.8),
     "oscillator on a table": (ON_A_TABLE, 0.8),
+    "oscillator on a power law": (replace(one_degree(0.1), law=PowerLaw(depth=0.2)), 0.8),
 }
 
 

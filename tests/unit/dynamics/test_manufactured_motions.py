@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oscillators import one_degree
-from power_laws import PowerLaw
 from references import against, agrees
 from scipy.linalg import block_diag
 
@@ -22,6 +21,7 @@ from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.mesh_law.linear import LinearLaw
+from facegear.mesh_law.power import PowerLaw
 
 POINTS = 256
 PHASES = TAU * np.arange(POINTS) / POINTS

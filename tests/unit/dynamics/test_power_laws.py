@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from law_oscillators import closing_error, law_period_map, orbit, oscillator
 from lumped_machines import make_layout, make_machine
-from power_laws import PowerLaw
 from references import against, agrees
 from whole_branches import branch_at
 
@@ -20,6 +19,7 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import simulate
+from facegear.mesh_law.power import PowerLaw
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import mesh_frequency
 from facegear.transmission.matrices import bearing_diagonal, flank_jacobian, mass_diagonal

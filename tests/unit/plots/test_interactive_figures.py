@@ -129,6 +129,7 @@ def test_names_beside_the_last_panel_and_long_lines_below_it_are_not_cut_off():
         (Axis("a", "", low=0.0), [1.0, 3.0]),
         (Axis("a", "", logarithmic=True), [1.0, 1e4]),
         (Axis("a", "", is_falling=True), [2.0, 2.0]),
+        (Axis("a", ""), [1.0, 1.0 + 1e-15]),
         (Axis("a", "", low=-1.0, high=7.0), []),
     ],
 )

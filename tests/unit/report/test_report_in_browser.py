@@ -274,6 +274,16 @@ def test_print_fits_a4_with_every_column_and_the_stills(opened):
     assert re.search(rb"/MediaBox \[0 0 59[45]\S* 84[12]", printed), "A4"
 
 
+def test_no_heading_of_a_chapter_is_left_alone_at_the_end_of_a_printed_page(opened):
+    """Between text and figures stood an empty part, before which a page could end."""
+    page = opened()
+    page.emulate_media(media="print")
+    text = "getComputedStyle(document.querySelector('#modes h2 + p')).breakAfter"
+    assert page.evaluate(text) == "avoid"
+    parts = "[...document.querySelectorAll('.tables, .figures')]"
+    assert page.evaluate(f"{parts}.every(part => part.children.length || !part.checkVisibility())")
+
+
 def test_without_scripts_the_stills_and_tables_are_there(opened):
     page = opened(script=False)
     assert page.locator(f"#{OVER_SPEED} img").is_visible() and page.locator("#modes table").first.is_visible()

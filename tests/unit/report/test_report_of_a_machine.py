@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 
 from facegear.config.load import extended, load_config
 from facegear.config.model import resolved
@@ -32,6 +33,9 @@ WIDE = """[...document.querySelectorAll('.scroll')]
 COLUMNS = """[...document.querySelectorAll('main table')].filter(table => table.checkVisibility())
   .map(table => [...table.rows[0].cells].filter(cell => cell.checkVisibility()).length)"""
 """Columns that each table shows."""
+REASONS = """Math.min(...[...document.querySelectorAll('.verdicts tr')]
+  .map(row => row.cells[2].offsetWidth / row.offsetWidth))"""
+"""Smallest part of a verdict's width that its reason has."""
 pytestmark = [
     pytest.mark.xdist_group("browser"),
     pytest.mark.skipif(shutil.which("chromium") is None, reason="no chromium: .ci/run installs it"),
@@ -78,6 +82,20 @@ def test_a_whole_machine_prints_on_at_most_25_pages_of_a4_with_every_column_of_e
     assert pages <= MOST_PAGES
     assert max(right_edges) <= A4["width"]
     assert unread == 0, "stills that no reader has scrolled to are printed, too"
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (390, "dark")])
+def test_a_whole_machine_has_no_serious_fault_of_accessibility_and_fits(concentric, width, scheme):
+    with chromium() as browser:
+        context = browser.new_context(viewport={"width": width, "height": 844}, color_scheme=scheme)
+        page = context.new_page()
+        page.goto(concentric.as_uri())
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        faults = Axe().run(page).response["violations"]
+        reasons = page.evaluate(REASONS)
+    serious = [fault for fault in faults if fault["impact"] in ("serious", "critical")]
+    assert not [(fault["id"], fault["nodes"][0]["html"][:120]) for fault in serious]
+    assert reasons >= 0.5, "a reason has at least half the width of its verdict"
 
 
 def test_the_page_holds_no_none_no_minus_zero_and_no_plural_of_one(concentric):

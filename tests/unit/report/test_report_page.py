@@ -5,7 +5,7 @@ import re
 
 import pandas as pd
 
-from facegear.report.case import mode_rows
+from facegear.report.case import mode_rows, with_study_titles
 from facegear.report.page import Chapter, Picture, render
 from facegear.report.table import Table
 
@@ -43,6 +43,28 @@ def test_units_in_column_names_are_written_out():
         "line load (N/mm)",
         "motion",
     ]
+
+
+def test_units_of_heat_motion_and_time_are_written_out():
+    """A head said "loss w" and "contact temperature c"."""
+    names = {
+        "loss_w": "loss (W)",
+        "largest_flash_k": "largest flash (K)",
+        "contact_temperature_c": "contact temperature (°C)",
+        "largest_sliding_m_per_s": "largest sliding (m/s)",
+        "life_hours": "life (h)",
+        "pinion_w_per_k": "pinion (W/K)",
+        "mesh_n_s_per_m": "mesh (N s/m)",
+    }
+    assert Table("T", pd.DataFrame(columns=[*names])).header() == [*names.values()]
+    powers = Table("T", pd.DataFrame({"power_in_w": [251327.0], "loss_w": [1769.0]}))
+    assert (powers.header(), powers.rows()) == (["power in (kW)", "loss (kW)"], [["251.3", "1.769"]])
+
+
+def test_a_study_has_its_title_in_tables_and_not_its_name():
+    table = pd.DataFrame({"study": ["nominal", "gear_bearings"], "mean": [1.0, 2.0]})
+    titled = with_study_titles({"summary": table}, [{"name": "gear_bearings", "title": "Effect of bearings"}])
+    assert titled["summary"]["study"].to_list() == ["nominal", "Effect of bearings"]
 
 
 def test_equal_modes_are_one_row_that_says_how_many():

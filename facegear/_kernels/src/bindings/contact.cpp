@@ -1,4 +1,6 @@
 // Contact: what kernels are given is checked here once, so that they can trust shapes and indices.
+#include "bindings/parts.hpp"
+
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/pair.h>
@@ -8,7 +10,6 @@
 #include <mutex>
 #include <string>
 
-#include "bindings/parts.hpp"
 #include "contact/elimination.hpp"
 #include "contact/position.hpp"
 
@@ -237,7 +238,7 @@ struct BoundSolver {
         result["steps"] = owned(std::move(found.steps));
         result["candidates"] = found.candidates;
         result["forward"] = found.forward;
-        result["sought"] = found.sought;
+        result["strip_size"] = found.strip_size;
         result["overlap"] = found.overlap;
         result["pair"] = owned(std::move(found.pair));
         result["node"] = owned(std::move(found.node));

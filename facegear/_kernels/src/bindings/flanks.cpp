@@ -1,8 +1,9 @@
 // Rays from the pinion cut with the face gear's tooth.
+#include "bindings/parts.hpp"
+
 #include "flanks/placed.hpp"
 #include "flanks/rays.hpp"
 
-#include "bindings/parts.hpp"
 #include "bindings/records.hpp"
 
 namespace facegear {

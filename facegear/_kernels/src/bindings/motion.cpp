@@ -1,4 +1,6 @@
 // Motion of machines: systems, their laws, and runs over whole mesh periods.
+#include "bindings/parts.hpp"
+
 #include <memory>
 #include <utility>
 
@@ -10,7 +12,6 @@
 
 #include "bindings/arrays.hpp"
 #include "bindings/motion_runners.hpp"
-#include "bindings/parts.hpp"
 #include "motion/roots.hpp"
 
 namespace nb = nanobind;
@@ -61,6 +62,16 @@ std::shared_ptr<const motion::LoadDependentLaw> load_dependent_law(const Doubles
     law->table = numbers_of<double>(table, {law->kinds, law->level_count, law->harmonics, 2, 4}, "table");
     law->levels = numbers_of<double>(levels, {law->kinds, law->level_count}, "levels");
     law->kind = kinds_of(kind, law->kinds, "kind");
+    return law;
+}
+
+std::shared_ptr<const motion::PowerLaw> power_law(const Doubles<3>& factor, double size, double exponent, double level,
+                                                  Index contacts) {
+    auto law = std::make_shared<motion::PowerLaw>();
+    law->factor = series_of(factor, "factor");
+    require(law->factor.kinds == 1, "factor must be one series");
+    require(exponent > 1.0 && level > 0.0 && contacts > 0, "exponent must be above 1, level and contacts above 0");
+    law->size = size, law->exponent = exponent, law->level = level, law->count = contacts;
     return law;
 }
 
@@ -260,12 +271,14 @@ void bind_motion(nb::module_ module) {
     module.attr("MAX_STEPS") = motion::max_steps;
     nb::class_<motion::LinearLaw>(module, "LinearLaw");
     nb::class_<motion::LoadDependentLaw>(module, "LoadDependentLaw");
+    nb::class_<motion::PowerLaw>(module, "PowerLaw");
     nb::class_<motion::System>(module, "System").def("fits", [](const motion::System& one, const motion::System& other) { return fits(one, other); });
     nb::class_<motion::Machine>(module, "Machine");
     nb::class_<motion::AnyRunner>(module, "Runner").def_prop_ro("order", &motion::AnyRunner::order);
     bind_log(module);
     module.def("linear_law", &linear_law, "fourier"_a, "kind"_a, "breaks"_a, "pieces"_a);
     module.def("load_dependent_law", &load_dependent_law, "table"_a, "levels"_a, "kind"_a);
+    module.def("power_law", &power_law, "factor"_a, "size"_a, "exponent"_a, "level"_a, "contacts"_a);
     module.def("system", &system_of, nb::kw_only(), "jacobian"_a, "omega_squared"_a, "damping"_a, "weights"_a, "mesh_damping"_a,
                "lower"_a, "upper"_a, "leverage"_a, "law"_a, "error"_a, "error_kind"_a, "load"_a, "damping_when_open"_a,
                "push_only"_a, "pairs"_a, "scale"_a, "ring_stiffness"_a, "ring_clearance"_a, "ring_lag"_a, "rubbing_flank"_a,

@@ -1,3 +1,4 @@
+// Included first, since it brings Python's header, which comes before those of the standard library.
 // Each function binds the kernels of one part to a submodule.
 #pragma once
 

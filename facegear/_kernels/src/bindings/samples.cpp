@@ -1,9 +1,10 @@
 // Passes over the samples of a motion.
+#include "bindings/parts.hpp"
+
 #include <utility>
 
 #include <nanobind/stl/pair.h>
 
-#include "bindings/parts.hpp"
 #include "bindings/records.hpp"
 #include "samples/contact_loads.hpp"
 #include "samples/piecewise_cubics.hpp"

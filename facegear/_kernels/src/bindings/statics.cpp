@@ -1,5 +1,6 @@
 // Static equilibrium of machines, for every law of a contact.
 #include "bindings/parts.hpp"
+
 #include "bindings/records.hpp"
 #include "statics/laws.hpp"
 #include "statics/settle.hpp"

@@ -1,7 +1,8 @@
 // Root stress superposed from readings.
+#include "bindings/parts.hpp"
+
 #include "strength/superposed.hpp"
 
-#include "bindings/parts.hpp"
 #include "bindings/records.hpp"
 
 namespace facegear {

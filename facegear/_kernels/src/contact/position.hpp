@@ -28,7 +28,7 @@ struct PositionContact {
     std::vector<Index> steps;                      // (t)
     Index candidates = 0; // functions that a rotation by the limit closes
     Index forward = 0;    // of these, how many can carry the torque
-    Index sought = 0;     // among how many the solution is
+    Index strip_size = 0; // among how many functions the solution is
     double overlap = 0.0; // rad, rotation that would part the teeth where they stand in each other
     // Functions (m) that are loaded by any torque, and their forces.
     std::vector<Index> pair, node;
@@ -261,7 +261,7 @@ struct PositionSolver {
     void fill_loads(const FacingPoints& points, PositionContact& result) const {
         const Index torques = force.rows, count = force.columns;
         const Table<const double> forces = force.view();
-        result.sought = count;
+        result.strip_size = count;
         std::vector<Index> loaded;
         for (Index i = 0; i < count; ++i) {
             for (Index t = 0; t < torques; ++t) {

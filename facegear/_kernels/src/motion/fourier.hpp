@@ -70,11 +70,16 @@ class Expansion {
     }
 
     // The same of four series side by side, [harmonic][sine, cosine][4], at the phase of one machine; rows of four.
-    void expand_four(const double* series, Index terms, int machine, Index rows, double* out) {
+    // The first and third of the four are multiplied by `odd`, the others by `even`.
+    void expand_four(const double* series, Index terms, int machine, Index rows, double odd, double even, double* out) {
         using Four = Lanes<4>;
+        Four factor = Four::splat(even);
+        factor.set(0, odd);
+        factor.set(2, odd);
         for (Index j = 0; j < terms; ++j) {
             const Four cos_j = Four::splat(cosine_of(j, machine)), sin_j = Four::splat(sine_of(j, machine));
-            const Four sine_part = Four::load(series + 8 * j), cosine_part = Four::load(series + 8 * j + 4);
+            const Four sine_part = factor * Four::load(series + 8 * j);
+            const Four cosine_part = factor * Four::load(series + 8 * j + 4);
             (cosine_part * cos_j + sine_part * sin_j).store(fours_ + 4 * j);
             (sine_part * cos_j - cosine_part * sin_j).store(fours_ + 4 * (terms_ + j));
         }
@@ -128,6 +133,14 @@ void enter_series(const FourierRows& rows, double factor, int machine, Table<L> 
         for (int part = 0; part < 2; ++part)
             for (Index kind = 0; kind < rows.kinds; ++kind)
                 out.one(2 * j + part, kind, machine) = factor * rows.at(kind, part, j);
+}
+// The same of entities that are each of a kind.
+template <class L>
+void enter_series(const FourierRows& rows, const std::vector<Index>& kind, double factor, int machine, Table<L> out) {
+    for (Index j = 0; j < rows.terms; ++j)
+        for (int part = 0; part < 2; ++part)
+            for (std::size_t entity = 0; entity < kind.size(); ++entity)
+                out.one(2 * j + part, static_cast<Index>(entity), machine) = factor * rows.at(kind[entity], part, j);
 }
 
 // Coefficients of a polynomial about a point further on by `ahead`.

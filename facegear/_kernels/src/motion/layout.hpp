@@ -71,6 +71,50 @@ struct Table {
     double& one(Index number, Index entity, int machine) const { return row(number)[entity * L::machines + machine]; }
 };
 
+// Count vectors side by side, each added up in two sums: one alone would wait for each of its additions. (Spelled out
+// one by one, as compilers keep arrays of vectors in memory.)
+template <class V, int Count>
+struct Sums {
+    static constexpr int lanes = sizeof(V) / sizeof(double);
+    V even, odd;
+    Sums<V, Count - 1> rest;
+
+    void begin(const double* from) {
+        even = V::load(from);
+        odd = V::splat(0.0);
+        rest.begin(from + lanes);
+    }
+    void clear() {
+        even = odd = V::splat(0.0);
+        rest.clear();
+    }
+    void add_even(const double* vectors, V factor) {
+        even = V::load(vectors) * factor + even;
+        rest.add_even(vectors + lanes, factor);
+    }
+    void add_odd(const double* vectors, V factor) {
+        odd = V::load(vectors) * factor + odd;
+        rest.add_odd(vectors + lanes, factor);
+    }
+    void store(double* to, V factor) const {
+        ((even + odd) * factor).store(to);
+        rest.store(to + lanes, factor);
+    }
+    void store(double* to) const {
+        (even + odd).store(to);
+        rest.store(to + lanes);
+    }
+};
+template <class V>
+struct Sums<V, 0> {
+    void begin(const double*) {}
+    void clear() {}
+    void add_even(const double*, V) {}
+    void add_odd(const double*, V) {}
+    void store(double*, V) const {}
+    void store(double*) const {}
+};
+
 // A row of a table, read by a map from blocks to columns where there is one.
 template <class L>
 struct Series {
@@ -83,7 +127,7 @@ struct Series {
 
 // Coefficient i of the product of two series that begin at `first` and `second`, in two sums.
 template <class L>
-inline typename L::V product(const double* first, Index first_stride, const double* second, Index second_stride, Index i) {
+[[gnu::always_inline]] inline typename L::V product(const double* first, Index first_stride, const double* second, Index second_stride, Index i) {
     using V = typename L::V;
     V even = V::splat(0.0), odd = even;
     const double* f = first + i * first_stride; // the newest rows come last: the others do not wait for them
@@ -98,17 +142,17 @@ inline typename L::V product(const double* first, Index first_stride, const doub
     return even + odd;
 }
 template <class L>
-inline typename L::V product(Series<L> first, Table<L> second, Index i, Index block) {
+[[gnu::always_inline]] inline typename L::V product(Series<L> first, Table<L> second, Index i, Index block) {
     return product<L>(first.begin(block), first.table.stride(), second.begin(block), second.stride(), i);
 }
 template <class L>
-inline typename L::V product(Table<L> first, Table<L> second, Index i, Index block) {
+[[gnu::always_inline]] inline typename L::V product(Table<L> first, Table<L> second, Index i, Index block) {
     return product<L>(first.begin(block), first.stride(), second.begin(block), second.stride(), i);
 }
 
 // Value of a series in a block at a step ahead.
 template <class L>
-inline typename L::V value_ahead(Table<L> series, Index order, typename L::V step, Index block) {
+[[gnu::always_inline]] inline typename L::V value_ahead(Table<L> series, Index order, typename L::V step, Index block) {
     typename L::V total = series.at(order, block);
     for (Index i = order - 1; i >= 0; --i) total = total * step + series.at(i, block);
     return total;

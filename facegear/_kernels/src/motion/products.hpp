@@ -196,63 +196,50 @@ class Products<Coordinates<W>> {
         }
     }
 
-    // Count vectors at a time share each factor that is read; each is added up in two sums.
+    // Count vectors at a time share each factor that is read.
     template <int Count>
     static void add_columns(Table<L> matrix, Index rows, const double* factors, double* out, Index b) {
-        V even[Count], odd[Count];
-        for (int c = 0; c < Count; ++c) {
-            even[c] = V::load(out + (b + c) * W);
-            odd[c] = V::splat(0.0);
-        }
+        Sums<V, Count> sums;
+        sums.begin(out + b * W);
         const Index stride = matrix.stride();
         const double* at = matrix.begin(b);
         Index row = 0;
         for (; row + 1 < rows; row += 2, at += 2 * stride) {
-            const V first = V::splat(factors[row]), second = V::splat(factors[row + 1]);
-            for (int c = 0; c < Count; ++c) {
-                even[c] = V::load(at + c * W) * first + even[c];
-                odd[c] = V::load(at + stride + c * W) * second + odd[c];
-            }
+            sums.add_even(at, V::splat(factors[row]));
+            sums.add_odd(at + stride, V::splat(factors[row + 1]));
         }
-        if (row < rows) {
-            const V first = V::splat(factors[row]);
-            for (int c = 0; c < Count; ++c) even[c] = V::load(at + c * W) * first + even[c];
-        }
-        for (int c = 0; c < Count; ++c) (even[c] + odd[c]).store(out + (b + c) * W);
+        if (row < rows) sums.add_even(at, V::splat(factors[row]));
+        sums.store(out + b * W);
     }
 
     template <int Count>
     void push_columns(const Index* rows, Index count, const double* force, double* out, Index b) const {
-        V even[Count], odd[Count];
-        for (int c = 0; c < Count; ++c) {
-            even[c] = V::load(out + (b + c) * W);
-            odd[c] = V::splat(0.0);
-        }
+        Sums<V, Count> sums;
+        sums.begin(out + b * W);
+        const Index stride = by_contact_.stride();
+        const double* matrix = by_contact_.begin(b);
         Index at = 0;
         for (; at + 1 < count; at += 2) {
-            const V first = V::splat(force[rows[at]]), second = V::splat(force[rows[at + 1]]);
-            for (int c = 0; c < Count; ++c) {
-                even[c] = by_contact_.at(rows[at], b + c) * first + even[c];
-                odd[c] = by_contact_.at(rows[at + 1], b + c) * second + odd[c];
-            }
+            sums.add_even(matrix + rows[at] * stride, V::splat(force[rows[at]]));
+            sums.add_odd(matrix + rows[at + 1] * stride, V::splat(force[rows[at + 1]]));
         }
-        if (at < count) {
-            const V first = V::splat(force[rows[at]]);
-            for (int c = 0; c < Count; ++c) even[c] = by_contact_.at(rows[at], b + c) * first + even[c];
-        }
-        for (int c = 0; c < Count; ++c) (even[c] + odd[c]).store(out + (b + c) * W);
+        if (at < count) sums.add_even(matrix + rows[at] * stride, V::splat(force[rows[at]]));
+        sums.store(out + b * W);
     }
 
     void deflect_by_tiles(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
         if constexpr (W == 4) {
             for (Index k = 0; k < deflection.width; ++k) {
-                V sums[4] = {V::splat(0.0), V::splat(0.0), V::splat(0.0), V::splat(0.0)};
+                V first = V::splat(0.0), second = first, third = first, fourth = first;
                 for (Index tile = blocks_.tiles[k]; tile < blocks_.tiles[k + 1]; ++tile) {
                     const Index c = blocks_.columns[tile];
                     const V factor = y.at(row, c);
-                    for (int i = 0; i < 4; ++i) sums[i] = by_contact_.at(4 * k + i, c) * factor + sums[i];
+                    first = by_contact_.at(4 * k, c) * factor + first;
+                    second = by_contact_.at(4 * k + 1, c) * factor + second;
+                    third = by_contact_.at(4 * k + 2, c) * factor + third;
+                    fourth = by_contact_.at(4 * k + 3, c) * factor + fourth;
                 }
-                const V total = lane_sums(sums[0], sums[1], sums[2], sums[3]);
+                const V total = lane_sums(first, second, third, fourth);
                 deflection.put(row, k, error ? total - error->at(row, k) : total);
             }
         }

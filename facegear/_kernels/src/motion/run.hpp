@@ -81,8 +81,9 @@ class Runner final : public AnyRunner {
     // Where lanes are machines, contacts of a kind share the series of the error, unless each drifts.
     void choose_error() {
         const bool shared = L::lanes == L::machines && work_.drift_terms == 0;
-        work_.error = shared ? Series<L>{work_.error_per_kind, work_.shape->error_kind.data()}
-                             : Series<L>{work_.error_per_contact, nullptr};
+        const Index kinds = blocks_of<L>(work_.shape->error.kinds), width = blocks_of<L>(work_.m);
+        work_.error = {{work_.error_terms.data, shared ? kinds : width},
+                       shared ? work_.shape->error_kind.data() : nullptr};
     }
 
     void step() {

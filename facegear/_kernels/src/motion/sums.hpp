@@ -125,22 +125,12 @@ V largest_over_step(const std::vector<V>& terms, Index order, double sign) {
     return best;
 }
 
-// Whether polynomials may reach past extremes that are known, by the sums of their terms of either sign.
-template <class V>
-void reach_of(const std::vector<V>& terms, Index order, V& top, V& bottom) {
-    top = bottom = terms[0];
-    for (Index i = 1; i <= order; ++i) {
-        top = top + larger(terms[i], V::splat(0.0));
-        bottom = bottom + smaller(terms[i], V::splat(0.0));
-    }
-}
-
+// Widen extremes that are known by those of polynomials over the step, which may reach past them.
 template <class V>
 void widen(const std::vector<V>& terms, Index order, V& minimum, V& maximum) {
-    V top, bottom;
-    reach_of(terms, order, top, bottom);
-    if (positive_lanes(top - maximum) != 0) maximum = larger(maximum, largest_over_step(terms, order, 1.0));
-    if (positive_lanes(minimum - bottom) != 0) minimum = smaller(minimum, -largest_over_step(terms, order, -1.0));
+    const Reach<V> reach = reach_of(terms.data(), order);
+    if (positive_lanes(reach.top - maximum) != 0) maximum = larger(maximum, largest_over_step(terms, order, 1.0));
+    if (positive_lanes(minimum - reach.bottom) != 0) minimum = smaller(minimum, -largest_over_step(terms, order, -1.0));
 }
 
 // Extremes of the deflections, or of those of meshes with two flanks.

@@ -13,19 +13,35 @@
 
 namespace facegear::motion {
 
-// Write the terms of a deflection in powers of the fraction of the step; the sum of their sizes but for the first.
+// Bounds of a polynomial over the step, with room for rounding.
+template <class V>
+struct Reach {
+    V top, bottom;
+    // Above zero where a level lies within; equality counts.
+    V of(V level) const { return smaller(top - level, level - bottom); }
+};
+template <class V>
+Reach<V> reach_of(const V* terms, Index order) {
+    V above = V::splat(0.0), below = above;
+    for (Index i = 1; i <= order; ++i) {
+        above = above + larger(terms[i], V::splat(0.0));
+        below = below + smaller(terms[i], V::splat(0.0));
+    }
+    const V slack = (above - below) * V::splat(1e-12);
+    return {terms[0] + above + slack, terms[0] + below - slack};
+}
+
+// Write the terms of a deflection in powers of the fraction of the step.
 template <class L, class Law>
-typename L::V put_down(Work<L, Law>& w, Index b) {
+void put_down(Work<L, Law>& w, Index b) {
     using V = typename L::V;
     const V length = L::every(w.length);
-    V power = V::splat(1.0), size = V::splat(0.0);
+    V power = V::splat(1.0);
     w.scaled[0] = w.deflection.at(0, b);
     for (Index i = 1; i <= w.order; ++i) {
         power = power * length;
         w.scaled[i] = power * w.deflection.at(i, b);
-        size = size + absolute(w.scaled[i]);
     }
-    return size;
 }
 
 // How often the Bernstein coefficients of the polynomials in `terms` change their sign over the step.
@@ -74,12 +90,10 @@ void add_ways(Work<L, Law>& w, typename L::V wanted, typename L::V ignores) {
 // Add the ways from a level of those that are able (1). Where a deflection stands on the level (1), the known zero at
 // the start is divided out.
 template <class L, class Law>
-void look_at_level(Work<L, Law>& w, typename L::V level, typename L::V standing, typename L::V able, typename L::V size) {
+void look_at_level(Work<L, Law>& w, typename L::V level, typename L::V standing, typename L::V able, const Reach<typename L::V>& reach) {
     using V = typename L::V;
     const V start = w.scaled[0] - level, none = V::splat(0.0);
-    // Terms that together are smaller than the way to the level do not reach it; equality counts as reached.
-    const V reach = size * V::splat(1.0 + 1e-12) - absolute(start);
-    const V wanted = where_positive(able, where_positive(standing, V::splat(1.0), reach), none);
+    const V wanted = where_positive(able, where_positive(standing, V::splat(1.0), reach.of(level)), none);
     if (positive_lanes(wanted) == 0) return;
     w.terms[0] = where_positive(standing, w.scaled[1], start);
     for (Index i = 1; i < w.order; ++i) w.terms[i] = where_positive(standing, w.scaled[i + 1], w.scaled[i]);
@@ -96,17 +110,15 @@ void look_at_force(Work<L, Law>& w, Index b) {
     const V touching = absolute(w.side.at(0, b));
     const V able = where_positive(w.upper.at(0, b) - w.lower.at(0, b), touching, none);
     if (positive_lanes(able) == 0) return;
-    V power = one, rest = none;
-    V next = push_of(w, 0, b);
+    V power = one, next = push_of(w, 0, b);
     for (Index i = 0; i < w.order; ++i) {
         const V own = next;
         next = i + 1 < w.order ? push_of(w, i + 1, b) : none;
         w.terms[i] = power * where_positive(zero_now, next, own);
-        if (i > 0) rest = rest + absolute(w.terms[i]);
         power = power * length;
     }
     w.terms[w.order] = none;
-    const V reach = rest * V::splat(1.0 + 1e-12) - absolute(w.terms[0]);
+    const V reach = reach_of(w.terms.data(), w.order).of(none);
     const V wanted = where_positive(able, where_positive(zero_now, one, reach), none);
     if (positive_lanes(wanted) == 0) return;
     add_ways(w, wanted, where_positive(zero_now, one, on_edge));
@@ -202,13 +214,15 @@ void until_switch(Work<L, Law>& w) {
         const V able = where_positive(upper - lower, one, none);
         if (positive_lanes(able) == 0) continue;
         const V side = w.side.at(0, b), touching = absolute(side), state = w.state.at(0, b);
-        const V size = put_down(w, b), on_level = where_positive(absolute(level), one, none);
+        put_down(w, b);
+        const Reach<V> reach = reach_of(w.scaled.data(), w.order);
+        const V on_level = where_positive(absolute(level), one, none);
         // Open, a contact may reach either edge; pressed in, both ends of the piece of its law.
         const V near = where_positive(touching, none, upper), near_number = where_positive(touching, state, one);
-        look_at_level(w, near, where_positive(on_level, same(level, near_number), none), able, size);
+        look_at_level(w, near, where_positive(on_level, same(level, near_number), none), able, reach);
         const V far = where_positive(touching, w.extent.at(0, b), lower);
         const V far_number = where_positive(touching, state + side, -one);
-        look_at_level(w, far, where_positive(on_level, same(level, far_number), none), able, size);
+        look_at_level(w, far, where_positive(on_level, same(level, far_number), none), able, reach);
         if (w.shape->push_only && b < blocks_of<L>(w.shape->contacts)) look_at_force(w, b);
     }
     w.length = w.length * first_switch(w);

@@ -149,37 +149,30 @@ class Block {
   private:
     void deflect(const Sparse& matrix, Index row) {
         for (Index contact = 0; contact < m_; ++contact) {
-            V total[vectors];
-            for (V& each : total) each = V::splat(0.0);
-            for (Index e = matrix.starts[contact]; e < matrix.starts[contact + 1]; ++e) {
-                const V value = V::splat(matrix.values[e]);
-                const double* from = y_ + (row * n_ + matrix.columns[e]) * width;
-                for (int v = 0; v < vectors; ++v) total[v] = value * V::load(from + v * W) + total[v];
-            }
-            for (int v = 0; v < vectors; ++v) total[v].store(deflection_ + (row * m_ + contact) * width + v * W);
+            Sums<V, vectors> sums;
+            sums.clear();
+            for (Index e = matrix.starts[contact]; e < matrix.starts[contact + 1]; ++e)
+                sums.add_even(y_ + (row * n_ + matrix.columns[e]) * width, V::splat(matrix.values[e]));
+            sums.store(deflection_ + (row * m_ + contact) * width);
         }
     }
 
     // Coefficient i of every contact's force, with the factor of the coordinates' next one.
     template <class L, class Law>
     void push(Work<L, Law>& w, Index i) {
-        const V pushed = V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2)));
         const Series<L> slope = w.law.slope();
         for (Index contact = 0; contact < m_; ++contact) {
-            const V damping = V::splat(w.acting.one(0, contact, 0) * static_cast<double>(i + 1));
-            const double* next = deflection_ + ((i + 1) * m_ + contact) * width;
-            V total[vectors];
-            for (int v = 0; v < vectors; ++v) total[v] = damping * V::load(next + v * W);
+            Sums<V, vectors> sums;
+            sums.clear();
+            sums.add_odd(deflection_ + ((i + 1) * m_ + contact) * width,
+                         V::splat(w.acting.one(0, contact, 0) * static_cast<double>(i + 1)));
             if (w.active.one(0, contact, 0) != 0.0) {
                 const Index block = contact / (L::lanes / L::machines), lane = contact % (L::lanes / L::machines);
                 const double* values = slope.begin(block) + lane;
-                for (Index j = i; j >= 0; --j) {
-                    const V value = V::splat(values[j * slope.table.stride()]);
-                    const double* from = deflection_ + ((i - j) * m_ + contact) * width;
-                    for (int v = 0; v < vectors; ++v) total[v] = value * V::load(from + v * W) + total[v];
-                }
+                for (Index j = i; j >= 0; --j)
+                    sums.add_even(deflection_ + ((i - j) * m_ + contact) * width, V::splat(values[j * slope.table.stride()]));
             }
-            for (int v = 0; v < vectors; ++v) (pushed * total[v]).store(force_ + contact * width + v * W);
+            sums.store(force_ + contact * width, V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2))));
         }
     }
 
@@ -189,19 +182,14 @@ class Block {
         const Sparse& matrix = system.by_coordinate;
         const double factor = -1.0 / static_cast<double>((i + 1) * (i + 2));
         for (Index k = 0; k < n_; ++k) {
-            const V damping = V::splat(factor * static_cast<double>(i + 1) * w.damping.one(0, k, 0));
-            const V stiffness = V::splat(factor * w.omega_squared.one(0, k, 0));
-            V total[vectors];
-            for (int v = 0; v < vectors; ++v) {
-                total[v] = stiffness * V::load(y_ + (i * n_ + k) * width + v * W);
-                total[v] = damping * V::load(y_ + ((i + 1) * n_ + k) * width + v * W) + total[v];
-            }
-            for (Index e = matrix.starts[k]; e < matrix.starts[k + 1]; ++e) {
-                const V value = V::splat(matrix.values[e]);
-                const double* from = force_ + matrix.columns[e] * width;
-                for (int v = 0; v < vectors; ++v) total[v] = value * V::load(from + v * W) + total[v];
-            }
-            for (int v = 0; v < vectors; ++v) total[v].store(y_ + ((i + 2) * n_ + k) * width + v * W);
+            Sums<V, vectors> sums;
+            sums.clear();
+            sums.add_even(y_ + (i * n_ + k) * width, V::splat(factor * w.omega_squared.one(0, k, 0)));
+            sums.add_odd(y_ + ((i + 1) * n_ + k) * width,
+                         V::splat(factor * static_cast<double>(i + 1) * w.damping.one(0, k, 0)));
+            for (Index e = matrix.starts[k]; e < matrix.starts[k + 1]; ++e)
+                sums.add_even(force_ + matrix.columns[e] * width, V::splat(matrix.values[e]));
+            sums.store(y_ + ((i + 2) * n_ + k) * width);
         }
     }
 

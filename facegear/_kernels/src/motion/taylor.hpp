@@ -17,17 +17,12 @@ void expand_excitation(Work<L, Law>& w, Index rows) {
     w.expansion.set_phase(w.phase);
     w.law.expand_phase(w.expansion, w.piece, w.ahead, rows);
     w.friction.expand(w.expansion, rows);
-    w.expansion.expand(w.error_kinds, shape.error.terms, rows, w.error_per_kind);
-    if (!w.error.column) {
-        for (Index i = 0; i < rows; ++i)
-            for (Index row = 0; row < w.m; ++row)
-                w.error_per_contact.set(i, row, w.error_per_kind.of(i, shape.error_kind[row]));
-    }
+    w.expansion.expand(w.error.column ? w.error_of_kinds : w.error_series, shape.error.terms, rows, w.error.table);
     for (Index row = 0; w.drift_terms > 0 && row < w.m; ++row) {
         for (int machine = 0; machine < L::machines; ++machine) {
             for (Index i = 0; i < w.drift_terms; ++i) w.polynomial[i] = w.drift[i * w.m + row];
             shift_polynomial(w.polynomial.data(), w.drift_terms, w.phase[machine]);
-            for (Index i = 0; i < w.drift_terms; ++i) w.error_per_contact.one(i, row, machine) += w.polynomial[i];
+            for (Index i = 0; i < w.drift_terms; ++i) w.error.table.one(i, row, machine) += w.polynomial[i];
         }
     }
     if (shape.load.terms > 1) w.expansion.expand(w.load_series, shape.load.terms, rows, w.load);

@@ -1,6 +1,7 @@
 // The numbers of the machines that a layout holds, and the scratch space of their steps.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -31,9 +32,9 @@ struct Work {
             *each = room.table<L>(1, m);
         for (Table<L>* each : {&y, &load, &turn}) *each = room.table<L>(rows, n);
         for (Table<L>* each : {&deflection, &turned, &elastic}) *each = room.table<L>(rows, m);
-        error_kinds = room.table<L>(2 * shape->error.terms, shape->error.kinds);
-        error_per_kind = room.table<L>(rows, shape->error.kinds);
-        error_per_contact = room.table<L>(rows, m);
+        error_series = room.table<L>(2 * shape->error.terms, m);
+        error_of_kinds = room.table<L>(2 * shape->error.terms, shape->error.kinds);
+        error_terms = room.table<L>(rows, std::max(m, shape->error.kinds));
         load_series = room.table<L>(2 * shape->load.terms, n);
         ways = room.table<L>((order + 1) * ways_per_contact * m, 1);
         way_changes = room.table<L>(ways_per_contact * m, 1);
@@ -70,7 +71,8 @@ struct Work {
             upper.one(0, row, lane) = system.upper[row];
             leverage.one(0, row, lane) = system.leverage[row];
         }
-        enter_series(system.error, 1.0, lane, error_kinds);
+        enter_series(system.error, system.error_kind, 1.0, lane, error_series);
+        enter_series(system.error, 1.0, lane, error_of_kinds);
         enter_series(system.load, 1.0 / square, lane, load_series);
         if (system.load.terms == 1)
             for (Index k = 0; k < n; ++k) load.one(0, k, lane) = load_series.one(1, k, lane);
@@ -104,8 +106,8 @@ struct Work {
     double ahead[L::machines] = {};                    // phase since the first of them, rad
 
     Table<L> y, deflection;                            // Taylor coefficients; deflections are counted from `edge`
-    Table<L> error_kinds, error_per_kind, error_per_contact, load_series, load;
-    Series<L> error;
+    Table<L> error_series, error_of_kinds, error_terms, load_series, load;
+    Series<L> error;                                   // its terms, by contact or by kind
     Table<L> elastic;                                  // forces of the law, kept where friction or parting needs them
     Table<L> force;                                    // of a row, with the factor of the next coefficient of y
     Index drift_terms = 0;

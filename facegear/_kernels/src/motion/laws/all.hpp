@@ -17,9 +17,11 @@
 
 #include "motion/laws/linear.hpp"
 #include "motion/laws/load_dependent.hpp"
+#include "motion/laws/power.hpp"
 
 namespace facegear::motion {
 
-using Law = std::variant<std::shared_ptr<const LinearLaw>, std::shared_ptr<const LoadDependentLaw>>;
+using Law = std::variant<std::shared_ptr<const LinearLaw>, std::shared_ptr<const LoadDependentLaw>,
+                         std::shared_ptr<const PowerLaw>>;
 
 } // namespace facegear::motion

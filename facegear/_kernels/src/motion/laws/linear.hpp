@@ -39,34 +39,25 @@ class LinearLaw::Motion {
 
   public:
     Motion(const LinearLaw& law, Index rows)
-        : kinds_(room_.table<L>(2 * law.terms(), law.fourier.kinds)),
-          per_kind_(room_.table<L>(rows, law.fourier.kinds)), ahead_(room_.table<L>(1, law.contacts())),
-          polynomial_(law.degrees) {
         // Where lanes are machines, contacts of a kind share its series.
-        if (L::lanes == L::machines && law.pieces.empty()) {
-            slope_ = {per_kind_, law.kind.data()};
-            columns_ = law.fourier.kinds;
-        } else {
-            slope_ = {room_.table<L>(rows, law.contacts()), nullptr};
-            columns_ = slope_.table.width;
-        }
-    }
+        : shared_(L::lanes == L::machines && law.pieces.empty()),
+          series_(room_.table<L>(2 * law.terms(), shared_ ? law.fourier.kinds : law.contacts())),
+          slope_{room_.table<L>(rows, shared_ ? law.fourier.kinds : law.contacts()), shared_ ? law.kind.data() : nullptr},
+          ahead_(room_.table<L>(1, law.contacts())), polynomial_(law.degrees) {}
 
     // Take the numbers of a machine; factor: 1 / w^2.
     void enter(const LinearLaw& law, double factor, int machine) {
         law_[machine] = &law;
         factor_[machine] = factor;
-        enter_series(law.fourier, factor, machine, kinds_);
+        shared_ ? enter_series(law.fourier, factor, machine, series_)
+                : enter_series(law.fourier, law.kind, factor, machine, series_);
     }
 
     // The first `rows` coefficients of what depends on the phase alone. piece and ahead: of each machine the stretch
     // between two breaks, and the phase since the first of them.
     void expand_phase(Expansion<L>& expansion, const Index* piece, const double* ahead, Index rows) {
         const LinearLaw& law = *law_[0];
-        expansion.expand(kinds_, law.terms(), rows, per_kind_);
-        if (slope_.column) return;
-        for (Index m = 0; m < law.contacts(); ++m)
-            for (Index i = 0; i < rows; ++i) slope_.table.set(i, m, per_kind_.of(i, law.kind[m]));
+        expansion.expand(series_, law.terms(), rows, slope_.table);
         for (int machine = 0; law.degrees > 0 && machine < L::machines; ++machine)
             for (Index m = 0; m < law.contacts(); ++m) add_piece(machine, m, piece[machine], ahead[machine]);
     }
@@ -81,7 +72,7 @@ class LinearLaw::Motion {
     Series<L> slope() const { return slope_; }
 
     void look_ahead(Index order, V step) {
-        for (Index c = 0; c < columns_; ++c) ahead_.put(0, c, value_ahead(slope_.table, order, step, c));
+        for (Index c = 0; c < slope_.table.width; ++c) ahead_.put(0, c, value_ahead(slope_.table, order, step, c));
     }
     V force_ahead(V deflection, Index, V, Index block) const {
         return ahead_.at(0, slope_.column ? slope_.column[block] : block) * deflection;
@@ -103,9 +94,10 @@ class LinearLaw::Motion {
     }
 
     Room room_;
-    Table<L> kinds_, per_kind_, ahead_;
+    bool shared_;
+    Table<L> series_;
     Series<L> slope_;
-    Index columns_ = 0;
+    Table<L> ahead_;
     std::vector<double> polynomial_;
     const LinearLaw* law_[L::machines] = {};
     double factor_[L::machines] = {};

@@ -46,7 +46,7 @@ class LoadDependentLaw::Motion {
           second_(room_.table<L>(rows, law.contacts())), third_(room_.table<L>(rows, law.contacts())),
           bend_(room_.table<L>(rows, law.contacts())), rise_(room_.table<L>(rows, law.contacts())),
           lever_(room_.table<L>(rows, law.contacts())), slope_{room_.table<L>(rows, law.contacts()), nullptr},
-          four_(room_.numbers(4 * rows)), filled_(zeroth_.width * L::lanes), touching_(zeroth_.width) {}
+          fours_(room_.numbers(4 * rows * L::lanes)), touching_(zeroth_.width) {}
 
     void enter(const LoadDependentLaw& law, double factor, int machine) {
         law_[machine] = &law;
@@ -62,26 +62,40 @@ class LoadDependentLaw::Motion {
             for (int lane = 0; lane < L::lanes; ++lane) {
                 const Index m = entity_of<L>(b, lane), at = b * L::lanes + lane;
                 const int machine = machine_of<L>(lane);
-                if (m >= law_[machine]->contacts()) continue;
-                const double piece = state.data[at];
-                if (piece == 0.0) {
-                    if (filled_[at]) clear(at, rows);
-                    filled_[at] = 0;
-                    continue;
-                }
-                touching_[b] = filled_[at] = 1;
+                const double piece = m < law_[machine]->contacts() ? state.data[at] : 0.0;
+                own_[lane] = none_;
+                if (piece == 0.0) continue;
+                touching_[b] = 1;
                 const Index number = static_cast<Index>(piece < 0.0 ? -piece : piece);
-                expansion.expand_four(law_[machine]->cubic(m, number), law_[machine]->harmonics, machine, rows, four_);
-                keep(at, rows, factor_[machine], piece > 0.0 ? factor_[machine] : -factor_[machine]);
+                const double factor = factor_[machine], odd = piece > 0.0 ? factor : -factor;
+                const LoadDependentLaw& law = *law_[machine];
+                own_[lane] = fours_ + 4 * rows * lane;
+                expansion.expand_four(law.cubic(m, number), law.harmonics, machine, rows, odd, factor, own_[lane]);
             }
+            if (touching_[b]) gather(b, rows);
         }
     }
 
+    // Three products with one series side by side; the newest coefficients, which need each other, come last.
     V force(Table<L> deflection, Index i, Index block) {
         if (!touching_[block]) return V::splat(0.0);
-        bend_.put(i, block, second_.at(i, block) + product(third_, deflection, i, block));
-        rise_.put(i, block, first_.at(i, block) + product(bend_, deflection, i, block));
-        return zeroth_.at(i, block) + product(rise_, deflection, i, block);
+        const Index stride = zeroth_.stride();
+        const double* third = third_.begin(block);
+        const double* bend = bend_.begin(block);
+        const double* rise = rise_.begin(block);
+        const double* d = deflection.begin(block) + i * stride;
+        V by_third = second_.at(i, block), by_bend = first_.at(i, block), by_rise = zeroth_.at(i, block);
+        for (Index j = 0; j < i; ++j) {
+            const V own = V::load(d);
+            by_third = V::load(third) * own + by_third;
+            by_bend = V::load(bend) * own + by_bend;
+            by_rise = V::load(rise) * own + by_rise;
+            third += stride, bend += stride, rise += stride, d -= stride;
+        }
+        const V start = V::load(d), bent = V::load(third) * start + by_third, risen = bent * start + by_bend;
+        bend_.put(i, block, bent);
+        rise_.put(i, block, risen);
+        return risen * start + by_rise;
     }
 
     // The series of the slope, once the forces up to `order` are known.
@@ -118,25 +132,38 @@ class LoadDependentLaw::Motion {
     }
 
   private:
-    void keep(Index at, Index rows, double even, double odd) {
-        const Index stride = zeroth_.stride();
+    // Turn the rows of four coefficients of every lane's contact into rows of lanes.
+    void gather(Index b, Index rows) {
+        const Index stride = zeroth_.stride(), begin = b * L::lanes;
         for (Index i = 0; i < rows; ++i) {
-            zeroth_.data[i * stride + at] = odd * four_[4 * i];
-            first_.data[i * stride + at] = even * four_[4 * i + 1];
-            second_.data[i * stride + at] = odd * four_[4 * i + 2];
-            third_.data[i * stride + at] = even * four_[4 * i + 3];
+            int lane = 0;
+            for (; lane + 4 <= L::lanes; lane += 4) {
+                Lanes<4> zeroth = of_lane(lane, i), first = of_lane(lane + 1, i);
+                Lanes<4> second = of_lane(lane + 2, i), third = of_lane(lane + 3, i);
+                transpose(zeroth, first, second, third);
+                zeroth.store(zeroth_.data + i * stride + begin + lane);
+                first.store(first_.data + i * stride + begin + lane);
+                second.store(second_.data + i * stride + begin + lane);
+                third.store(third_.data + i * stride + begin + lane);
+            }
+            for (; lane < L::lanes; ++lane) {
+                const Lanes<4> own = of_lane(lane, i);
+                const Table<L>* tables[] = {&zeroth_, &first_, &second_, &third_};
+                for (int power = 0; power < 4; ++power) tables[power]->row(i)[begin + lane] = own[power];
+            }
         }
     }
-    void clear(Index at, Index rows) {
-        for (Index i = 0; i < rows; ++i)
-            for (const Table<L>& each : {zeroth_, first_, second_, third_}) each.row(i)[at] = 0.0;
+    Lanes<4> of_lane(int lane, Index i) const {
+        return own_[lane] == none_ ? Lanes<4>::splat(0.0) : Lanes<4>::load(own_[lane] + 4 * i);
     }
 
     Room room_;
     Table<L> zeroth_, first_, second_, third_, bend_, rise_, lever_;
     Series<L> slope_;
-    double* four_;
-    std::vector<char> filled_, touching_;
+    double* fours_; // coefficients of the contact of each lane, or none where it is open
+    static constexpr double* none_ = nullptr;
+    double* own_[L::lanes] = {};
+    std::vector<char> touching_;
     const LoadDependentLaw* law_[L::machines] = {};
     double factor_[L::machines] = {};
 };

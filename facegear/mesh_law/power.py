@@ -1,0 +1,117 @@
+"""The power law: a factor of the phase times c x^n, as Hertz's law of a sphere has it with n = 1.5.
+
+x^n has no Taylor series at zero. Below a small level the law is therefore the cubic with slope zero at zero
+that has value and slope of x^n at the level (Hermite); above it, it is x^n itself.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from facegear._kernels import motion
+from facegear.arrays import Array
+
+
+class PowerHeld(NamedTuple):
+    """Bounds of the slopes (K, M), N/m; statics asks the law itself for the rest."""
+
+    stiffness: Array
+
+
+@dataclass(frozen=True, eq=False)
+class PowerLaw:
+    """(1 + depth cos phase) size x^exponent of every contact.
+
+    Attributes
+    ----------
+    size
+        Force at x = 1 m, N.
+    exponent
+        Above 1.
+    level
+        Amount below which the law is a cubic, m.
+    depth
+        Part by which the force changes over the mesh period, from 0 to below 1.
+    contacts
+        Their number M.
+    largest
+        Amount up to which the slope is bounded, m.
+    """
+
+    size: float = 1.0
+    exponent: float = 1.5
+    level: float = 1e-3
+    depth: float = 0.0
+    contacts: int = 1
+    largest: float = 4.0
+
+    @property
+    def breaks(self) -> Array:
+        """None: the law is smooth in the phase."""
+        return np.zeros(0)
+
+    @property
+    def straight(self) -> bool:
+        """The force is a power of the amount."""
+        return False
+
+    @property
+    def levels(self) -> Array:
+        """The edge, and where the power begins, (2, M)."""
+        return np.repeat([[0.0], [self.level]], self.contacts, axis=1)
+
+    @property
+    def steepest(self) -> Array:
+        """Slope at the largest amount and factor, (M,)."""
+        return np.full(self.contacts, (1.0 + self.depth) * self._slope(np.array(self.largest)))
+
+    @property
+    def harmonic_fractions(self) -> Array:
+        """Fractions of the mean and of the first harmonic, (2,)."""
+        return np.array([1.0, self.depth]) / (1.0 + self.depth)
+
+    def force(self, cycles: Array, beyond: Array) -> Array:
+        """Forces (..., K, M)."""
+        return np.asarray(self._factor(cycles)[:, None] * np.sign(beyond) * self._shape(np.abs(beyond)))
+
+    def slope(self, cycles: Array, beyond: Array) -> Array:
+        """Slopes (..., K, M)."""
+        return np.asarray(self._factor(cycles)[:, None] * self._slope(np.abs(beyond)))
+
+    def mean(self) -> "PowerLaw":
+        """Without the change over the mesh period."""
+        return replace(self, depth=0.0)
+
+    def at_phase(self, cycle: float) -> "PowerLaw":
+        """The law at one phase."""
+        return replace(self, depth=0.0, size=self.size * float(self._factor(np.array(cycle))))
+
+    def held(self, cycles: Array) -> PowerHeld:
+        """Bounds of the slopes."""
+        return PowerHeld(np.full((cycles.size, self.contacts), self.steepest[0]))
+
+    @cached_property
+    def compiled(self) -> motion.PowerLaw:
+        """What the integrator takes of it."""
+        factor = np.array([[[0.0, 0.0], [1.0, self.depth]]])
+        return motion.power_law(factor, self.size, self.exponent, self.level, self.contacts)
+
+    @property
+    def _start(self) -> tuple[float, float]:
+        """Coefficients of x^2 and x^3 below the level, over the size."""
+        n, x = self.exponent, self.level
+        return (3.0 - n) * x ** (n - 2.0), (n - 2.0) * x ** (n - 3.0)
+
+    def _factor(self, cycles: Array) -> Array:
+        return np.asarray(1.0 + self.depth * np.cos(2.0 * np.pi * cycles))
+
+    def _shape(self, x: Array) -> Array:
+        a, b = self._start
+        return self.size * np.where(x < self.level, x**2 * (a + b * x), x**self.exponent)
+
+    def _slope(self, x: Array) -> Array:
+        a, b = self._start
+        high = self.exponent * np.maximum(x, self.level) ** (self.exponent - 1.0)
+        return self.size * np.where(x < self.level, x * (2.0 * a + 3.0 * b * x), high)
