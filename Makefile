@@ -5,7 +5,7 @@ BIN := .venv/bin
 LOCKED := $(BIN)/pip install --quiet --require-hashes -r
 PYTEST := $(BIN)/python -m pytest -n $(CORES) --dist loadgroup --max-worker-restart=0 # a crash ends the tests
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes
-.PHONY: all env tools kernels check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms starters mutation lock clean
+.PHONY: all env tools kernels sanitize check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms starters mutation lock clean
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 env: .venv/run
@@ -39,9 +39,12 @@ lint: kernels tools
 	$(BIN)/python building/lint.py
 docs: tools
 	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
-ci: lint docs release .venv/cluster
+ci: lint docs sanitize release .venv/cluster
 	FACEGEAR_SLURM=1 $(MAKE) test
-release: tools # into dist/
+sanitize: tools # tests of the kernels while addresses and undefined behaviour are watched
+	$(BIN)/python building/sanitize.py -n 0 tests/unit/test_flank_and_small_kernels.py tests/unit/contact/test_contact_kernels.py
+release: tools # into dist/; the wheel is compiled by zig for an old glibc
+	$(LOCKED) requirements-zig.lock
 	PATH=$(CURDIR)/$(BIN):$$PATH .ci/release dist
 audit: tools # known faults of the locked versions; fails where PyPI's own service does not answer
 	$(BIN)/uv tool run pip-audit --strict --requirement requirements-run.lock --disable-pip

@@ -60,19 +60,24 @@ def build_folder() -> Path:
 
 def build_in_place() -> None:
     """Compile what has changed, and put the modules and their types beside their sources."""
-    cmake, ninja = find_program("cmake"), find_program("ninja")
-    if cmake is None:
-        raise SystemExit("The kernels need CMake: `make kernels` installs it, and `pip install -e .`")
     folder = build_folder()
     if not folder.exists() and not compiler_is_installed():
         print(f"There is no g++ or clang++: the kernels are compiled by zig ({ADVICE}).", flush=True)
     choose_compiler(ROOT / "build" / "zig")
-    options = [f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release"]
+    build(folder, ROOT)
+
+
+def build(folder: Path, prefix: Path, *definitions: str) -> None:
+    """Compile what has changed since the last build in a folder, and install it below a prefix."""
+    cmake, ninja = find_program("cmake"), find_program("ninja")
+    if cmake is None:
+        raise SystemExit("The kernels need CMake: `make kernels` installs it, and `pip install -e .`")
+    options = [f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release", *definitions]
     if ninja:
         options += ["-G", "Ninja", f"-DCMAKE_MAKE_PROGRAM={ninja}"]
     run(cmake, "-S", ROOT, "-B", folder, *options)
     run(cmake, "--build", folder, "--config", "Release", "--parallel", os.cpu_count() or 1)
-    run(cmake, "--install", folder, "--config", "Release", "--prefix", ROOT)
+    run(cmake, "--install", folder, "--config", "Release", "--prefix", prefix)
 
 
 def find_program(name: str) -> str | None:

@@ -692,12 +692,12 @@ class Gearbox:
 
         STEP or STL (mm): the exact teeth of a body, modifications included; `body`: pinion or face_gear;
         `teeth`: a sector of so many, the whole gear unless given; a STEP product has the name of case and
-        body. FMU: the dynamic model as C sources for
+        body. FMU: the dynamic model as C++17 sources for
         co-simulation (FMI 3.0), at the config's speed. GLB: a glTF scene of all gears in mesh, or of one
         pinion and its gear without a transmission. REXS: pinions, shafts, bearings and material as REXS 2.0,
         which has no face gear; the file names what is lost. CSV: nominal points and normals of all flanks
         for a measuring machine, as `flanks.file` of either body reads them. Raises FacegearError for anything
-        else and for what an FMU cannot hold, ConfigError for a pair without bodies and a config without a
+        else, ConfigError for a pair without bodies and a config without a
         transmission.
         """
         path = file_path(path)

@@ -18,7 +18,7 @@ _REMEDY = "rebuild them by `make kernels`, or by `pip install -e .` where pip in
 
 try:
     _module = import_module(f"{__name__}._baseline")
-    if os.environ.get(VARIABLE) != "baseline" and _module.has_x86_64_v3():
+    if os.environ.get(VARIABLE) != "baseline" and _module.USE_X86_64_V3:
         _module = import_module(f"{__name__}._x86_64_v3")
 except ImportError as error:
     raise ImportError(f"the compiled kernels of facegear cannot be loaded ({error}): {_REMEDY}") from error

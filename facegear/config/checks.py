@@ -122,9 +122,8 @@ def check_positions(pair: ToothPair, section: Transmission) -> None:
         apart = float(np.mod(angles[following] - angles[first], 2.0 * pi))
         if first != following and apart < needed * (1.0 - 1e-9):
             names = [shape.pinions[i].name for i in (first, following)]
-            distance = (
-                f"{degrees(apart):.4g} deg apart, at least {degrees(needed):.4g}: their bodies would overlap"
-            )
+            angles_text = f"at least {degrees(needed):.4g} deg apart, not {degrees(apart):.4g}"
+            distance = f"{angles_text}: their bodies would overlap"
             raise ConfigError("transmission.pinions", names, distance)
 
 

@@ -1,7 +1,7 @@
 """Both flanks of a pair as contact sees them: lattices of nodes on exact surfaces."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -169,11 +169,10 @@ class PinionSurface:
         corners = [nodes[a : nu - 2 + a : 2, b : nv - 2 + b : 2].ravel() for a in range(3) for b in range(3)]
         return points, np.stack(corners, axis=-1)
 
-    @cached_property
+    @property
     def between_probes(self) -> sp.csr_matrix:
-        """Interpolation (n, probes) from the probes to the refined nodes."""
-        at = np.stack(np.meshgrid(*map(np.arange, self.shape), indexing="ij"), axis=-1).reshape(-1, 2)
-        return interpolation(at / self.lattice.factors, self.side.shape)
+        """Interpolation (n, probes) from the probes to the refined nodes: shared."""
+        return _between_probes(self.lattice)
 
     @cached_property
     def cell(self) -> Integers:
@@ -188,6 +187,12 @@ class PinionSurface:
         row = np.where(np.isnan(flank), beyond, flank * (rows - 1)) * self.lattice.refinement.profile
         column = (y - self.side.v[0, 0]) / self.width * columns
         return np.stack([row, np.where((column >= 0) & (column <= columns), column, np.nan)], axis=-1)
+
+
+@lru_cache(maxsize=8)
+def _between_probes(lattice: Lattice) -> sp.csr_matrix:
+    nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
+    return interpolation(nodes, lattice.coarse)
 
 
 @dataclass(frozen=True, eq=False)

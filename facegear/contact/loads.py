@@ -5,7 +5,6 @@ grows by micrometres within a node distance, so that averages over the surface b
 therefore carry loads of their own, hats along the edge with gaps taken on it.
 """
 
-from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -58,10 +57,23 @@ def gathered(
     number, ends, gap, gear = hits
     pairs, beside = edge.gap.shape
 
-    def join_points(on_edge: AnyArray, on_pinion: AnyArray) -> AnyArray:
-        """Return values (p, e, ...) of the edge's points and (q, ...) of the pinion's as one array."""
-        parts = (on_pinion[first:last] for first, last in pairwise(ends.tolist()))
-        return np.concatenate([*chain.from_iterable(zip(on_edge, parts, strict=True)), on_pinion[:0]])
+    starts = ends + beside * np.arange(pairs + 1)
+    bounds = list(zip(starts.tolist(), ends.tolist(), ends[1:].tolist(), strict=False))
+
+    def join_points(on_edge: AnyArray, on_pinion: AnyArray, numbers: Integers | None = None) -> AnyArray:
+        """Return values of the edge's points (p, e, ...) and the pinion's (q, ...) as one array.
+
+        With numbers (q,) the pinion's values stand in these rows, which are copied once.
+        """
+        values = np.empty((starts[-1], *on_pinion.shape[1:]), on_pinion.dtype)
+        for (start, begin, end), edge_values in zip(bounds, on_edge, strict=True):
+            values[start : start + beside] = edge_values
+            rows = values[start + beside : start + beside + end - begin]
+            if numbers is None:
+                rows[:] = on_pinion[begin:end]
+            else:
+                np.take(on_pinion, numbers[begin:end], axis=0, out=rows, mode="clip")
+        return values
 
     def at_each_pair(values: AnyArray, columns: int) -> AnyArray:
         """Return values (e, c) at the edge's points of each pair (p, e, columns), 0 in further columns."""
@@ -70,14 +82,14 @@ def gathered(
 
     gathered_points = FacingPoints(
         gap=join_points(edge.gap, gap),
-        lever_arm=join_points(edge.lever_arm, points.lever_arm[number]),
-        pinion=join_points(edge.pinion, points.at[number]),
+        lever_arm=join_points(edge.lever_arm, points.lever_arm, number),
+        pinion=join_points(edge.pinion, points.at, number),
         gear=join_points(at_each_pair(edge.gear, 2), gear),
-        functions=join_points(at_each_pair(edge.hats, 4), points.hats[number] + first),
-        values=join_points(at_each_pair(edge.values, 4), points.values[number]),
-        area=join_points(np.full((pairs, beside), OF_AN_EDGE), points.area[number]),
+        functions=join_points(at_each_pair(edge.hats, 4), points.hats + first, number),
+        values=join_points(at_each_pair(edge.values, 4), points.values, number),
+        area=join_points(np.full((pairs, beside), OF_AN_EDGE), points.area, number),
     )
-    return gathered_points, ends + beside * np.arange(pairs + 1)
+    return gathered_points, starts
 
 
 def flank_cover(surface: PinionSurface) -> Array:

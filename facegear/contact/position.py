@@ -161,7 +161,7 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
             limit = MARGIN * float(contact.rotation[0])
             continue
         for torque, steps, residual in zip(loads, contact.steps, contact.residual, strict=True):
-            check_solved(int(steps), float(residual), contact.sought, where(torque))
+            check_solved(int(steps), float(residual), contact.strip_size, where(torque))
         return contact
     tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
     raise NotConverged("contact", where(max(torques)), tried)

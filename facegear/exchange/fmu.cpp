@@ -36,7 +36,7 @@ constexpr std::size_t inputs = 1 + model::bodies, first_output = 1 + inputs;
 class Instance {
   public:
     Instance() : system_(std::make_shared<System>(model::make_system())), work_(system_, model::order) {
-        work_.error = {work_.error_per_kind, system_->error_kind.data()};
+        work_.choose_error();
         base_load_ = system_->load.values;
         output_.resize(2 * system_->contacts + 3 * model::bodies);
         begin();

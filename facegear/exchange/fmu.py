@@ -13,7 +13,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
 
-from facegear.arrays import AnyArray, Arrays
+from facegear.arrays import AnyArray
 from facegear.dynamics.integrator.compiled import system_numbers
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
@@ -34,7 +34,7 @@ UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}, "N.m": {"kg": "
 LETTERS = "xyz"
 COUPLING = ("dampers", "gyroscopic", "circulatory", "centrifugal")
 """Matrices that couple coordinates, in the order of the integrator's argument."""
-SERIES = ("error", "load", "rubbing_ratios", "fourier")
+SERIES = ("error", "load", "rubbing_ratios", "fourier", "factor")
 """Names of Fourier series among the numbers of a system and of its law."""
 SHOWN_PERIODS, STEPS_PER_PERIOD = 64, 64
 """Mesh periods and communication steps in each that an importing program is offered as its experiment.
@@ -238,7 +238,7 @@ def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
             yield f"s.{name} = {_series(values) if name in SERIES else _value(values)};"
 
 
-def _law_lines(numbers: Arrays) -> Iterator[str]:
+def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
     """Statements that fill one of the laws of facegear::motion."""
     for name, values in numbers.items():
         if name == "table":
@@ -246,7 +246,8 @@ def _law_lines(numbers: Arrays) -> Iterator[str]:
             yield f"law->kinds = {kinds}, law->level_count = {levels}, law->harmonics = {harmonics};"
         if name == "pieces":
             yield f"law->degrees = {values.shape[1]};"
-        yield f"law->{name} = {_series(values) if name in SERIES else _list(values)};"
+        member = "count" if name == "contacts" else name
+        yield f"law->{member} = {_series(values) if name in SERIES else _value(values)};"
 
 
 def _series(values: AnyArray) -> str:

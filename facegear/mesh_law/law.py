@@ -4,7 +4,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from facegear.arrays import Array, Arrays
+from facegear.arrays import Array
 
 
 class Held(Protocol):
@@ -71,8 +71,8 @@ class MeshLaw(Protocol):
         """
 
     @property
-    def numbers(self) -> Arrays:
-        """Its arrays by the names that the integrator's function for this law takes."""
+    def numbers(self) -> dict[str, Any]:
+        """Its arrays and numbers by the names that the integrator's function for this law takes."""
 
     @property
     def compiled(self) -> Any:

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from facegear._kernels import motion
-from facegear.arrays import Array, Arrays, Integers
+from facegear.arrays import Array, Integers
 from facegear.harmonics.series import Harmonics, stacked, stacked_values
 from facegear.mesh_law.laws_at_phases import LinearHeld
 
@@ -137,8 +138,8 @@ class LinearLaw:
         return LinearHeld(self.stiffness(cycles))
 
     @property
-    def numbers(self) -> Arrays:
-        """Its arrays as the integrator takes them."""
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers as the integrator takes them."""
         return {
             "fourier": np.ascontiguousarray(self.fourier, dtype=float),
             "kind": np.ascontiguousarray(self.kind, np.int64),

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
 from facegear._kernels import motion
-from facegear.arrays import Array, Arrays, Integers
+from facegear.arrays import Array, Integers
 from facegear.mesh_law.force_table import ForceTable, amplitudes, hermite, slope_bounds, values_at
 from facegear.mesh_law.laws_at_phases import LoadDependentHeld
 from facegear.mesh_law.piecewise_cubics import PiecewiseCubics
@@ -121,8 +122,8 @@ class LoadDependentLaw:
         )
 
     @property
-    def numbers(self) -> Arrays:
-        """Its arrays as the integrator takes them."""
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers as the integrator takes them."""
         kind = np.ascontiguousarray(self.kind, np.int64)
         return {"table": _columns(self), "levels": self._levels, "kind": kind}
 

@@ -6,7 +6,7 @@ that has value and slope of x^n at the level (Hermite); above it, it is x^n itse
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -92,11 +92,21 @@ class PowerLaw:
         """Bounds of the slopes."""
         return PowerHeld(np.full((cycles.size, self.contacts), self.steepest[0]))
 
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Its numbers as the integrator takes them."""
+        return {
+            "factor": np.array([[[0.0, 0.0], [1.0, self.depth]]]),
+            "size": self.size,
+            "exponent": self.exponent,
+            "level": self.level,
+            "contacts": self.contacts,
+        }
+
     @cached_property
     def compiled(self) -> motion.PowerLaw:
         """What the integrator takes of it."""
-        factor = np.array([[[0.0, 0.0], [1.0, self.depth]]])
-        return motion.power_law(factor, self.size, self.exponent, self.level, self.contacts)
+        return motion.power_law(**self.numbers)
 
     @property
     def _start(self) -> tuple[float, float]:

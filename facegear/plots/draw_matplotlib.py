@@ -402,6 +402,7 @@ def _curve(on: Axes, mark: Curve, order: float) -> None:
         mfc="white" if mark.hollow else mark.colour,
         alpha=mark.opacity,
         drawstyle="steps-post" if mark.steps else "default",
+        solid_capstyle="butt",
         label=mark.name or None,
         zorder=order,
         rasterized=bool(mark.marker) and np.size(mark.x) > MANY_MARKS,

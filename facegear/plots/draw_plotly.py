@@ -49,7 +49,7 @@ letters, and each letter.
 """
 ENTRY_HEIGHT, WHOLE_LEGEND = 28, 2000
 """In pixels: height of an entry of a legend; height from which a legend would be rolled."""
-UPRIGHT, LABEL = 7, 46
+UPRIGHT, LABEL = 7, 48
 """Letters of a tick's name that stand upright, and of the longest line of a label or title."""
 BAR = 58
 """Pixels of a bar of colours that lies above all panels, with its numbers and its label."""

@@ -38,7 +38,7 @@ DIGITS, MAP_DIGITS = 6, 4
 """Significant digits of a value of a curve and of a map."""
 ROWS = 160
 """Rows of a map whose own rows are not even, drawn again on even ones."""
-LEGEND_LETTERS = 42
+LEGEND_LETTERS = 46
 """Letters of a line of a legend."""
 STEPS = 12
 """Colours that stand for a scale."""

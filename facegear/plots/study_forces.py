@@ -25,9 +25,12 @@ def figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:
 def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
     """Two panels for each label of the other axis: fraction of the group's load, largest force."""
     looks = mesh_looks(dict.fromkeys(forces["mesh"]))
+    name, unit = split_label(str(forces["axis"].iloc[0]))
+    if unit == "N/m":
+        forces, unit = forces.assign(number=1e-6 * forces["number"]), "N/µm"
     numbers = forces["number"]
     is_wide = numbers.min() > 0.0 and numbers.max() > WIDE * numbers.min()
-    across = Axis(*split_label(str(forces["axis"].iloc[0])), logarithmic=bool(is_wide))
+    across = Axis(name, unit, logarithmic=bool(is_wide))
     panels = []
     for beside, rows in forces.groupby("beside", sort=False):
         group_rows = rows[rows["group"] != ""]

@@ -52,6 +52,7 @@ class HuntingResult(Result):
         """Share of each mesh in its group's load over the hunting cycle."""
         from facegear.plots.hunting import hunting_figure
 
+        _require_groups(self)
         return hunting_figure(self.content["cycles"], self.content["meshes"])
 
 
@@ -79,6 +80,7 @@ class SensitivityResult(Result):
         """The errors that matter most."""
         from facegear.plots.hunting import sensitivity_figure
 
+        _require_groups(self)
         return sensitivity_figure(self.content["sensitivity"])
 
 
@@ -104,9 +106,7 @@ class FollowingResult(Result):
         return self.content["meshes"].copy()
 
 
-def _torque(result: Result) -> float:
-    """Torque that the figures name, N m. Raises FacegearError where no meshes share a load."""
-    groups = result.content["groups"]
-    if groups.empty:
+def _require_groups(result: Result) -> None:
+    """Refuse to draw where no meshes share a load. Raises FacegearError."""
+    if result.content["groups"].empty:
         raise FacegearError(f"{result.values['case']}: no meshes share a load, there is nothing to draw")
-    return float(groups["torque_n_m"].iloc[0])

@@ -30,7 +30,7 @@ def fit_for_paper(plot: Callable[..., "Figure"]) -> Callable[..., "MplFigure"]:
     Returns
     -------
     callable
-        A method with two more keywords that returns a figure of matplotlib; `described` is the given one.
+        A method with two more keywords that returns a figure of matplotlib; its `describe` is the given one.
     """
 
     @wraps(plot)

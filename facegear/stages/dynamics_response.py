@@ -19,7 +19,6 @@ from facegear.dynamics.response_tables import (
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.sweeps.summary import response_summary
 from facegear.stages.outcome import Outcome
-from facegear.transmission.loaded_modes import wedged_motion_text
 
 
 def dynamics_response(
@@ -49,5 +48,4 @@ def dynamics_response(
         "multipliers": multiplier_table(response),
         "bearings": bearing_table(model, response),
     }
-    wedged = wedged_motion_text(model.machine)
-    return Outcome(content, f"{response_summary(response)}{'; ' * bool(wedged)}{wedged}")
+    return Outcome(content, response_summary(response))

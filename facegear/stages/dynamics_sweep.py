@@ -16,7 +16,7 @@ from facegear.dynamics.sweeps.summary import sweep_summary
 from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, seam_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import Direction, whole_sweep
 from facegear.stages.outcome import Outcome
-from facegear.transmission.loaded_modes import loaded_modes, wedged_motion_text
+from facegear.transmission.loaded_modes import loaded_modes
 
 
 def dynamics_sweep(
@@ -50,8 +50,7 @@ def dynamics_sweep(
         "seams": seam_table([seam for d in directions.values() for seam in d.seams]),
         "waterfall": _waterfall(directions),
     }
-    wedged = wedged_motion_text(model.machine)
-    return Outcome(content, f"{sweep_summary(directions)}{'; ' * bool(wedged)}{wedged}")
+    return Outcome(content, sweep_summary(directions))
 
 
 def _waterfall(directions: Mapping[str, Direction]) -> dict[str, AnyArray]:

@@ -10,7 +10,6 @@ from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
-from facegear.transmission.loaded_modes import wedged_motion_text
 from facegear.transmission.machine import Machine
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import mean_equilibrium
@@ -64,8 +63,7 @@ def _left_out(machine: Machine) -> str:
     """Return what motion leaves out between flanks, as a force at rest and a change of frequencies."""
     moving, whole = (mean_equilibrium(each).forces[0] for each in (machine, at_rest(machine)))
     off, largest = float(np.abs(moving - whole).max()), float(np.abs(whole).max())
-    wedged = wedged_motion_text(machine)
     return (
         f"; the compliance between meshes that they leave out moves mesh forces at rest by up to {off:.3g} N "
-        f"of {largest:.5g} N{'; ' * bool(wedged)}{wedged}"
+        f"of {largest:.5g} N"
     )

@@ -179,23 +179,61 @@ def rim_slopes(
     return np.stack([lifts(order, part, radial, turning, angles), around])
 
 
+ATTACHED_FREQUENCY = 4.0
+"""Frequency of an attached coordinate over that of the fastest mode kept of its gear.
+
+The modes that it stands for lie above all that are kept. Its own motion changes an answer at f by the square
+of f over its frequency. Larger factors cost shorter steps."""
+ATTACHED_DAMPING = 0.1
+"""Damping ratio of an attached coordinate, so that its own vibration dies out. It has no effect at rest."""
+
+
 @dataclass(frozen=True, eq=False)
 class ElasticGears:
-    """The bodies of a machine whose face gears bend, by the gears' numbers in the layout."""
+    """The bodies of a machine whose face gears bend.
+
+    Attributes
+    ----------
+    layout
+        Bodies and mesh geometry.
+    bodies
+        Reduced bodies by the gears' numbers in the layout.
+    attached
+        Meshes whose compliance between the two flanks, which the modes leave out, has a coordinate of its own
+        (residual attachment modes, after Rubin 1975): motion couples the flanks by it.
+    """
 
     layout: Layout
     bodies: Mapping[int, ReducedBody]
+    attached: tuple[int, ...] = ()
 
     def softening(self) -> Array:
-        """Return the compliance of each mesh that the modes leave out, (meshes, 2, 2), m/N.
+        """Return the compliance of each mesh that neither modes nor attached coordinates hold.
 
-        Entry [m, i, j] is the motion of flank i against its own force by a unit force on flank j; 0 is the
-        drive flank, 1 the back flank. It is the residual of MacNeal 1971, without mass.
+        Returns
+        -------
+        Array
+            Shape (meshes, 2, 2), m/N, as `residuals`. An attached coordinate takes the same part of each
+            entry, so that what remains is diagonal.
+        """
+        left_out = self.residuals()
+        for mesh in self.attached:
+            left_out[mesh] = np.eye(2) * (left_out[mesh, 0, 0] - abs(left_out[mesh, 0, 1]))
+        return left_out
+
+    def residuals(self) -> Array:
+        """Compute the compliance of each mesh that the modes leave out: the residual of MacNeal 1971.
+
+        Returns
+        -------
+        Array
+            Shape (meshes, 2, 2), m/N. Entry [m, i, j] is the motion of flank i against its own force by a unit
+            force on flank j; 0 is the drive flank, 1 the back flank.
         """
         sine, cosine = np.sin(self.layout.pressure_angle), np.cos(self.layout.pressure_angle)
         directions = np.array([[-sine, cosine], [-sine, -cosine]])
-        given = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
-        return np.array([given.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
+        of_gears = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
+        return np.array([of_gears.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
     def __call__(self, lumped: LinearModel) -> LinearModel:
         """The model with the coordinates of every gear behind its own.
@@ -205,7 +243,42 @@ class ElasticGears:
         model = lumped
         for gear, body in self.bodies.items():
             model = self._with_gear(model, gear, body)
+        residuals = self.residuals()
+        for mesh in self.attached:
+            model = self._with_attached(model, mesh, float(residuals[mesh, 0, 1]))
         return model
+
+    def _with_attached(self, model: LinearModel, mesh: int, between: float) -> LinearModel:
+        """Return the model with a coordinate of unit mass that couples the two flanks of a mesh.
+
+        `between` is the motion of either flank by a unit force on the other, m/N.
+        """
+        layout, gear = self.layout, self.layout.meshes[mesh][1]
+        modes = coordinates(self.bodies[gear], layout.gears[gear].sign, layout.angles, layout.pressure_angle)
+        omega = ATTACHED_FREQUENCY * float(np.sqrt(modes.stiffness.max()))
+        way = np.sqrt(abs(between)) * omega
+        column = np.zeros((len(model.rows), 1))
+        column[[mesh, mesh + len(layout.meshes)], 0] = way, np.copysign(way, between)
+        damping_of_lumped_model = model.mass_damping + model.bearing_damping * omega**2
+        spin = model.spin
+        if spin is not None:
+            turning = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
+            spin = Spin(*(bordered(matrix, np.zeros((1, 1))) for matrix in turning))
+        return replace(
+            model,
+            labels=(*model.labels, f"attached:{layout.mesh_names[mesh]}"),
+            mass=bordered(model.mass, np.eye(1)),
+            stiffness=bordered(model.stiffness, np.array([[omega**2]])),
+            rows=np.hstack([model.rows, column]),
+            torques=np.append(model.torques, 0.0),
+            forces=np.append(model.forces, 0.0),
+            lengths=np.append(model.lengths, way),
+            dampers=bordered(
+                model.dampers, np.array([[2.0 * ATTACHED_DAMPING * omega - damping_of_lumped_model]])
+            ),
+            slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool), np.zeros((2, 0, 1))),
+            spin=spin,
+        )
 
     def _with_gear(self, model: LinearModel, gear: int, body: ReducedBody) -> LinearModel:
         layout, own = self.layout, self.layout.gears[gear]

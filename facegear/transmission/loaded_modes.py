@@ -1,10 +1,12 @@
 """Modes of a machine about the place where its torques hold it: which flank works follows from statics."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from facegear.arrays import Array, Mask
+from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.flank_springs import coupled_meshes, flank_springs
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_contacts import Contact, LoadedContacts, loaded_contacts
@@ -53,28 +55,48 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
     return VibratingMachine(modes, contacts, np.abs(other - modes.frequencies) <= SAME * other)
 
 
-def wedged_motion_text(machine: Machine) -> str:
-    """Return a sentence on wedged meshes whose flanks the equations of motion do not couple, or "".
+def machine_in_motion(machine: Machine) -> Machine:
+    """Return the machine as it moves: flanks of wedged meshes coupled by what the modes leave out.
 
-    In motion each flank has its own part of `Machine.softening` alone. The sentence names the meshes and the
-    largest relative change of a natural frequency by the rest of it, at standstill. Raises NotConverged.
+    Parameters
+    ----------
+    machine
+        Any machine. What its modes leave out between two flanks stands in `Machine.softening`.
+
+    Returns
+    -------
+    Machine
+        The machine with a coordinate attached to each mesh whose two flanks press under the mean torques; the
+        same machine where there is none.
+
+    Raises
+    ------
+    NotConverged
+        Where its equilibrium is not found.
     """
-    if machine.softening is None or not machine.layout.kinematics.flanks_apart:
-        return ""
-    contacts = loaded_contacts(machine)
-    closed = np.array([state is Contact.CLOSED for state in contacts.flank_states()])
-    meshes = coupled_meshes(machine, closed).tolist()
+    bodies = machine.bodies
+    if not isinstance(bodies, ElasticGears) or not machine.layout.kinematics.flanks_apart or bodies.attached:
+        return machine
+    meshes = _wedged_meshes(machine)
     if not meshes:
-        return ""
-    uncoupled = replace(machine, softening=machine.softening * np.eye(2))
-    moving, whole = (_modes(each, contacts, (Contact.CLOSED,), 0.0) for each in (uncoupled, machine))
-    vibrates = whole.frequencies > SAME * whole.frequencies.max()
-    change = np.abs(moving.frequencies[vibrates] / whole.frequencies[vibrates] - 1.0).max()
-    names = ", ".join(machine.layout.mesh_names[mesh] for mesh in meshes)
-    return (
-        f"both flanks press in {names}; motion leaves out the compliance between them that the modes do not "
-        f"hold, which moves its natural frequencies by up to {100.0 * change:.2g} %"
-    )
+        return machine
+    attached = _attached(bodies, tuple(meshes))
+    return replace(machine, bodies=attached, softening=attached.softening())
+
+
+@lru_cache(maxsize=16)
+def _attached(bodies: ElasticGears, meshes: tuple[int, ...]) -> ElasticGears:
+    """Return the same bodies with coordinates attached; machines that share them share the result."""
+    return replace(bodies, attached=meshes)
+
+
+def _wedged_meshes(machine: Machine) -> list[int]:
+    """Return the numbers of wedged meshes whose flanks are coupled by what the modes leave out."""
+    if machine.softening is None or not machine.softening[:, 0, 1].any():
+        return []
+    contacts = loaded_contacts(machine)
+    contact_mask = np.array([state is Contact.CLOSED for state in contacts.flank_states()])
+    return coupled_meshes(machine, contact_mask).tolist()
 
 
 def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...], speed: float) -> Modes:

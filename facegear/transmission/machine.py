@@ -101,7 +101,8 @@ class Machine:
         What makes more of them than rigid masses on springs.
     softening : (meshes, 2, 2)
         Compliance in series with the teeth of each mesh, m/N: motion of the drive and the back flank (rows)
-        by a unit force on either (columns); nothing by default. Motion takes its diagonal alone.
+        by a unit force on either (columns); nothing by default. Motion takes its diagonal alone, after
+        `loaded_modes.machine_in_motion` has attached coordinates for the rest.
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
     directions
@@ -203,7 +204,7 @@ class Machine:
     def own_softening(self) -> Array | None:
         """Compliance in series with a flank under its own force, (meshes,), m/N; both flanks have the same.
 
-        Motion takes this part of `softening` alone.
+        Motion takes this part of `softening` alone, see `loaded_modes.machine_in_motion`.
         """
         return None if self.softening is None else self.softening[:, 0, 0]
 

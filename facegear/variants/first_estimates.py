@@ -20,6 +20,7 @@ from facegear.variants.split_bearings import (
     smallest_torque,
 )
 from facegear.variants.starting_draft import SPEEDS, STIFFNESS, Draft
+from facegear.variants.wish_limits import RADIAL
 
 RESONANCES = 3
 """Number of resonances that are printed."""
@@ -54,8 +55,10 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
     )
     if wishes.idlers:
         low, high = split.idlers
+        # A single idler shares its load with none.
+        idlers = f", {low:.3g} to {high:.3g} of idlers" if np.isfinite(low) else ""
         yield (
-            f"K_gamma {split.inputs:.3g} of inputs, {low:.3g} to {high:.3g} of idlers; largest load of a "
+            f"K_gamma {split.inputs:.3g} of inputs{idlers}; largest load of a "
             f"path over the mean of its group {split.group_ratio:.3g} (estimated with the errors written)"
         )
         if split.excess > 1.0:
@@ -70,12 +73,15 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
 
 
 def _poor_split(draft: Draft, bearings: Bearings) -> str:
+    wished_bearings = [name for name in RADIAL if getattr(draft.wishes, name) is not None]
     least = smallest_torque(draft.closed_form(), bearings, draft.wishes.torque_n_m)
     width = 1e-3 * (draft.outer - draft.inner)
     radius = 0.5e-3 * draft.wishes.module_mm * draft.wishes.pinion_teeth
     unit = 0.5e-6 * draft.wishes.torque_n_m / radius / (width * 1e-3 * draft.wishes.module_mm)
     better = (
-        "more torque or less backlash"
+        f"bearings as chosen without {' and '.join(wished_bearings)}"
+        if wished_bearings
+        else "more torque or less backlash"
         if least <= draft.wishes.torque_n_m
         else (f"at least {_text(least)} N m an input" if np.isfinite(least) else "less backlash")
     )
@@ -138,7 +144,7 @@ def load_concentration(design: PairDesign, mesh_torque: float) -> float:
 
 def _resonances(draft: Draft, bearings: Bearings) -> str:
     wishes = draft.wishes
-    slow, fast = (factor * wishes.speed_rpm for factor in SPEEDS)
+    slow, fast = (max(factor * wishes.speed_rpm, 1.0) for factor in SPEEDS)
     frequencies = np.unique(np.round(vibrating_machine(draft.machine(bearings)).modes.frequencies, 1))
     speeds = 60.0 * frequencies / wishes.pinion_teeth
     within = speeds[(speeds >= slow) & (speeds <= fast)]

@@ -2,20 +2,18 @@
 
 from dataclasses import dataclass
 
-from facegear.config.transmission import MAX_PINIONS
-from facegear.errors import ConfigError
 from facegear.variants.first_estimates import estimate_lines
 from facegear.variants.split_bearings import (
     choose_bearings,
     split_of,
 )
 from facegear.variants.starting_draft import Draft
+from facegear.variants.starting_teeth import choose_teeth
 from facegear.variants.starting_wishes import MachineWishes
+from facegear.variants.wish_limits import require_room, require_wishes
 
 LEAST_LOADED = 0.05
 """Part of the largest mesh load below which the contact analysis does not follow a mesh."""
-BOUNDS = {"torque_n_m": (1e-5, 1e6), "speed_rpm": (1.0, 1e5), "pinions": (1, MAX_PINIONS)}
-"""Smallest and largest values; the config has loads and speeds beyond them."""
 
 
 @dataclass(frozen=True)
@@ -34,16 +32,8 @@ def first_machine(wishes: MachineWishes) -> FirstMachine:
     ConfigError
         For numbers that no machine can have, and teeth that do not exist, with the geometric reason.
     """
-    for key, (low, high) in BOUNDS.items():
-        if not low <= getattr(wishes, key) <= high:
-            raise ConfigError(key, getattr(wishes, key), f"from {low:g} to {high:g}")
-    if wishes.idlers < 0:
-        raise ConfigError("idlers", wishes.idlers, "0 or more")
-    if wishes.pinions + wishes.idlers > MAX_PINIONS:
-        most = MAX_PINIONS - wishes.idlers
-        raise ConfigError(
-            "pinions", wishes.pinions, f"at most {most}, with {wishes.idlers} idlers beside them"
-        )
+    require_wishes(wishes)
+    require_room(wishes, choose_teeth(wishes.teeth).design)
     draft = Draft(wishes)
     if wishes.idlers:
         bearing_wishes = (

@@ -29,6 +29,7 @@ from facegear.variants.split_bearings import (
 )
 from facegear.variants.starting_teeth import choose_teeth, chosen_keys
 from facegear.variants.starting_wishes import MachineWishes
+from facegear.variants.wish_limits import RADIAL
 
 STEEL = 7850.0
 """Density of steel, kg/m3."""
@@ -121,11 +122,8 @@ class Draft:
             Radial stiffness, N/m.
         """
         stiff, wishes = rounded(STIFF * self.stiffness), self.wishes
-        return Bearings(
-            wishes.input_bearing_n_per_m or stiff,
-            wishes.idler_bearing_n_per_m or stiff,
-            wishes.gear_bearing_n_per_m or stiff,
-        )
+        bearing_wishes = (getattr(wishes, name) for name in RADIAL)
+        return Bearings(*(stiff if stiffness is None else stiffness for stiffness in bearing_wishes))
 
     def machine(self, bearings: Bearings) -> Machine:
         """The machine with these bearings and one constant mesh stiffness, an estimate.

@@ -9,6 +9,8 @@ from facegear.__main__ import main
 from facegear.checking import check_config
 from facegear.config.load import load_config
 from facegear.config.yaml_file import read_yaml
+from facegear.variants.first_machine import first_machine
+from facegear.variants.starting_wishes import MachineWishes
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = sorted([*(ROOT / "config").glob("*.yaml"), *(ROOT / "examples" / "machines").glob("*.yaml")])
@@ -48,6 +50,15 @@ def test_what_would_end_a_run_ends_the_check_in_one_line(changes, line, tmp_path
     assert main(("check", str(path))) == 1
     message = capsys.readouterr().err
     assert message.startswith(f"{path}: would fail later: {line}") and message.count("\n") == 1
+
+
+def test_a_face_beside_the_path_of_contact_is_remarked(tmp_path):
+    """Contact at the end of a face was found by the contact analysis alone."""
+    path = tmp_path / "own.yaml"
+    wishes = MachineWishes(23, 143, 3.75, case="own", torque_n_m=600, speed_rpm=7500, inner_radius_mm=300)
+    path.write_text(first_machine(wishes).text)
+    remarks = checked(path).remarks
+    assert any("the path of contact, at gear radius 268.1 mm, lies beside the face of" in r for r in remarks)
 
 
 def test_fillets_too_sharp_to_be_rated_are_refused_with_the_key_that_rounds_them(tmp_path, capsys):

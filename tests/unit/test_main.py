@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from facegear.__main__ import LIMITS, main
-from facegear.questions import QUESTIONS, flag
+from facegear.questions import OPTIONS, QUESTIONS, flag
 
 ROOT = Path(__file__).parents[2]
 TEETH = ("limits", "--pinion-teeth", "25", "--face-gear-teeth", "160", "--module-mm", "6.35")
@@ -57,6 +57,18 @@ def test_an_absurd_number_for_a_new_config_is_one_line_with_its_argument(key, tm
             continue
         message = capsys.readouterr().err
         assert code == 1 and message.count("\n") == 1 and (key in message or "pinion" in message)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("key", OPTIONS)
+def test_a_wish_outside_its_limits_is_one_line_with_its_name(key, tmp_path, capsys):
+    """A bore wider than the pinion and a gear without mass ended in tracebacks."""
+    for value in ("nan", "-1e9", "1e300") if OPTIONS[key][0] is float else ("-5", "1000000"):
+        words = [word for name, text in {**BASE, key: value}.items() for word in (flag(name), str(text))]
+        words[words.index(flag(key)) : words.index(flag(key)) + 2] = [f"{flag(key)}={value}"]
+        assert main(("new", str(tmp_path / "own.yaml"), *words)) == 1
+        message = capsys.readouterr().err
+        assert message.startswith(f"{key} = ") and "must be from" in message and message.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
 
 

@@ -130,6 +130,24 @@ def test_a_mistake_ends_new_in_one_line_and_writes_nothing(folder, monkeypatch, 
     assert [path.name for path in folder.iterdir()] == ["there.yaml"]
 
 
+WALKED = (
+    "--pinion-teeth=19 --face-gear-teeth=97 --module-mm=2.5 --pressure-angle-deg=20 --torque-n-m=80 "
+    "--speed-rpm=6000 --coarse",
+    "--pinion-teeth=22 --face-gear-teeth=101 --module-mm=3.5 --pinions=2 --idlers=2 --torque-n-m=300 "
+    "--speed-rpm=4000 --coarse",
+)
+"""Machines of a user that were walked from an empty folder to their report by the page alone."""
+
+
+@pytest.mark.parametrize("words", WALKED)
+def test_own_machines_are_written_and_pass_check_with_an_estimate_of_what_they_do(folder, capsys, words):
+    assert command_line.main(("new", "own.yaml", *words.split())) == 0
+    said = capsys.readouterr().out
+    assert ("K_gamma" in said) == ("--idlers" in words) and "safety of the pinion" in said
+    assert command_line.main(("check", "own.yaml")) == 0
+    assert "no mistakes" in capsys.readouterr().out
+
+
 def test_a_folder_that_new_makes_is_said_and_a_refused_wish_makes_none(folder, monkeypatch, capsys):
     """A misspelt folder was made without a word."""
     monkeypatch.setattr("sys.stdin", io.StringIO())

@@ -6,10 +6,10 @@ from facegear.checking import check_config
 from facegear.config.load import load_config
 from facegear.config.yaml_file import read_yaml
 from facegear.variants.first_machine import first_machine
-from validation.starters import COUNT, draw_machines, run_all
+from validation.starters import COUNT, SHARING, draw_machines, run_all
 
-LIGHTEST = 18
-"""Number of a single pair of module 1: 27 s of the processor, the least of those tried."""
+LIGHTEST = (18, 4, 16)
+"""A single pair, a gear with five pinions and a split-torque machine: some 30 s of the processor each."""
 
 
 def test_the_same_machines_are_drawn_each_time_and_split_torque_is_among_them():
@@ -18,11 +18,18 @@ def test_the_same_machines_are_drawn_each_time_and_split_torque_is_among_them():
     assert any(known.idlers for known in machines) and any(not known.idlers for known in machines)
 
 
-def test_a_starter_machine_comes_to_its_report_with_nothing_missing():
-    table = run_all([list(draw_machines())[LIGHTEST - 1]])
-    row = table.iloc[0]
+@pytest.mark.parametrize("number", LIGHTEST)
+def test_a_starter_machine_comes_to_its_report_with_nothing_missing(number):
+    row = run_all([list(draw_machines())[number - 1]]).iloc[0]
     assert (row["outcome"], row["reason"]) == ("report", "")
     assert row["stages"] >= 10
+    assert row["printed_pitting_safety"] == pytest.approx(row["pitting_safety"], rel=0.4)
+    if row["idlers"]:
+        assert [row[f"printed_{name}"] for name in SHARING] == pytest.approx(
+            [row[name] for name in SHARING], rel=0.1
+        )
+        assert row["k_gamma_inputs"] <= 1.3 and row["k_gamma_idlers_least"] >= 0.7
+        assert row["k_gamma_idlers_largest"] <= 1.3
 
 
 @pytest.mark.parametrize("known", [*draw_machines()][::6], ids=lambda known: known.case)

@@ -43,7 +43,8 @@ INLINE = sorted(
 def assert_installs_from_sources(what):
     """The package is on no index: pip installs the folder it is in, with extras that exist."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    match = re.fullmatch(r"(?:\.|\./facegear-VERSION-py3-none-any\.whl)(?:\[([a-z,]+)\])?", what)
+    wheel = r"\./facegear-VERSION-cp311-cp311-manylinux_2_28_x86_64\.whl"
+    match = re.fullmatch(rf"(?:\.|{wheel})(?:\[([a-z,]+)\])?", what)
     assert match, f"pip finds {what} on no index"
     assert set(match[1].split(",") if match[1] else ()) <= project["optional-dependencies"].keys()
 

@@ -1,10 +1,11 @@
 """heyoka.py on the same equations: Taylor steps compiled by LLVM, contact switches as terminal events.
 
-Set up as its tutorials do: the contact state of a mesh is a pair of runtime parameters that the callbacks of
-two terminal events change, time is mesh phase, coordinates are scaled so that deflections are near one, which
-is what its absolute tolerance means. The callback judges all meshes at once, since those of a mirrored pair
-switch at the same instant, of which the second event would be lost to rounding. heyoka.py is imported by the
-caller: it is a dependency of the benchmark alone.
+Set up as its tutorials do: the contact state of a mesh, and the piece of the load-dependent law that it is
+in, are runtime parameters that the callbacks of terminal events change, one event for each edge and level.
+Time is mesh phase, coordinates are scaled so that deflections are near one, which is what its absolute
+tolerance means. The callback judges all meshes at once, by a function that heyoka.py compiles, since those of
+a mirrored pair switch at the same instant, of which the second event would be lost to rounding. heyoka.py is
+imported by the caller: it is a dependency of the benchmark alone.
 """
 
 from collections.abc import Callable
@@ -16,8 +17,9 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import MIN_CLEARANCE, TAU
 from facegear.dynamics.integrator.system import System
+from facegear.mesh_law.linear import LinearLaw
+from facegear.mesh_law.load_dependent import LoadDependentLaw
 from validation.dynamics.problems import SAMPLES, Problem
-from validation.dynamics.right_side import linear
 
 EDGE = 1e-13
 """A deflection this close to an edge, in length scales, stands on it, and its rate decides."""
@@ -32,7 +34,9 @@ class Scaled:
     """A system in deflections over the length scale and derivatives by mesh phase.
 
     unit (n,): one of a coordinate, y = unit u. jacobian (m, n): deflections of u; spread (m, n): minus the
-    accelerations of u by the mesh forces. error (m, 2, harmonics + 1) sine part first, edges (m,).
+    accelerations of u by the mesh forces. error (m, 2, harmonics + 1) sine part first, edges (m,). levels
+    (m, L): amounts beyond the edge at which the pieces of the law begin; pieces (m, L, 4, 2, harmonics + 1):
+    series of the powers 0 to 3 of the amount since a piece began, forces over the length scale.
     """
 
     unit: Array
@@ -41,12 +45,26 @@ class Scaled:
     error: Array
     lower: Array
     upper: Array
+    levels: Array
+    pieces: Array
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the force of a contact is a stiffness times the amount."""
+        return len(self.pieces[0]) == 1 and not self.pieces[:, :, [0, 2, 3]].any()
 
 
 def scaled(system: System) -> Scaled:
     """Scale a system. Raises ValueError for what the comparison has no use for."""
-    if linear(system).pieces or not system.damping_when_open:
-        raise ValueError("neither stiffness in pieces nor damping in contact only is set up here")
+    lacking = {
+        "stiffness in pieces of the phase": isinstance(system.law, LinearLaw) and bool(system.law.pieces),
+        "flanks that only push": system.push_only,
+        "bearing clearance": bool(system.ring_stiffness.size),
+        "friction": system.rubbing is not None,
+        "coupled coordinates": system.coupling is not None,
+    }
+    if any(lacking.values()):
+        raise ValueError(f"not set up here: {', '.join(name for name, there in lacking.items() if there)}")
     unit = system.scale / np.abs(system.mesh_jacobian).max(axis=0)
     kept = np.where(
         np.abs(system.mesh_jacobian) > NEGLIGIBLE * np.abs(system.mesh_jacobian).max(),
@@ -54,6 +72,7 @@ def scaled(system: System) -> Scaled:
         0.0,
     )
     closed = system.upper - system.lower <= MIN_CLEARANCE * system.scale
+    levels, pieces = _pieces(system)
     return Scaled(
         unit=unit,
         jacobian=kept * unit / system.scale,
@@ -61,41 +80,100 @@ def scaled(system: System) -> Scaled:
         error=system.error[system.error_kind] / system.scale,
         lower=np.where(closed, system.upper, system.lower) / system.scale,
         upper=system.upper / system.scale,
+        levels=levels / system.scale,
+        pieces=pieces * system.scale ** np.arange(-1.0, 3.0)[:, None, None],
     )
+
+
+def _pieces(system: System) -> tuple[Array, Array]:
+    """Levels (m, L) in m and coefficients (m, L, 4, 2, harmonics + 1) of each contact in SI units.
+
+    Raises ValueError for any but the linear and the load-dependent law.
+    """
+    law = system.law
+    if isinstance(law, LinearLaw):
+        pieces = np.zeros((law.contacts, 1, 4, *law.fourier.shape[1:]))
+        pieces[:, 0, 1] = law.fourier[law.kind]
+        return np.zeros((law.contacts, 1)), pieces
+    if isinstance(law, LoadDependentLaw):
+        coefficients = np.array([table.coefficients for table in law.tables])
+        return law.levels.T, coefficients[law.kind]
+    raise ValueError("only the linear and the load-dependent law are set up here")
 
 
 @dataclass(frozen=True, eq=False)
 class Expressions:
-    """Right-hand sides (variable, derivative) and deflections (m,) in heyoka's expression system."""
+    """Right-hand sides (variable, derivative), deflections (m,) and their rates by phase, as expressions."""
 
     equations: list[tuple[Any, Any]]
     deflections: list[Any]
+    rates: list[Any]
 
 
 def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
-    """The equations of motion; parameters 2 m and 2 m + 1 of mesh m: 1 in contact, and the edge then."""
+    """The equations of motion. Parameters of a contact that may open or has pieces, from `width` m on: 1 in
+    contact, the deflection from which its amount counts, and the coefficients of its piece if it has any.
+    """
     system, w = problem.system, problem.frequency
     meshes, n = units.jacobian.shape
     places = [heyoka.make_vars(f"u{k}") for k in range(n)]
     rates = [heyoka.make_vars(f"v{k}") for k in range(n)]
-    law = linear(system)
-    stiffness = [_series(heyoka, row / w**2) for row in law.fourier]
-    deflections, forces = [], []
+    width = parameters_of_a_contact(units)
+    deflections, deflection_rates, forces = [], [], []
     for m in range(meshes):
+        first = width * m
         error = _series(heyoka, -units.error[m])
         error_rate = _series(heyoka, -_rate(units.error[m]))
         deflections.append(_weighted(heyoka, units.jacobian[m], places, error))
-        beyond = deflections[m] - units.upper[m]
-        if units.lower[m] < units.upper[m]:
-            beyond = heyoka.par[2 * m] * deflections[m] - heyoka.par[2 * m + 1]
+        opens = units.lower[m] < units.upper[m]
+        touching = heyoka.par[first] if opens else 1.0
+        if units.is_linear:
+            beyond = deflections[m] - units.upper[m]
+            if opens:
+                beyond = heyoka.par[first] * deflections[m] - heyoka.par[first + 1]
+            force = _series(heyoka, units.pieces[m, 0, 1] / w**2) * beyond
+        else:
+            beyond = deflections[m] - heyoka.par[first + 1]
+            cubic = [_series_of_parameters(heyoka, units, first + 2, power) for power in range(4)]
+            force = ((cubic[3] * beyond + cubic[2]) * beyond + cubic[1]) * beyond + cubic[0]
+            force = force / w**2
         rate = _weighted(heyoka, units.jacobian[m], rates, error_rate)
-        forces.append(stiffness[law.kind[m]] * beyond + system.mesh_damping[m] / w * rate)
+        acting = 1.0 if system.damping_when_open else touching
+        deflection_rates.append(rate)
+        forces.append(force + acting * (system.mesh_damping[m] / w * rate))
     equations = list(zip(places, rates, strict=True))
     for k in range(n):
         own = _series(heyoka, system.load[k] / (w**2 * units.unit[k]))
         own = own - system.damping[k] / w * rates[k] - system.omega_squared[k] / w**2 * places[k]
         equations.append((rates[k], _weighted(heyoka, -units.spread[:, k], forces, own)))
-    return Expressions(equations, deflections)
+    return Expressions(equations, deflections, deflection_rates)
+
+
+def parameters_of_a_contact(units: Scaled) -> int:
+    """Number of runtime parameters of each contact.
+
+    Parameters
+    ----------
+    units : Scaled
+        The system.
+
+    Returns
+    -------
+    int
+        Contact and edge, and with pieces a coefficient for each power, part and harmonic.
+    """
+    return 2 if units.is_linear else 2 + units.pieces[0, 0].size
+
+
+def _series_of_parameters(heyoka: Any, units: Scaled, first: int, power: int) -> Any:
+    """A coefficient of the piece that a contact is in, a series of the phase whose numbers are parameters."""
+    harmonics = units.pieces.shape[-1]
+    sine, cosine = first + 2 * harmonics * power, first + 2 * harmonics * power + harmonics
+    terms = [heyoka.par[cosine]]
+    for j in range(1, harmonics):
+        angle = float(j) * heyoka.time
+        terms += [heyoka.par[sine + j] * heyoka.sin(angle), heyoka.par[cosine + j] * heyoka.cos(angle)]
+    return heyoka.sum(terms)
 
 
 def _weighted(heyoka: Any, weights: Array, values: list[Any], constant: Any) -> Any:
@@ -119,33 +197,89 @@ def _rate(row: Array) -> Array:
     return np.array([-j * row[1], j * row[0]])
 
 
-def contact_parameters(
-    jacobian: Array, error: Array, lower: Array, upper: Array, phase: float, state: Array, parameters: Array
-) -> None:
-    """Write the parameters (2 meshes,) that belong to a state (at least 2 n,) at a phase."""
-    n, order = jacobian.shape[1], np.arange(error.shape[2])
-    sine, cosine = np.sin(order * phase), np.cos(order * phase)
-    deflection = jacobian @ state[:n] - error[:, 0] @ sine - error[:, 1] @ cosine
-    rate = jacobian @ state[n : 2 * n] - error[:, 0] @ (order * cosine) + error[:, 1] @ (order * sine)
-    drive = (deflection > upper + EDGE) | ((np.abs(deflection - upper) <= EDGE) & (rate > 0.0))
-    back = (deflection < lower - EDGE) | ((np.abs(deflection - lower) <= EDGE) & (rate < 0.0))
-    parameters[::2] = drive | back
-    parameters[1::2] = np.where(drive, upper, np.where(back, lower, 0.0))
+def numbers_of_pieces(heyoka: Any, units: Scaled, motion: Expressions) -> Callable[..., Array]:
+    """Compile the number of the piece that each contact is in: 0 open, p on its drive flank, -p on its back.
+
+    On an edge or level the rate decides.
+
+    Parameters
+    ----------
+    heyoka : module
+        The library.
+    units : Scaled
+        The system.
+    motion : Expressions
+        Its equations.
+
+    Returns
+    -------
+    callable
+        From scaled coordinates and rates (2 n,) and the phase in rad to the numbers (m,).
+    """
+
+    def begun(amount: Any, rate: Any, level: float) -> Any:
+        over = amount - float(level)
+        return heyoka.select(heyoka.gt(rate, 0.0), heyoka.gte(over, -EDGE), heyoka.gt(over, EDGE))
+
+    numbers = []
+    for m, (deflection, rate) in enumerate(zip(motion.deflections, motion.rates, strict=True)):
+        upper, lower = float(units.upper[m]), float(units.lower[m])
+        if lower >= upper:
+            numbers.append(heyoka.expression(1.0))
+            continue
+        drive = [begun(deflection - upper, rate, level) for level in units.levels[m]]
+        back = (
+            [begun(lower - deflection, -rate, level) for level in units.levels[m]]
+            if np.isfinite(lower)
+            else []
+        )
+        numbers.append(heyoka.sum([*drive, *(-one for one in back)]))
+    variables = [variable for variable, _ in motion.equations]
+    return heyoka.cfunc(numbers, vars=variables)
+
+
+def parameters_of_pieces(units: Scaled) -> Array:
+    """Parameters of every contact in every piece.
+
+    Parameters
+    ----------
+    units : Scaled
+        The system.
+
+    Returns
+    -------
+    Array
+        (m, 2 L + 1, parameters): of piece p at L + p, back flanks before, the open contact at L. Scaled.
+    """
+    meshes, count = units.levels.shape
+    table = np.zeros((meshes, 2 * count + 1, parameters_of_a_contact(units)))
+    for piece in range(count):
+        begin = units.levels[:, piece]
+        for sign, edge in ((1, units.upper + begin), (-1, units.lower - begin)):
+            rows = table[:, count + sign * (piece + 1)]
+            rows[:, 0], rows[:, 1] = 1.0, edge
+            if not units.is_linear:
+                odd = float(sign) ** np.arange(1, 5)  # the law is odd: its even powers turn on a back flank
+                rows[:, 2:] = (units.pieces[:, piece] * odd[:, None, None]).reshape(meshes, -1)
+    return table
 
 
 @dataclass(frozen=True, eq=False)
 class Switch:
     """Callback of every event: all contact states from the state there, in its lane of a batch."""
 
-    units: Scaled
+    numbers: Callable[..., Array]
+    table: Array
+    variables: int
 
     def __call__(self, integrator: Any, sign: int, lane: int | None = None) -> bool:
         """Set the parameters and go on."""
         time, state, parameters = integrator.time, integrator.state, integrator.pars
         if lane is not None:
-            time, state, parameters = float(time[lane]), state[:, lane], parameters[:, lane]
-        u = self.units
-        contact_parameters(u.jacobian, u.error, u.lower, u.upper, time, state, parameters)
+            time, state, parameters = float(time[lane]), state[:, lane].copy(), parameters[:, lane]
+        meshes, pieces, _ = self.table.shape
+        number = self.numbers(state[: self.variables], time=time).astype(int) + pieces // 2
+        parameters[:] = self.table[np.arange(meshes), number].ravel()
         return True
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "Switch":
@@ -179,6 +313,16 @@ class Integrator:
                 self.switch(self.adaptive, 0, lane)
 
 
+def _switches(units: Scaled) -> list[tuple[int, float]]:
+    """Contacts and deflections at which a contact opens, closes or changes the piece of its law."""
+    found = []
+    for m, levels in enumerate(units.levels):
+        opens = units.lower[m] < units.upper[m]
+        places = [*(units.upper[m] + levels), *(units.lower[m] - levels)] if opens else []
+        found += [(m, float(place)) for place in places if np.isfinite(place)]
+    return found
+
+
 def compiled(
     heyoka: Any, problem: Problem, tolerance: float, tangents: bool = False, lanes: int = 0
 ) -> Integrator:
@@ -189,19 +333,19 @@ def compiled(
     """
     units = scaled(problem.system)
     expressions_of_problem = expressions(heyoka, problem, units)
-    opening = np.flatnonzero(units.lower < units.upper)
-    switch = Switch(units) if opening.size else None
+    switches = _switches(units)
+    switch = None
+    if switches or not units.is_linear:
+        numbers = numbers_of_pieces(heyoka, units, expressions_of_problem)
+        switch = Switch(numbers, parameters_of_pieces(units), len(expressions_of_problem.equations))
     event = heyoka.t_event_batch if lanes else heyoka.t_event
-    events = [
-        event(expressions_of_problem.deflections[m] - float(edge[m]), callback=switch)
-        for m in opening
-        for edge in (units.upper, units.lower)
-    ]
+    events = [event(expressions_of_problem.deflections[m] - at, callback=switch) for m, at in switches]
     heyoka.llvm_state.clear_memcache()
     heyoka.llvm_state.set_diskcache_enabled(False)
     start = np.r_[problem.start.displacement, problem.start.velocity / problem.frequency]
     start /= np.tile(units.unit, 2)
-    parameters = np.zeros(2 * len(expressions_of_problem.deflections) if switch else 0)
+    count = parameters_of_a_contact(units) * len(expressions_of_problem.deflections)
+    parameters = np.zeros(count if switch else 0)
     build = heyoka.taylor_adaptive_batch if lanes else heyoka.taylor_adaptive
     adaptive = build(
         heyoka.var_ode_sys(expressions_of_problem.equations, heyoka.var_args.vars)

@@ -1,4 +1,4 @@
-"""What is integrated in the comparison: three regimes of a machine, and the oscillator of oracle (a)."""
+"""What is integrated in the comparison: three regimes of a machine, other laws, and the oscillator (a)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
-from facegear.transmission.machine import Machine, mesh_frequency
+from facegear.transmission.machine import Machine, OpenFlanks, mesh_frequency
 from validation.dynamics.oscillators import Oscillator
 
 SAMPLES = 16
@@ -52,6 +52,31 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
             problems.append(problem)
             break
     return problems
+
+
+def law_problems(machine: Machine, loaded: Machine, speed_rpm: float) -> list[Problem]:
+    """List the problems of other laws: a damper in contact only, and a stiffness that depends on the load.
+
+    Parameters
+    ----------
+    machine : Machine
+        With a linear law; its damper is made to act in contact alone.
+    loaded : Machine
+        With a load-dependent law.
+    speed_rpm : float
+        Pinion speed, rpm; the former runs at 0.6 of it, where contact is lost.
+
+    Returns
+    -------
+    list of Problem
+        One for each law.
+    """
+    damping = replace(machine.damping, open_flanks=OpenFlanks.CONTACT_ONLY)
+    in_contact = replace(machine, damping=damping)
+    return [
+        _problem("damper in contact only", in_contact, 0.6 * speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
+        _problem("load-dependent law", loaded, speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
+    ]
 
 
 def _problem(

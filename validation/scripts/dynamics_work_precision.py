@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+import facegear
 from facegear.config.machine_layout import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
@@ -10,7 +11,7 @@ from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
 from validation.dynamics.methods import all_methods, tangent_methods
-from validation.dynamics.problems import machine_problems, oscillator_problem, tangent_problems
+from validation.dynamics.problems import law_problems, machine_problems, oscillator_problem, tangent_problems
 from validation.dynamics.work_precision import (
     Budget,
     gain,
@@ -22,7 +23,12 @@ with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     built = wired_machine(*lumped_sections(**params.machine), harmonics)
-    problems = [*machine_problems(built, params.speed_rpm), oscillator_problem()]
+    loaded = facegear.example()._machine()
+    problems = [
+        *machine_problems(built, params.speed_rpm),
+        oscillator_problem(),
+        *law_problems(built, loaded, params.speed_rpm),
+    ]
     comparisons = [(problems, all_methods()), (tangent_problems(problems), tangent_methods())]
     step = Progress("methods", sum(len(first) * len(second) for first, second in comparisons)).step
     table = pd.concat([work_precision(*both, Budget(), step) for both in comparisons])

@@ -5,14 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from lumped_machines import make_machine
+from force_tables import power_table
+from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.transmission.machine import FlankTables
+from facegear.transmission.teeth import GEOMETRIC
 from validation.dynamics.heyoka_peer import batch, scaled, trajectory
 from validation.dynamics.methods import all_methods, ours, rk4, tangent_methods
 from validation.dynamics.problems import (
     SAMPLES,
+    law_problems,
     machine_problems,
     oscillator_problem,
     tangent_problems,
@@ -100,6 +104,27 @@ def test_heyoka_follows_the_same_motion_through_every_switch(problems):
 @against(
     "third-party program",
     "heyoka: Taylor's method with located events",
+    capability="dynamics_response mesh_law",
+    module="facegear.mesh_law.load_dependent",
+)
+@pytest.mark.parametrize("number", [0, 1], ids=["damper in contact only", "load-dependent law"])
+def test_heyoka_follows_the_same_motion_on_other_laws(number):
+    heyoka = pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
+    layout = make_layout(PLACES[1:4], kinematics=GEOMETRIC)
+    table = power_table(6, 0.1, 2e-6, 4e-4, 2.4e10)
+    loaded = replace(make_machine(layout, 700.0, 0.0), tables=2 * (FlankTables(table, table),))
+    problem = replace(law_problems(make_machine(), loaded, 7500.0)[number], periods=4)
+    system = problem.system
+    amounts = ours(problem, 1e-13) @ system.mesh_jacobian.T - system.upper
+    beyond = (amounts[:, :, None] > system.law.levels.T).any(axis=1)
+    assert beyond.any(axis=0)[: max(len(system.law.levels) - 1, 1)].all(), "all levels but the last are met"
+    error, _ = error_of(problem, trajectory(heyoka)(problem, 1e-10)(), reference(problem))
+    agrees("largest error of the motion, scaled", error, 0.0, absolute=1e-9)
+
+
+@against(
+    "third-party program",
+    "heyoka: Taylor's method with located events",
     capability="dynamics_response branches",
     module="facegear.dynamics.integrator.integrator",
 )
@@ -112,8 +137,8 @@ def test_heyoka_carries_the_same_tangents(problems):
 
 
 def test_heyoka_is_refused_what_its_setup_leaves_out(problems):
-    with pytest.raises(ValueError, match="in contact only"):
-        scaled(replace(problems[1].system, damping_when_open=False))
+    with pytest.raises(ValueError, match="flanks that only push"):
+        scaled(replace(problems[1].system, push_only=True))
 
 
 def test_an_rms_counts_as_right_only_where_every_finer_setting_is_right_too():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import facegear
-from validation.ratios.equality import CASES, CONVERGED, LIMITS, NOT_SETTLED, Case, answer, compare, main
+from validation.ratios.equality import CASES, LIMITS, NOT_SETTLED, STEP_TOLERANCE, Case, answer, compare, main
 from validation.ratios.run import read_answers
 from validation.ratios.trees import present
 
@@ -83,6 +83,14 @@ def test_regular_speeds_must_hold_until_an_irregular_one_comes_before_them(tmp_p
     assert not rows(tmp_path, old, sweep(motions, [1.0, 2.0, 1.0, 1.0]))["sweep"].holds
 
 
+def test_amplitudes_of_modes_are_compared_by_their_squares(tmp_path):
+    old = {**sweep(["periodic"], [1.0]), "chunk/own_modal": np.array([[1.0, 0.0]])}
+    rounded = {**old, "chunk/own_modal": np.array([[1.0, 1e-8]])}
+    moved = {**old, "chunk/own_modal": np.array([[1.0, 1e-3]])}
+    assert rows(tmp_path, old, rounded)["sweep"].holds
+    assert not rows(tmp_path, old, moved)["sweep"].holds
+
+
 def test_a_regular_speed_that_becomes_irregular_does_not_hold(tmp_path):
     old, new = sweep(["periodic"] * 2, [1.0, 1.0]), sweep(["periodic", "chaotic"], [1.0, 1.0])
     assert not rows(tmp_path, old, new)["sweep"].holds
@@ -127,7 +135,7 @@ def test_every_case_is_a_machine_with_limits_for_what_is_asked():
         if case.is_motion:
             dynamics = values["dynamics"]
             found = [part["accuracy"]["tolerance"] for part in (dynamics, dynamics["sweep"])]
-            assert found == [CONVERGED, CONVERGED]
+            assert found == [STEP_TOLERANCE, STEP_TOLERANCE]
 
 
 def test_unknown_cases_are_refused_before_any_work(capsys):

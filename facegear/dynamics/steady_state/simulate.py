@@ -27,6 +27,7 @@ from facegear.dynamics.steady_state.second_look import disagreeing
 from facegear.dynamics.steady_state.watching import Begun, begin, not_settled, watch
 from facegear.dynamics.symmetries import Symmetry
 from facegear.errors import NotConverged
+from facegear.transmission.loaded_modes import machine_in_motion
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.statics import static_equilibrium
 
@@ -45,7 +46,8 @@ class Model:
 
 
 def build_model(machine: Machine) -> Model:
-    """Reduce a machine once for all speeds."""
+    """Reduce a machine once for all speeds. Raises NotConverged where its equilibrium is not found."""
+    machine = machine_in_motion(machine)
     reduced = _reduced(machine.alike)
     return Model(machine, reduced, _excited(machine, reduced.basis, machine_system(machine, reduced)))
 

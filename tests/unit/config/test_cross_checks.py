@@ -60,7 +60,7 @@ STUDY = {
         ({"load_sharing__speed_range__from_rpm": 1e-9}, "from_rpm = 1e-09: must be greater"),
         ({"transmission__pinions__1__angle_pitches": 1e18}, "angle_pitches = 1e+18: must be less than"),
         ({"transmission__pinions__1__angle_pitches": 150.0}, "within a turn, -143 to 143"),
-        ({"transmission__pinions__1__angle_pitches": 143.0}, "0 deg apart, at least"),
+        ({"transmission__pinions__1__angle_pitches": 143.0}, "deg apart, not 0: their bodies would overlap"),
         ({"transmission__pinions__1__angle_pitches": 3.0}, "their bodies would overlap"),
         ({"transmission__torque__per_input_n_m": 0.0}, "nothing would be loaded"),
         ({f"transmission__pinions__{i}__torque_n_m": 0.0 for i in (0, 2, 3)}, "not 0 at every input"),
@@ -110,7 +110,7 @@ def test_the_estimate_of_memory_agrees_with_what_was_measured_within_a_fifth(res
 def test_points_of_all_studies_are_counted_before_they_are_made():
     axis = {"label": "2b", "key": "transmission.backlash_um", "values": [float(i) for i in range(1, 1501)]}
     line = message(changed(QUICK, studies=[{**STUDY, "axes": [axis]}]))
-    assert line.startswith('studies = "1500 points": must be at most 200 in all')
+    assert line.startswith('studies = "1,500 points": must be at most 200 in all')
 
 
 def test_a_misaligned_pair_without_backlash_is_refused_with_the_amount_by_which_it_jams():

@@ -9,8 +9,6 @@ from facegear._kernels import motion
 from facegear.dynamics.integrator.compiled import make_runner, packed_system
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.mesh_law.power import PowerLaw
-from facegear.mesh_law.linear import LinearLaw
 
 
 def of_system(**changes):
@@ -38,8 +36,8 @@ def of_system(**changes):
 
 
 BAD = {
-    "jacobian": [np.ones((0, 2)), np.ones((3, 0)), np.ones(3), np.ones((4, 2)), np.ones((2, 3)).T],
-    "omega_squared": [np.ones(3), np.ones((2, 1)), np.ones(2, complex), np.ones(4)[::2]],
+    "jacobian": [np.ones((0, 2)), np.ones((3, 0)), np.ones(3), np.ones((4, 2))],
+    "omega_squared": [np.ones(3), np.ones((2, 1)), np.ones(2, complex)],
     "lower": [np.zeros(2), np.zeros(0)],
     "law": [None, motion.power_law(np.ones((1, 2, 1)), 1.0, 1.5, 1e-3, 2)],
     "error": [np.zeros((1, 3, 1)), np.zeros((1, 2, 0)), np.zeros((0, 2, 1))],
@@ -53,7 +51,9 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("name", "number"), [(name, i) for name, all_ in BAD.items() for i in range(len(all_))])
+@pytest.mark.parametrize(
+    ("name", "number"), [(name, i) for name, all_ in BAD.items() for i in range(len(all_))]
+)
 def test_a_system_whose_arrays_do_not_fit_is_refused(name, number):
     assert isinstance(motion.system(**of_system()), motion.System)
     with pytest.raises((TypeError, ValueError)):
@@ -133,8 +133,3 @@ def test_machines_of_another_structure_do_not_fit_a_runner():
 def test_an_order_that_steps_cannot_have_is_refused(order):
     with pytest.raises(ValueError, match="order"):
         make_runner(backlash_oscillator(0.75), order)
-
-
-@pytest.mark.parametrize("law", [LinearLaw(np.ones((1, 2, 2)), np.zeros(1, int)), PowerLaw(depth=0.2)])
-def test_a_law_has_a_counterpart_of_its_own_name_in_the_kernels(law):
-    assert type(law.compiled).__name__ == type(law).__name__

@@ -127,6 +127,9 @@ def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
     (hollow,) = [mark for mark in figure.panels[1].marks if mark.hollow]
     assert points(hollow) == [(8.0, 5.0)]
     assert figure.panels[1].x.label == "web (mm)"
+    (stiff,) = figures(stored.assign(axis="bearings (N/m)", number=1e6 * stored["number"]), {"web": "Web"})
+    assert stiff.panels[1].x.label == "bearings (N/µm)", "7,000,000,000 N/m stood below the axis"
+    assert points(stiff.panels[0].marks[0]) == [(8.0, 50.0), (12.0, 40.0)]
 
 
 def test_a_machine_without_studies_is_one_case():

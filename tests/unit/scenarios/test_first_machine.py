@@ -251,6 +251,45 @@ def test_a_machine_without_load_is_refused_in_one_line():
         first_machine(make_known("own", 23, 143, 3.75, 0, 7500))
 
 
+@pytest.mark.parametrize(
+    ("wishes", "line"),
+    [
+        (
+            {"pinions": 30},
+            r"pinions = 30: must be at most 16 round this gear, each of .* 21\.29 deg",
+        ),
+        ({"idlers": 20}, "pinions and idlers = 21: must be at most 16 round this gear"),
+        (
+            {"pinion_bore_radius_mm": 45.0},
+            r"pinion_bore_radius_mm = 45\.0: must be less than",
+        ),
+        ({"gear_bearing_n_per_m": 0.0}, r"gear_bearing_n_per_m = 0\.0: must be from 1 to"),
+        ({"idler_bearing_n_per_m": 1e9}, "idler_bearing_n_per_m = .*: must be left out without idlers"),
+    ],
+)
+def test_a_wish_that_no_machine_can_meet_is_refused_with_what_can(wishes, line):
+    """A bearing of 0 was replaced in silence, a wide bore ended in a traceback."""
+    with pytest.raises(ConfigError, match=f"^{line}"):
+        first_machine(make_known("own", 23, 143, 3.75, 600, 7500, **wishes))
+
+
+def test_a_single_idler_has_no_load_sharing_of_its_own():
+    """It was said to have K_gamma nan to nan."""
+    (line,) = [
+        line
+        for line in first_machine(make_known("own", 23, 143, 3.75, 600, 7500, idlers=1)).expected
+        if line.startswith("K_gamma")
+    ]
+    assert "nan" not in line and "idlers" not in line
+
+
+def test_bearings_that_a_user_gave_are_named_where_they_keep_the_torque_from_being_shared():
+    known = make_known("own", 23, 143, 3.75, 600, 7500, 2, idlers=2, idler_bearing_n_per_m=100.0)
+    assert "nearest: bearings as chosen without idler_bearing_n_per_m" in "".join(
+        first_machine(known).expected
+    )
+
+
 def test_too_few_teeth_are_refused_by_the_geometric_reason():
     with pytest.raises(FacegearError, match=r"the contact ratio is 0\.\d+ at most, below 1\.05"):
         choose_teeth(ToothWishes(6, 40, 3.0, 25.0))

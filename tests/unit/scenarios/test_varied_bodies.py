@@ -125,7 +125,7 @@ def test_design_whose_mass_cannot_hold_its_web_is_refused_before_it_is_solved(va
 
 
 def test_machine_that_is_exported_bends_as_the_one_that_is_computed(monkeypatch, values):
-    """An FMU was rigid where its gears bend; what it cannot hold is refused from the whole machine."""
+    """An FMU was rigid where its gears bend."""
     box = facegear.load("config/flexible.yaml", results=None)
     given = {
         "transmission": parse(Transmission, values["transmission"]),

@@ -12,17 +12,16 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from test_elastic_gears_at_rest import below
 
-import facegear
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.gear_body.compliance import flank_direction, influence
 from facegear.harmonics.series import Harmonics
-from facegear.stages import dynamics_response
-from facegear.stages.gear_waves import _left_out
+from facegear.transmission import elastic_gears
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.flanks import constant_errors, flank_law
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role
 from facegear.transmission.loaded_contacts import loaded_contacts
-from facegear.transmission.loaded_modes import loaded_modes, pressed_springs, wedged_motion_text
+from facegear.transmission.loaded_modes import loaded_modes, machine_in_motion, pressed_springs
 from facegear.transmission.machine import FlankTables, balanced_torques
 from facegear.transmission.shaft_orders import LoadedMachine, TurnOrders, loaded_machine
 from facegear.transmission.static_gears import at_rest
@@ -102,15 +101,20 @@ def springs_with_bodies_between(machine, cycles):
     return whole
 
 
-def vibrations(linear, springs, damping, speed):
-    """Exponents of the quadratic eigenproblem with positive imaginary part, by the generalised pencil."""
+def damped_exponents(linear, springs, damping, speed):
+    """Exponents of the quadratic eigenproblem, 1/s, by the generalised pencil."""
     turning, rows, size = speed * np.pi / 30.0, linear.rows, linear.size
     stiff = linear.stiffness + turning * linear.spin.circulatory + turning**2 * linear.spin.centrifugal
     stiff = stiff + rows.T @ springs @ rows
     slow = linear.damping + turning * linear.spin.gyroscopic + damping * rows.T @ rows
     none, one = np.zeros((size, size)), np.eye(size)
     left = np.block([[none, one], [-stiff, -slow]])
-    roots = scipy.linalg.eigvals(left, scipy.linalg.block_diag(one, linear.mass))
+    return scipy.linalg.eigvals(left, scipy.linalg.block_diag(one, linear.mass))
+
+
+def vibrations(linear, springs, damping, speed):
+    """Angular frequencies of the damped vibrations, rad/s."""
+    roots = damped_exponents(linear, springs, damping, speed)
     return np.sort(roots.imag[roots.imag > 1.0])
 
 
@@ -129,7 +133,7 @@ def test_wedged_machine_vibrates_as_one_with_springs_of_its_bodies_between_the_f
     agrees("stiffness of the flanks over k", springs / K, expected / K, absolute=1e-9)
     assert np.abs(np.diag(expected, 4)).min() > 0.02 * K
     (modes,) = machine_at_speeds(machine, [SPEED])
-    computed = vibrations(linear, expected, machine.damping.mesh, SPEED) / (2 * np.pi)
+    computed = vibrations(linear, expected, 0.5 * machine.damping.mesh, SPEED) / (2 * np.pi)
     agrees("damped frequencies, Hz", modes.frequencies, computed, relative=1e-7)
     uncoupled = replace(machine, softening=machine.softening * np.eye(2))
     (apart,) = machine_at_speeds(uncoupled, [SPEED])
@@ -186,19 +190,70 @@ def test_errors_of_wedged_flanks_that_turn_slowly_change_forces_as_equilibria_do
     assert np.abs(apart - found).max() > 5e-3 * np.abs(found).max()
 
 
-def test_summary_names_wedged_meshes_and_how_far_motion_is_off():
+@against(
+    "second implementation",
+    "modes with the flanks coupled by a stiffness matrix of their own",
+    capability="dynamics_response",
+    module="facegear.transmission.elastic_gears",
+)
+@pytest.mark.parametrize("seed", [0, 3, 7])
+def test_attached_coordinates_couple_wedged_flanks_the_better_the_faster_they_are(seed, monkeypatch):
+    machine = wedged_pinions(seed, Harmonics(np.zeros(1), np.array([K])))
+
+    def off(other):
+        """Relative change of the frequencies between 1 Hz and 2.5 kHz."""
+        found = loaded_modes(other).frequencies[: expected.size]
+        return np.abs(found / expected - 1.0)[slow].max()
+
+    expected = loaded_modes(machine).frequencies
+    slow = (expected > 1.0) & (expected < 2500.0)
+    dropped = off(replace(machine, softening=machine.softening * np.eye(2)))
+    errors = []
+    for factor in (elastic_gears.ATTACHED_FREQUENCY, 3.0 * elastic_gears.ATTACHED_FREQUENCY):
+        monkeypatch.setattr(elastic_gears, "ATTACHED_FREQUENCY", factor)
+        moving = machine_in_motion(replace(machine, bodies=replace(machine.bodies)))
+        assert moving.bodies.attached == (0, 1, 2, 3)
+        errors.append(off(moving))
+    assert errors[0] < 0.15 * dropped
+    agrees("error at three times the frequency", errors[1], errors[0] / 9.0, relative=0.3)
+
+
+def test_only_wedged_meshes_have_attached_coordinates():
     body = below(gear_bodies.reference_modes(), 4e3)
-    machine = pressed_into_mesh(body)
-    said = wedged_motion_text(machine)
-    names = ", ".join(machine.layout.mesh_names[mesh] for mesh in (2, 5, 6))
-    assert said.startswith(f"both flanks press in {names}; motion leaves out the compliance between them")
-    assert said in _left_out(machine)
-    assert wedged_motion_text(gearbox(body)) == wedged_motion_text(gearbox()) == ""
+    wedged = machine_in_motion(pressed_into_mesh(body))
+    assert wedged.bodies.attached == (2, 5, 6)
+    assert wedged.linear.size == pressed_into_mesh(body).linear.size + 3
+    for machine in (gearbox(body), gearbox()):
+        assert machine_in_motion(machine) is machine
 
 
-def test_summary_of_a_response_says_what_the_motion_of_wedged_meshes_leaves_out(monkeypatch):
+def test_motion_of_wedged_meshes_comes_to_that_with_all_modes():
+    """The frequency that the coupling moves most; nothing is left out of the body with all its modes."""
+    whole = gear_bodies.reference_modes()
+    whole = replace(whole, static=whole.modal)
+    exact = loaded_modes(pressed_into_mesh(whole)).frequencies
+    stiffest = int(np.argmin(np.abs(exact - 1714.3)))
+    machine = pressed_into_mesh(below(whole, 4e3))
+    moving = loaded_modes(machine_in_motion(machine)).frequencies[stiffest]
+    apart = loaded_modes(replace(machine, softening=machine.softening * np.eye(2))).frequencies[stiffest]
+    assert abs(moving / exact[stiffest] - 1.0) < 1e-3 < abs(apart / exact[stiffest] - 1.0)
+
+
+@against(
+    "second implementation",
+    "eigenvalues of the whole matrices, flanks coupled by a stiffness matrix of their own",
+    capability="dynamics_response",
+    module="facegear.dynamics.steady_state.simulate",
+)
+def test_multipliers_of_wedged_meshes_are_those_of_flanks_that_are_coupled():
     machine = wedged_pinions(0, Harmonics(np.zeros(1), np.array([K])))
-    monkeypatch.setattr(dynamics_response, "wired_machine", lambda *given, **named: machine)
-    accuracy = facegear.example().config.dynamics.accuracy
-    outcome = dynamics_response.dynamics_response(None, None, None, accuracy, 3000.0)
-    assert outcome.summary.endswith(wedged_motion_text(machine)) and wedged_motion_text(machine)
+    response = simulate(build_model(machine), SPEED)
+    assert response.label == "period-1"
+    period, errors = 60.0 / (23 * SPEED), []
+    coupled = pressed_springs(machine)[1]
+    for springs in (coupled, np.diag(np.diagonal(coupled))):
+        roots = damped_exponents(machine.linear, springs, 0.5 * machine.damping.mesh, SPEED)
+        slow = roots[(np.abs(roots) > 1.0) & (np.abs(roots) < 2.0 * np.pi * 2500.0)]
+        nearest = np.abs(np.exp(slow * period)[:, None] - response.multipliers).min(axis=1)
+        errors.append(nearest.max())
+    agrees("distance of a multiplier", errors[0], 0.0, absolute=0.15 * errors[1])

@@ -8,7 +8,7 @@ NB_MODULE(KERNELS_MODULE, module) {
     nanobind::set_leak_warnings(false); // what lives to the end lives in caches of Python functions
     module.attr("SOURCES_HASH") = KERNELS_SOURCES_HASH;
     module.attr("COMPILER") = KERNELS_COMPILER;
-    module.def("has_x86_64_v3", &facegear::has_x86_64_v3);
+    module.attr("USE_X86_64_V3") = KERNELS_X86_64_V3 && facegear::has_x86_64_v3();
     facegear::bind_arithmetic(module.def_submodule("arithmetic"));
     facegear::bind_flanks(module.def_submodule("flanks"));
     facegear::bind_samples(module.def_submodule("samples"));

@@ -58,7 +58,7 @@ class Runner final : public AnyRunner {
         make_tangents();
         work_.drift_terms = static_cast<Index>(queue.drift.size()) / work_.m;
         work_.drift = queue.drift.data();
-        choose_error();
+        work_.choose_error();
         waiting_ = running_ = 0;
         for (int lane = 0; lane < L::machines; ++lane) refill(lane);
         while (running_ > 0) step();
@@ -68,7 +68,7 @@ class Runner final : public AnyRunner {
         const Index n = work_.n;
         work_.enter(machine, 0);
         work_.drift_terms = 0;
-        choose_error();
+        work_.choose_error();
         work_.phase = S::splat(phase);
         for (Index row = 0; row < 2; ++row)
             for (Index k = 0; k < n; ++k) work_.y.one(row, k, 0) = state[row * n + k];
@@ -78,14 +78,6 @@ class Runner final : public AnyRunner {
     }
 
   private:
-    // Where lanes are machines, contacts of a kind share the series of the error, unless each drifts.
-    void choose_error() {
-        const bool shared = L::lanes == L::machines && work_.drift_terms == 0;
-        const Index kinds = blocks_of<L>(work_.shape->error.kinds), width = blocks_of<L>(work_.m);
-        work_.error = {{work_.error_terms.data, shared ? kinds : width},
-                       shared ? work_.shape->error_kind.data() : nullptr};
-    }
-
     void step() {
         const Asked& asked = log_->asked;
         advance(work_);

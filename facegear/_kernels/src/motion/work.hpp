@@ -82,6 +82,13 @@ struct Work {
         law.enter(law_of(system), 1.0 / square, lane);
     }
 
+    // Where lanes are machines, contacts of a kind share the series of the error, unless each drifts.
+    void choose_error() {
+        const bool shared = L::lanes == L::machines && drift_terms == 0;
+        const Index kinds = blocks_of<L>(shape->error.kinds), width = blocks_of<L>(m);
+        error = {{error_terms.data, shared ? kinds : width}, shared ? shape->error_kind.data() : nullptr};
+    }
+
     // A contact may pass an edge, or either end of a piece of its law, or lose its force.
     static constexpr Index ways_per_contact = 3;
 
