@@ -30,7 +30,7 @@ def fastest(system: System, frequency: float) -> float:
 @lru_cache(maxsize=16)
 def packed_system(system: System) -> motion.System:
     """A system at 1 rad/s."""
-    return motion.system(law=system.law.compiled, **system_numbers(system))
+    return motion.system(law=system.law.kernel_law, **system_numbers(system))
 
 
 def system_numbers(system: System) -> dict[str, Any]:
