@@ -16,8 +16,8 @@ from numba import njit
 from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.many import run_many
 from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.side_by_side import run_many
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.mesh_law.linear import LinearLaw
@@ -169,7 +169,7 @@ def plain_runs(
     """States (LOOKED_AT, 2) by time at the ends of the last periods, by our integrator and nothing else."""
     integrators = [Integrator(each.system, each.speed, tolerance) for each in oscillators]
     by_phase = [each.by_phase(start) for each, start in zip(integrators, starts, strict=True)]
-    runs = run_many(integrators, by_phase, periods, kept=LOOKED_AT)
+    runs = run_many(integrators, by_phase, periods, last_periods=LOOKED_AT)
     speeds = [oscillator.speed for oscillator in oscillators]
     return [run.ends[:, :, 0] * np.array([1.0, speed]) for run, speed in zip(runs, speeds, strict=True)]
 
