@@ -21,7 +21,8 @@ ALL_CARRY = 1.0 - 1e-9
 """Fraction of samples in which every path carries, from which the closed form may hold."""
 HOLDS = 0.02
 """Relative difference from the statics below which a closed form is drawn: little beside what it explains."""
-CLOSED = "closed form"
+CLOSED_FORM = "closed form"
+"""Legend of the closed forms."""
 
 
 def figures(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> tuple[Figure, ...]:
@@ -100,15 +101,15 @@ def _inputs(inputs: pd.DataFrame) -> list[Curve]:
     broad: list[Curve] = []
     marks: list[Curve] = []
     worst = inputs.groupby(["bearing_n_per_m", "number"])[["k_gamma", "closed"]].max().reset_index()
-    for place, (bearing, rows) in enumerate(worst.groupby("bearing_n_per_m")):
+    for index, (bearing, rows) in enumerate(worst.groupby("bearing_n_per_m")):
         number, factor = rows["number"].to_numpy(), rows["k_gamma"].to_numpy()
         if (rows["k_gamma"] / rows["closed"] - 1.0).abs().max() < HOLDS:
             broad.append(_closed_form(number, rows["closed"], not broad))
         name = f"bearings {1e-6 * float(bearing):.3g} N/µm"
-        marks.append(Curve(number, factor, name, colour_of(place)))
+        marks.append(Curve(number, factor, name, colour_of(index)))
     return broad + marks
 
 
 def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
     """A broad line below the computed one, in the legend once."""
-    return Curve(number, values.to_numpy(), CLOSED, grey(0.8), width=4.0, in_legend=is_first)
+    return Curve(number, values.to_numpy(), CLOSED_FORM, grey(0.8), width=4.0, in_legend=is_first)

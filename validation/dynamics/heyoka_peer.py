@@ -64,7 +64,9 @@ def scaled(system: System) -> Scaled:
         "coupled coordinates": system.coupling is not None,
     }
     if any(lacking.values()):
-        raise ValueError(f"not set up here: {', '.join(name for name, there in lacking.items() if there)}")
+        raise ValueError(
+            f"not set up here: {', '.join(name for name, is_lacking in lacking.items() if is_lacking)}"
+        )
     unit = system.scale / np.abs(system.mesh_jacobian).max(axis=0)
     kept = np.where(
         np.abs(system.mesh_jacobian) > NEGLIGIBLE * np.abs(system.mesh_jacobian).max(),
@@ -126,7 +128,7 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
         error_rate = _series(heyoka, -_rate(units.error[m]))
         deflections.append(_weighted(heyoka, units.jacobian[m], places, error))
         opens = units.lower[m] < units.upper[m]
-        touching = heyoka.par[first] if opens else 1.0
+        in_contact = heyoka.par[first] if opens else 1.0
         if units.is_linear:
             beyond = deflections[m] - units.upper[m]
             if opens:
@@ -138,9 +140,9 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
             force = ((cubic[3] * beyond + cubic[2]) * beyond + cubic[1]) * beyond + cubic[0]
             force = force / w**2
         rate = _weighted(heyoka, units.jacobian[m], rates, error_rate)
-        acting = 1.0 if system.damping_when_open else touching
+        damper = 1.0 if system.damping_when_open else in_contact
         deflection_rates.append(rate)
-        forces.append(force + acting * (system.mesh_damping[m] / w * rate))
+        forces.append(force + damper * (system.mesh_damping[m] / w * rate))
     equations = list(zip(places, rates, strict=True))
     for k in range(n):
         own = _series(heyoka, system.load[k] / (w**2 * units.unit[k]))
@@ -217,7 +219,7 @@ def numbers_of_pieces(heyoka: Any, units: Scaled, motion: Expressions) -> Callab
         From scaled coordinates and rates (2 n,) and the phase in rad to the numbers (m,).
     """
 
-    def begun(amount: Any, rate: Any, level: float) -> Any:
+    def is_past(amount: Any, rate: Any, level: float) -> Any:
         over = amount - float(level)
         return heyoka.select(heyoka.gt(rate, 0.0), heyoka.gte(over, -EDGE), heyoka.gt(over, EDGE))
 
@@ -227,13 +229,13 @@ def numbers_of_pieces(heyoka: Any, units: Scaled, motion: Expressions) -> Callab
         if lower >= upper:
             numbers.append(heyoka.expression(1.0))
             continue
-        drive = [begun(deflection - upper, rate, level) for level in units.levels[m]]
+        drive = [is_past(deflection - upper, rate, level) for level in units.levels[m]]
         back = (
-            [begun(lower - deflection, -rate, level) for level in units.levels[m]]
+            [is_past(lower - deflection, -rate, level) for level in units.levels[m]]
             if np.isfinite(lower)
             else []
         )
-        numbers.append(heyoka.sum([*drive, *(-one for one in back)]))
+        numbers.append(heyoka.sum([*drive, *(-is_in_piece for is_in_piece in back)]))
     variables = [variable for variable, _ in motion.equations]
     return heyoka.cfunc(numbers, vars=variables)
 
@@ -315,12 +317,12 @@ class Integrator:
 
 def _switches(units: Scaled) -> list[tuple[int, float]]:
     """Contacts and deflections at which a contact opens, closes or changes the piece of its law."""
-    found = []
+    switches = []
     for m, levels in enumerate(units.levels):
         opens = units.lower[m] < units.upper[m]
-        places = [*(units.upper[m] + levels), *(units.lower[m] - levels)] if opens else []
-        found += [(m, float(place)) for place in places if np.isfinite(place)]
-    return found
+        deflections = [*(units.upper[m] + levels), *(units.lower[m] - levels)] if opens else []
+        switches += [(m, float(deflection)) for deflection in deflections if np.isfinite(deflection)]
+    return switches
 
 
 def compiled(

@@ -54,14 +54,14 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
     return problems
 
 
-def law_problems(machine: Machine, loaded: Machine, speed_rpm: float) -> list[Problem]:
+def law_problems(machine: Machine, load_dependent: Machine, speed_rpm: float) -> list[Problem]:
     """List the problems of other laws: a damper in contact only, and a stiffness that depends on the load.
 
     Parameters
     ----------
     machine : Machine
         With a linear law; its damper is made to act in contact alone.
-    loaded : Machine
+    load_dependent : Machine
         With a load-dependent law.
     speed_rpm : float
         Pinion speed, rpm; the former runs at 0.6 of it, where contact is lost.
@@ -75,7 +75,7 @@ def law_problems(machine: Machine, loaded: Machine, speed_rpm: float) -> list[Pr
     in_contact = replace(machine, damping=damping)
     return [
         _problem("damper in contact only", in_contact, 0.6 * speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
-        _problem("load-dependent law", loaded, speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
+        _problem("load-dependent law", load_dependent, speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
     ]
 
 
