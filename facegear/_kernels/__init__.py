@@ -48,3 +48,4 @@ LEVEL: str = _module.__name__.rpartition(".")[2].strip("_")
 for _name, _part in vars(_module).items():
     if isinstance(_part, ModuleType):
         globals()[_name] = sys.modules[f"{__name__}.{_name}"] = _part
+del _name, _part

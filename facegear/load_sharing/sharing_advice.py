@@ -30,6 +30,7 @@ from facegear.load_sharing.sharing_map import (
     loop_factor,
     split_machine,
 )
+from facegear.number_format import format_number
 from facegear.transmission.flanks import constant_errors
 from facegear.transmission.layout import Role
 from facegear.transmission.machine import Machine
@@ -193,7 +194,10 @@ def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
                 words = f"{verb} the radial stiffness of the bearings of the {name}"
                 new_machine = MappedMachine(with_scaled_bearings(machine, roles, factor))
                 yield Change(
-                    words, f"{1e-6 * now:.3g} to {1e-6 * factor * now:.3g} N/um", new_machine, options
+                    words,
+                    f"{format_number(1e-6 * now)} to {format_number(1e-6 * factor * now)} N/um",
+                    new_machine,
+                    options,
                 )
     for floating, sides in FLOATING.items():
         if floating == AS_GIVEN or not idlers or floating_machine(machine, idlers[0], floating) is None:
@@ -201,7 +205,8 @@ def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
         words = "let both face gears float" if len(sides) > 1 else f"let the {floating} face gear float"
         stiffness = min(gear.body.bearing[0] for gear in machine.layout.gears if gear.side in sides)
         floating_gear = MappedMachine(floated(machine, sides))
-        yield Change(words, f"{1e-6 * stiffness:.3g} to 0 N/um in its plane", floating_gear, options, 1.0)
+        from_to = f"{format_number(1e-6 * stiffness)} to 0 N/um in its plane"
+        yield Change(words, from_to, floating_gear, options, 1.0)
     if (half := float(machine.half_backlashes.mean())) > 0.0:
         new_machine = MappedMachine(with_half_backlash(machine, SOFTER * half))
         yield Change(
@@ -210,13 +215,19 @@ def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
             new_machine,
             options,
         )
-    for key, words in (
-        ("mesh_error", "halve the deviations of the idlers' meshes"),
-        ("position", "halve the deviations of the idlers' positions"),
+    for now, tighter, words in (
+        (
+            options.mesh_error,
+            replace(options, mesh_error=SOFTER * options.mesh_error),
+            "halve the deviations of the idlers' meshes",
+        ),
+        (
+            options.position,
+            replace(options, position=SOFTER * options.position),
+            "halve the deviations of the idlers' positions",
+        ),
     ):
-        now = float(getattr(options, key))
         if idlers and now > 0.0:
-            tighter = replace(options, **{key: SOFTER * now})
             yield Change(words, f"{1e6 * now:.3g} to {1e6 * SOFTER * now:.3g} um", mapped, tighter)
 
 

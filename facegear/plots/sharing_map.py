@@ -21,8 +21,7 @@ ALL_CARRY = 1.0 - 1e-9
 """Fraction of samples in which every path carries, from which the closed form may hold."""
 HOLDS = 0.02
 """Relative difference from the statics below which a closed form is drawn: little beside what it explains."""
-CLOSED_FORM = "closed form"
-"""Legend of the closed forms."""
+CLOSED_NAME = "closed form"
 
 
 def figures(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> tuple[Figure, ...]:
@@ -112,4 +111,4 @@ def _inputs(inputs: pd.DataFrame) -> list[Curve]:
 
 def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
     """A broad line below the computed one, in the legend once."""
-    return Curve(number, values.to_numpy(), CLOSED_FORM, grey(0.8), width=4.0, in_legend=is_first)
+    return Curve(number, values.to_numpy(), CLOSED_NAME, grey(0.8), width=4.0, in_legend=is_first)

@@ -27,6 +27,8 @@ CURVES = (
     "closed form may hold"
 )
 INPUTS = "Curves of the inputs, for each stiffness of their bearings; closed: the loop formula"
+VISIBLE = 1e-3
+"""Fall of K_gamma below which a change is not named: three digits stand in the text."""
 BEST = 3
 """Changes that are named for the machine as a whole."""
 MAIN_COLUMNS = ("group", "change", "from_to", "k_gamma", "found", "gain", "predicted_gain")
@@ -113,7 +115,7 @@ def _whole_machine(advice: pd.DataFrame) -> list[str]:
     if advice.empty:
         return []
     changes = advice.drop_duplicates("change").sort_values("worst_found", kind="stable")
-    helping = changes[changes["worst_found"] < changes["worst"]].head(BEST)
+    helping = changes[changes["worst"] - changes["worst_found"] > VISIBLE].head(BEST)
     now = float(advice["worst"].iloc[0])
     if helping.empty:
         return [f"Largest K_gamma of all groups: {now:.3f}; no change that was tried lowers it."]

@@ -227,8 +227,8 @@ class ElasticGears:
         Returns
         -------
         Array
-            Shape (meshes, 2, 2), m/N. Entry [m, i, j] is the motion of flank i against its own force by a unit
-            force on flank j; 0 is the drive flank, 1 the back flank.
+            Shape (meshes, 2, 2), m/N. Entry [m, i, j] is the motion of flank i against its own force by a
+            unit force on flank j; 0 is the drive flank, 1 the back flank.
         """
         sine, cosine = np.sin(self.layout.pressure_angle), np.cos(self.layout.pressure_angle)
         directions = np.array([[-sine, cosine], [-sine, -cosine]])

@@ -105,7 +105,7 @@ def inputs_at(protocol: Mapping[str, Any], draws: Array) -> dict[str, float]:
     dict of str to float
         Values by dotted keys of the config, in the units of the keys.
     """
-    changes = {}
+    changes: dict[str, float] = {}
     for entry, draw in zip(protocol["unknown"], draws.tolist(), strict=True):
         value = entry["from"] + draw * (entry["to"] - entry["from"])
         changes |= dict.fromkeys(entry["moves"], value)

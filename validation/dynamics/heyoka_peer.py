@@ -65,7 +65,7 @@ def scaled(system: System) -> Scaled:
     }
     if any(lacking.values()):
         raise ValueError(
-            f"not set up here: {', '.join(name for name, is_lacking in lacking.items() if is_lacking)}"
+            f"not set up here: {', '.join(name for name, is_there in lacking.items() if is_there)}"
         )
     unit = system.scale / np.abs(system.mesh_jacobian).max(axis=0)
     kept = np.where(
@@ -128,7 +128,7 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
         error_rate = _series(heyoka, -_rate(units.error[m]))
         deflections.append(_weighted(heyoka, units.jacobian[m], places, error))
         opens = units.lower[m] < units.upper[m]
-        in_contact = heyoka.par[first] if opens else 1.0
+        is_touching = heyoka.par[first] if opens else 1.0
         if units.is_linear:
             beyond = deflections[m] - units.upper[m]
             if opens:
@@ -140,7 +140,7 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
             force = ((cubic[3] * beyond + cubic[2]) * beyond + cubic[1]) * beyond + cubic[0]
             force = force / w**2
         rate = _weighted(heyoka, units.jacobian[m], rates, error_rate)
-        damper = 1.0 if system.damping_when_open else in_contact
+        damper = 1.0 if system.damping_when_open else is_touching
         deflection_rates.append(rate)
         forces.append(force + damper * (system.mesh_damping[m] / w * rate))
     equations = list(zip(places, rates, strict=True))
@@ -199,10 +199,11 @@ def _rate(row: Array) -> Array:
     return np.array([-j * row[1], j * row[0]])
 
 
-def numbers_of_pieces(heyoka: Any, units: Scaled, motion: Expressions) -> Callable[..., Array]:
-    """Compile the number of the piece that each contact is in: 0 open, p on its drive flank, -p on its back.
+def contact_states(heyoka: Any, units: Scaled, motion: Expressions) -> Callable[..., Array]:
+    """Compile the state of each contact. On an edge or level the rate decides.
 
-    On an edge or level the rate decides.
+    On a linear law these are its two parameters, else the number of the piece that it is in: 0 open, p on its
+    drive flank, -p on its back flank.
 
     Parameters
     ----------
@@ -216,32 +217,36 @@ def numbers_of_pieces(heyoka: Any, units: Scaled, motion: Expressions) -> Callab
     Returns
     -------
     callable
-        From scaled coordinates and rates (2 n,) and the phase in rad to the numbers (m,).
+        From scaled coordinates and rates (2 n,) and the phase in rad to parameters (2 m,) or numbers (m,).
     """
 
-    def is_past(amount: Any, rate: Any, level: float) -> Any:
+    def has_begun(amount: Any, rate: Any, level: float) -> Any:
         over = amount - float(level)
         return heyoka.select(heyoka.gt(rate, 0.0), heyoka.gte(over, -EDGE), heyoka.gt(over, EDGE))
 
-    numbers = []
+    states = []
     for m, (deflection, rate) in enumerate(zip(motion.deflections, motion.rates, strict=True)):
         upper, lower = float(units.upper[m]), float(units.lower[m])
         if lower >= upper:
-            numbers.append(heyoka.expression(1.0))
+            number = heyoka.expression(1.0)
+            states += [number, heyoka.expression(upper)] if units.is_linear else [number]
             continue
-        drive = [is_past(deflection - upper, rate, level) for level in units.levels[m]]
+        drive = [has_begun(deflection - upper, rate, level) for level in units.levels[m]]
         back = (
-            [is_past(lower - deflection, -rate, level) for level in units.levels[m]]
+            [has_begun(lower - deflection, -rate, level) for level in units.levels[m]]
             if np.isfinite(lower)
             else []
         )
-        numbers.append(heyoka.sum([*drive, *(-is_in_piece for is_in_piece in back)]))
-    variables = [variable for variable, _ in motion.equations]
-    return heyoka.cfunc(numbers, vars=variables)
+        if units.is_linear:
+            parts = [(drive[0], upper), *((side, lower) for side in back)]
+            states += [heyoka.sum([side for side, _ in parts]), heyoka.sum([side * at for side, at in parts])]
+        else:
+            states.append(heyoka.sum([*drive, *(-side for side in back)]))
+    return heyoka.cfunc(states, vars=[variable for variable, _ in motion.equations])
 
 
 def parameters_of_pieces(units: Scaled) -> Array:
-    """Parameters of every contact in every piece.
+    """Parameters of every contact in every piece of a load-dependent law.
 
     Parameters
     ----------
@@ -260,9 +265,8 @@ def parameters_of_pieces(units: Scaled) -> Array:
         for sign, edge in ((1, units.upper + begin), (-1, units.lower - begin)):
             rows = table[:, count + sign * (piece + 1)]
             rows[:, 0], rows[:, 1] = 1.0, edge
-            if not units.is_linear:
-                odd = float(sign) ** np.arange(1, 5)  # the law is odd: its even powers turn on a back flank
-                rows[:, 2:] = (units.pieces[:, piece] * odd[:, None, None]).reshape(meshes, -1)
+            odd = float(sign) ** np.arange(1, 5)  # the law is odd: its even powers turn on a back flank
+            rows[:, 2:] = (units.pieces[:, piece] * odd[:, None, None]).reshape(meshes, -1)
     return table
 
 
@@ -270,8 +274,8 @@ def parameters_of_pieces(units: Scaled) -> Array:
 class Switch:
     """Callback of every event: all contact states from the state there, in its lane of a batch."""
 
-    numbers: Callable[..., Array]
-    table: Array
+    states: Callable[..., Array]
+    table: Array | None
     variables: int
 
     def __call__(self, integrator: Any, sign: int, lane: int | None = None) -> bool:
@@ -279,9 +283,11 @@ class Switch:
         time, state, parameters = integrator.time, integrator.state, integrator.pars
         if lane is not None:
             time, state, parameters = float(time[lane]), state[:, lane].copy(), parameters[:, lane]
-        meshes, pieces, _ = self.table.shape
-        number = self.numbers(state[: self.variables], time=time).astype(int) + pieces // 2
-        parameters[:] = self.table[np.arange(meshes), number].ravel()
+        states = self.states(state[: self.variables], time=time)
+        if self.table is not None:
+            meshes, pieces, _ = self.table.shape
+            states = self.table[np.arange(meshes), states.astype(int) + pieces // 2].ravel()
+        parameters[:] = states
         return True
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "Switch":
@@ -320,8 +326,8 @@ def _switches(units: Scaled) -> list[tuple[int, float]]:
     switches = []
     for m, levels in enumerate(units.levels):
         opens = units.lower[m] < units.upper[m]
-        deflections = [*(units.upper[m] + levels), *(units.lower[m] - levels)] if opens else []
-        switches += [(m, float(deflection)) for deflection in deflections if np.isfinite(deflection)]
+        edges = [*(units.upper[m] + levels), *(units.lower[m] - levels)] if opens else []
+        switches += [(m, float(edge)) for edge in edges if np.isfinite(edge)]
     return switches
 
 
@@ -338,8 +344,9 @@ def compiled(
     switches = _switches(units)
     switch = None
     if switches or not units.is_linear:
-        numbers = numbers_of_pieces(heyoka, units, expressions_of_problem)
-        switch = Switch(numbers, parameters_of_pieces(units), len(expressions_of_problem.equations))
+        states = contact_states(heyoka, units, expressions_of_problem)
+        table = None if units.is_linear else parameters_of_pieces(units)
+        switch = Switch(states, table, len(expressions_of_problem.equations))
     event = heyoka.t_event_batch if lanes else heyoka.t_event
     events = [event(expressions_of_problem.deflections[m] - at, callback=switch) for m, at in switches]
     heyoka.llvm_state.clear_memcache()

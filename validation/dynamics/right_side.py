@@ -23,25 +23,25 @@ def compiled_right_side(integrator: Integrator) -> Callable[[float, Array], Arra
 
 
 def fixed_rk4(integrator: Integrator, state: Array, per_sample: int, width: float, samples: int) -> Array:
-    """Integrate by the classical Runge-Kutta method with fixed steps.
+    """Compute states of the classical Runge-Kutta method with fixed steps, which are taken in Python.
 
     Parameters
     ----------
     integrator : Integrator
-        The machine.
+        Gives the accelerations.
     state : Array
-        Coordinates and their derivatives by phase at phase zero, (2, n), m and m/rad.
+        Start (2, n): coordinates and their derivatives by phase, any unit.
     per_sample : int
-        Number of steps from one sample to the next.
+        Steps from one sample to the next.
     width : float
-        Width of a step, rad.
+        Of a step, rad.
     samples : int
-        Number of samples, the start among them.
+        Their number.
 
     Returns
     -------
     Array
-        States (samples, 2 n), m and m/rad.
+        States (samples, 2 n), the start first, in the unit of the start.
     """
     derivative, z, s = compiled_right_side(integrator), state.ravel().copy(), 0.0
     out = np.empty((samples, z.size))
@@ -96,8 +96,8 @@ def plain_right_side(system: System, frequency: float) -> Callable[[float, Array
         applied = load[:, 0] @ np.sin(order_f * s) + load[:, 1] @ np.cos(order_f * s)
         d = system.mesh_jacobian @ displacement - e
         gap = np.where(d > system.upper, d - system.upper, np.where(d < system.lower, d - system.lower, 0.0))
-        mesh_damping = np.where(always | (gap != 0.0), system.mesh_damping, 0.0)
-        force = elastic(s, gap) + mesh_damping * (system.mesh_jacobian @ velocity - e_rate)
+        damper = np.where(always | (gap != 0.0), system.mesh_damping, 0.0)
+        force = elastic(s, gap) + damper * (system.mesh_jacobian @ velocity - e_rate)
         acceleration = (
             applied
             - system.damping * velocity

@@ -290,7 +290,7 @@ def _oscillators_row(sides: Sequence[Answers]) -> tuple[object, ...]:
     return 0, 0.0, 0.0, 0.0, 0, *counts, holds
 
 
-def _by_quantity(sides: Sequence[Answers]) -> Iterator[list[Answers]]:
+def _by_quantity(sides: Sequence[Answers]) -> Iterator[Sequence[Answers]]:
     """Tables, and of a table with one quantity a row the rows of each: numbers of a column are alike then."""
     for table in dict.fromkeys(key.rpartition("/")[0] for key in sides[0]):
         part = [

@@ -78,25 +78,31 @@ template <>
 struct Lanes<4> {
     FourDoubles lane;
 
-    static Lanes load(const double* from) {
+    [[gnu::always_inline]] static Lanes load(const double* from) {
         Lanes result;
         std::memcpy(&result.lane, from, sizeof result.lane);
         return result;
     }
-    static Lanes splat(double value) { return {FourDoubles{value, value, value, value}}; }
-    void store(double* to) const { std::memcpy(to, &lane, sizeof lane); }
+    [[gnu::always_inline]] static Lanes splat(double value) {
+        return {FourDoubles{value, value, value, value}};
+    }
+    [[gnu::always_inline]] void store(double* to) const { std::memcpy(to, &lane, sizeof lane); }
     double operator[](int number) const { return lane[number]; }
     void set(int number, double value) { lane[number] = value; }
 
-    friend Lanes operator+(Lanes a, Lanes b) { return {a.lane + b.lane}; }
-    friend Lanes operator-(Lanes a, Lanes b) { return {a.lane - b.lane}; }
-    friend Lanes operator*(Lanes a, Lanes b) { return {a.lane * b.lane}; }
-    friend Lanes operator/(Lanes a, Lanes b) { return {a.lane / b.lane}; }
-    friend Lanes operator-(Lanes a) { return {-a.lane}; }
-    friend Lanes absolute(Lanes a) { return {a.lane < 0.0 ? -a.lane : a.lane}; }
-    friend Lanes smaller(Lanes a, Lanes b) { return {a.lane < b.lane ? a.lane : b.lane}; }
-    friend Lanes larger(Lanes a, Lanes b) { return {a.lane > b.lane ? a.lane : b.lane}; }
-    friend Lanes where_positive(Lanes value, Lanes yes, Lanes no) {
+    [[gnu::always_inline]] friend Lanes operator+(Lanes a, Lanes b) { return {a.lane + b.lane}; }
+    [[gnu::always_inline]] friend Lanes operator-(Lanes a, Lanes b) { return {a.lane - b.lane}; }
+    [[gnu::always_inline]] friend Lanes operator*(Lanes a, Lanes b) { return {a.lane * b.lane}; }
+    [[gnu::always_inline]] friend Lanes operator/(Lanes a, Lanes b) { return {a.lane / b.lane}; }
+    [[gnu::always_inline]] friend Lanes operator-(Lanes a) { return {-a.lane}; }
+    [[gnu::always_inline]] friend Lanes absolute(Lanes a) { return {a.lane < 0.0 ? -a.lane : a.lane}; }
+    [[gnu::always_inline]] friend Lanes smaller(Lanes a, Lanes b) {
+        return {a.lane < b.lane ? a.lane : b.lane};
+    }
+    [[gnu::always_inline]] friend Lanes larger(Lanes a, Lanes b) {
+        return {a.lane > b.lane ? a.lane : b.lane};
+    }
+    [[gnu::always_inline]] friend Lanes where_positive(Lanes value, Lanes yes, Lanes no) {
         return {value.lane > 0.0 ? yes.lane : no.lane};
     }
 };
@@ -105,24 +111,40 @@ template <>
 struct Lanes<8> {
     Lanes<4> low, high;
 
-    static Lanes load(const double* from) { return {Lanes<4>::load(from), Lanes<4>::load(from + 4)}; }
-    static Lanes splat(double value) { return {Lanes<4>::splat(value), Lanes<4>::splat(value)}; }
-    void store(double* to) const {
+    [[gnu::always_inline]] static Lanes load(const double* from) {
+        return {Lanes<4>::load(from), Lanes<4>::load(from + 4)};
+    }
+    [[gnu::always_inline]] static Lanes splat(double value) {
+        return {Lanes<4>::splat(value), Lanes<4>::splat(value)};
+    }
+    [[gnu::always_inline]] void store(double* to) const {
         low.store(to);
         high.store(to + 4);
     }
     double operator[](int number) const { return number < 4 ? low[number] : high[number - 4]; }
     void set(int number, double value) { number < 4 ? low.set(number, value) : high.set(number - 4, value); }
 
-    friend Lanes operator+(Lanes a, Lanes b) { return {a.low + b.low, a.high + b.high}; }
-    friend Lanes operator-(Lanes a, Lanes b) { return {a.low - b.low, a.high - b.high}; }
-    friend Lanes operator*(Lanes a, Lanes b) { return {a.low * b.low, a.high * b.high}; }
-    friend Lanes operator/(Lanes a, Lanes b) { return {a.low / b.low, a.high / b.high}; }
-    friend Lanes operator-(Lanes a) { return {-a.low, -a.high}; }
-    friend Lanes absolute(Lanes a) { return {absolute(a.low), absolute(a.high)}; }
-    friend Lanes smaller(Lanes a, Lanes b) { return {smaller(a.low, b.low), smaller(a.high, b.high)}; }
-    friend Lanes larger(Lanes a, Lanes b) { return {larger(a.low, b.low), larger(a.high, b.high)}; }
-    friend Lanes where_positive(Lanes value, Lanes yes, Lanes no) {
+    [[gnu::always_inline]] friend Lanes operator+(Lanes a, Lanes b) {
+        return {a.low + b.low, a.high + b.high};
+    }
+    [[gnu::always_inline]] friend Lanes operator-(Lanes a, Lanes b) {
+        return {a.low - b.low, a.high - b.high};
+    }
+    [[gnu::always_inline]] friend Lanes operator*(Lanes a, Lanes b) {
+        return {a.low * b.low, a.high * b.high};
+    }
+    [[gnu::always_inline]] friend Lanes operator/(Lanes a, Lanes b) {
+        return {a.low / b.low, a.high / b.high};
+    }
+    [[gnu::always_inline]] friend Lanes operator-(Lanes a) { return {-a.low, -a.high}; }
+    [[gnu::always_inline]] friend Lanes absolute(Lanes a) { return {absolute(a.low), absolute(a.high)}; }
+    [[gnu::always_inline]] friend Lanes smaller(Lanes a, Lanes b) {
+        return {smaller(a.low, b.low), smaller(a.high, b.high)};
+    }
+    [[gnu::always_inline]] friend Lanes larger(Lanes a, Lanes b) {
+        return {larger(a.low, b.low), larger(a.high, b.high)};
+    }
+    [[gnu::always_inline]] friend Lanes where_positive(Lanes value, Lanes yes, Lanes no) {
         return {where_positive(value.low, yes.low, no.low), where_positive(value.high, yes.high, no.high)};
     }
 };
@@ -172,7 +194,9 @@ inline unsigned positive_lanes(Lanes<4> value) {
 }
 #endif
 #ifdef FACEGEAR_VECTOR_EXTENSION
-inline unsigned positive_lanes(Lanes<8> value) { return positive_lanes(value.low) | positive_lanes(value.high) << 4; }
+inline unsigned positive_lanes(Lanes<8> value) {
+    return positive_lanes(value.low) | positive_lanes(value.high) << 4;
+}
 #endif
 
 // first * second + third, fused where the processor can.

@@ -15,7 +15,7 @@ import facegear
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.errors import ConfigError, ConfigErrors, FacegearError
+from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.drive_line import TurningMass
 from facegear.transmission.excitation import Excitation, rigid_rotation, without_rigid_rotation
@@ -147,8 +147,3 @@ def test_printed_kinematics_take_no_excitation():
     shaken = [{"body": "upper", "order": 143, "torque_n_m": 5.0}]
     with pytest.raises(ConfigErrors, match="excitations"):
         config.with_values({"transmission.excitations": shaken})
-
-
-def test_an_exported_machine_refuses_periodic_torques(tmp_path):
-    with pytest.raises(FacegearError, match="periodic torques"):
-        make_shaken(23).export(tmp_path / "machine.fmu")

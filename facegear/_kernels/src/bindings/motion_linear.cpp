@@ -2,9 +2,8 @@
 
 namespace facegear {
 
-template std::unique_ptr<motion::AnyRunner> make_runner<motion::LinearLaw>(const std::shared_ptr<const motion::System>&,
-                                                                           motion::Index, bool,
-                                                                           const std::vector<double>&,
-                                                                           const std::vector<double>&);
+template std::unique_ptr<motion::AnyRunner> make_runner<motion::LinearLaw>(
+    const std::shared_ptr<const motion::System>&, motion::Index, bool, const std::vector<double>&,
+    const std::vector<double>&);
 
 } // namespace facegear

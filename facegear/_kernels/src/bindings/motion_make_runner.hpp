@@ -5,8 +5,9 @@
 namespace facegear {
 
 template <class Law>
-std::unique_ptr<motion::AnyRunner> make_runner(const std::shared_ptr<const motion::System>& system, motion::Index order,
-                                               bool many, const std::vector<double>& nodes,
+std::unique_ptr<motion::AnyRunner> make_runner(const std::shared_ptr<const motion::System>& system,
+                                               motion::Index order, bool many,
+                                               const std::vector<double>& nodes,
                                                const std::vector<double>& weights) {
     using namespace motion;
     if (many) return std::make_unique<Runner<Machines<abreast>, Law>>(system, order, nodes, weights);

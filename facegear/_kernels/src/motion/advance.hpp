@@ -34,13 +34,14 @@ void expand_last_forces(Work<L, Law>& w) {
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
         for (Index i = w.order - 1; i <= w.order; ++i) {
             const auto force = w.law.force(w.deflection, i, b);
-            if (w.shape->push_only || w.friction.count() > 0) w.elastic.put(i, b, absolute(w.side.at(0, b)) * force);
+            if (w.shape->push_only || w.friction.count() > 0)
+                w.elastic.put(i, b, absolute(w.side.at(0, b)) * force);
         }
     }
 }
 
-// Find what drives the motions and the contact states at the phases, from rows 0 and 1 of y; the length that the steps
-// may have at most.
+// Find what drives the motions and the contact states at the phases, from rows 0 and 1 of y; the length that
+// the steps may have at most.
 template <class L, class Law>
 typename L::S start_step(Work<L, Law>& w) {
     const typename L::S rest = rest_of_period(w);
@@ -56,8 +57,8 @@ typename L::S start_step(Work<L, Law>& w) {
     return rest;
 }
 
-// Expand the motions from rows 0 and 1 of y at the phases, and find the lengths of the steps; y then holds the
-// polynomials valid over them. The contact states are found from the motions themselves.
+// Expand the motions from rows 0 and 1 of y at the phases, and find the lengths of the steps; y then holds
+// the polynomials valid over them. The contact states are found from the motions themselves.
 template <class L, class Law>
 void advance(Work<L, Law>& w) {
     using S = typename L::S;

@@ -1,4 +1,5 @@
-// Numbers by which contacts, steps and runs are judged. Lengths are in length scales, times in rad of mesh phase.
+// Numbers by which contacts, steps and runs are judged. Lengths are in length scales, times in rad of mesh
+// phase.
 #pragma once
 
 #include <limits>
@@ -10,8 +11,8 @@ namespace facegear::motion {
 constexpr double tau = 6.283185307179586476925286766559;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// A deflection this close to an edge stands on it; so does one that crosses it within the time: s itself is not known
-// better.
+// A deflection this close to an edge stands on it; so does one that crosses it within the time: s itself is
+// not known better.
 constexpr double edge_width = 2e-14, edge_time = 1e-14;
 // Shortest time between two switches of one mesh that is followed.
 constexpr double shortest = 1e-10;

@@ -22,8 +22,9 @@ void take_states(Work<L, Law>& w, Index b, typename L::V begin, typename L::V en
     const V from_drive = w.upper.at(0, b) + begin, from_back = w.lower.at(0, b) - begin;
     const V edge = where_positive(side, from_drive, where_positive(-side, from_back, none));
     w.active.put(0, b, touching);
-    w.acting.put(0, b, w.shape->damping_when_open ? w.mesh_damping.at(0, b)
-                                                  : where_positive(touching, w.mesh_damping.at(0, b), none));
+    w.acting.put(0, b,
+                 w.shape->damping_when_open ? w.mesh_damping.at(0, b)
+                                            : where_positive(touching, w.mesh_damping.at(0, b), none));
     w.extent.put(0, b, where_positive(side, end - begin, begin - end));
     w.deflection.add(0, b, w.edge.at(0, b) - edge);
     w.edge.put(0, b, edge);
@@ -38,7 +39,8 @@ inline double sign_of(double state) { return state > 0.0 ? 1.0 : state < 0.0 ? -
 
 // Where a piece of the law of a contact begins and ends; rows of rings have one.
 template <class L, class Law>
-void ends_of_piece(const Work<L, Law>& w, Index contact, int machine, double state, double& begin, double& end) {
+void ends_of_piece(const Work<L, Law>& w, Index contact, int machine, double state, double& begin,
+                   double& end) {
     begin = 0.0, end = infinity;
     if (state == 0.0 || contact >= w.shape->contacts) return;
     const Index piece = static_cast<Index>(std::fabs(state));
@@ -75,7 +77,8 @@ void find_pieces(Work<L, Law>& w, Index b, typename L::V margin, typename L::V& 
             const double bound = state > 0.0 ? w.upper.data[at] : w.lower.data[at], sign = state;
             const double amount = std::fabs(w.deflection.data[at] - bound);
             const Index piece = w.law.piece_of(machine, contact, amount);
-            const double from = w.law.begin_of(machine, contact, piece), to = w.law.end_of(machine, contact, piece);
+            const double from = w.law.begin_of(machine, contact, piece),
+                         to = w.law.end_of(machine, contact, piece);
             state = sign * static_cast<double>(piece);
             if (piece > 1 && amount - from <= margin[lane])
                 level = state;
@@ -97,7 +100,8 @@ void find_states(Work<L, Law>& w) {
     const V plus = V::splat(1.0), none = V::splat(0.0), minus = V::splat(-1.0);
     for (Index b = 0; b < w.state.width; ++b) {
         const V lower = w.lower.at(0, b), upper = w.upper.at(0, b);
-        const V deflection = w.deflection.at(0, b), rate = w.deflection.at(1, b), margin = edge_margin(w, rate);
+        const V deflection = w.deflection.at(0, b), rate = w.deflection.at(1, b),
+                margin = edge_margin(w, rate);
         const V over = deflection - upper, under = lower - deflection;
         const V off_upper = absolute(over) - margin, off_lower = absolute(under) - margin;
         const V beyond = where_positive(over, plus, where_positive(under, minus, none));
@@ -117,10 +121,11 @@ void find_states(Work<L, Law>& w) {
     }
 }
 
-// Where a contact stands on a level with hardly any speed, its place a little later decides; true if one changed.
+// Where a contact stands on a level with hardly any speed, its place a little later decides; true if one
+// changed.
 //
-// After `shortest`, or later where rounding would decide: a body at rest that is just being touched starts with the
-// cube of time.
+// After `shortest`, or later where rounding would decide: a body at rest that is just being touched starts
+// with the cube of time.
 template <class L, class Law>
 bool correct_states(Work<L, Law>& w) {
     bool changed = false;
@@ -133,7 +138,8 @@ bool correct_states(Work<L, Law>& w) {
             if (level == 0.0 || contact >= w.m) continue;
             // Mean rate from now until `ahead`, to third order.
             const auto rise = [&](double ahead) {
-                return w.deflection.row(1)[at] + ahead * (w.deflection.row(2)[at] + ahead * w.deflection.row(3)[at]);
+                return w.deflection.row(1)[at] +
+                       ahead * (w.deflection.row(2)[at] + ahead * w.deflection.row(3)[at]);
             };
             double ahead = shortest, soon = rise(ahead);
             while (ahead < latest && std::fabs(soon) <= still * w.scale[machine]) {

@@ -44,12 +44,14 @@ void add_turning_points(Work<L, Law>& w, Log& log) {
             double later = slopes[order - 1];
             for (Index i = order - 2; i >= 0; --i) later = later * end + slopes[i];
             if (slope * later < 0.0 || (later == 0.0 && slope != 0.0)) {
-                const double t = RootFinder::refine_root(slopes.data(), order - 1, start, end, slope, later) * length;
+                const double t =
+                    RootFinder::refine_root(slopes.data(), order - 1, start, end, slope, later) * length;
                 double value = w.deflection.one(order, contact, 0);
                 for (Index i = order - 1; i >= 0; --i) value = value * t + w.deflection.one(i, contact, 0);
                 const Index kind = 2 * contact + (slope > 0.0 ? 0 : 1);
                 if (log.turning_counts[kind] < log.asked.turns)
-                    log.turning_points[kind * log.asked.turns + log.turning_counts[kind]] = value + w.edge.one(0, contact, 0);
+                    log.turning_points[kind * log.asked.turns + log.turning_counts[kind]] =
+                        value + w.edge.one(0, contact, 0);
                 ++log.turning_counts[kind];
             }
             slope = later;

@@ -16,7 +16,8 @@ struct FourierRows {
     double at(Index kind, int part, Index term) const { return values[(kind * 2 + part) * terms + term]; }
 };
 
-// What series of up to `terms` terms need to be expanded in `rows` coefficients at the phases of the machines.
+// What series of up to `terms` terms need to be expanded in `rows` coefficients at the phases of the
+// machines.
 template <class L>
 class Expansion {
     using V = typename L::V;
@@ -24,14 +25,15 @@ class Expansion {
 
   public:
     Expansion() = default;
-    Expansion(Index terms, Index rows) : terms_(terms), powers_(rows * terms), angles_(room_.numbers(2 * terms * L::machines)) {
+    Expansion(Index terms, Index rows)
+        : terms_(terms), powers_(rows * terms), angles_(room_.numbers(2 * terms * L::machines)) {
         parts_ = room_.numbers(2 * terms * L::lanes);
-        fours_ = room_.numbers(2 * terms * 4);
         // j^i / i! with the signs of the cosine's and the sine's series.
         for (Index j = 0; j < terms; ++j) {
             double power = 1.0;
             for (Index i = 0; i < rows; ++i) {
-                if (i > 0) power *= static_cast<double>(j) / static_cast<double>(i) * (i % 2 == 0 ? -1.0 : 1.0);
+                if (i > 0)
+                    power *= static_cast<double>(j) / static_cast<double>(i) * (i % 2 == 0 ? -1.0 : 1.0);
                 powers_[i * terms + j] = power;
             }
         }
@@ -63,58 +65,53 @@ class Expansion {
                 (cosine_part * cos_j + sine_part * sin_j).store(parts_ + j * L::lanes);
                 (sine_part * cos_j - cosine_part * sin_j).store(parts_ + (terms_ + j) * L::lanes);
             }
-            Index i = 0;
-            for (; i + 1 < rows; i += 2) expand_two(terms, i, b, out);
-            if (i < rows) out.put(i, b, sum(terms, i));
+            expand_parts(parts_, terms, rows, out, b);
         }
     }
 
-    // The same of four series side by side, [harmonic][sine, cosine][4], at the phase of one machine; rows of four.
-    // The first and third of the four are multiplied by `odd`, the others by `even`.
-    void expand_four(const double* series, Index terms, int machine, Index rows, double odd, double even, double* out) {
-        using Four = Lanes<4>;
-        Four factor = Four::splat(even);
-        factor.set(0, odd);
-        factor.set(2, odd);
+    // Cosine and sine parts of `terms` terms of four series side by side, [harmonic][sine, cosine][4], at the
+    // phase of one machine: what even and odd coefficients are made of. They go to lane `lane` of four blocks
+    // of parts.
+    void turn_four(const double* series, Index terms, int machine, Lanes<4> factor, Lanes<4>* even,
+                   Lanes<4>* odd) const {
         for (Index j = 0; j < terms; ++j) {
-            const Four cos_j = Four::splat(cosine_of(j, machine)), sin_j = Four::splat(sine_of(j, machine));
-            const Four sine_part = factor * Four::load(series + 8 * j);
-            const Four cosine_part = factor * Four::load(series + 8 * j + 4);
-            (cosine_part * cos_j + sine_part * sin_j).store(fours_ + 4 * j);
-            (sine_part * cos_j - cosine_part * sin_j).store(fours_ + 4 * (terms_ + j));
-        }
-        for (Index i = 0; i < rows; ++i) {
-            const double* part = fours_ + 4 * terms_ * (i % 2);
-            Four total = Four::splat(0.0);
-            for (Index j = 0; j < terms; ++j) total = Four::load(part + 4 * j) * Four::splat(powers_[i * terms_ + j]) + total;
-            total.store(out + 4 * i);
+            const Lanes<4> cos_j = Lanes<4>::splat(cosine_of(j, machine)),
+                           sin_j = Lanes<4>::splat(sine_of(j, machine));
+            const Lanes<4> sine_part = factor * Lanes<4>::load(series + 8 * j);
+            const Lanes<4> cosine_part = factor * Lanes<4>::load(series + 8 * j + 4);
+            even[j] = cosine_part * cos_j + sine_part * sin_j;
+            odd[j] = sine_part * cos_j - cosine_part * sin_j;
         }
     }
+
+    // The first `rows` coefficients in a block of what stands in parts, [even, odd][term].
+    void expand_parts(const double* parts, Index terms, Index rows, Table<L> out, Index b) const {
+        if (rows > 0) out.put(0, b, V::load(parts) + sum(parts, terms, 0)); // the mean has one coefficient
+        Index i = 1;
+        for (; i + 1 < rows; i += 2) expand_two(parts, terms, i, b, out);
+        if (i < rows) out.put(i, b, sum(parts, terms, i));
+    }
+    Index terms() const { return terms_; }
 
   private:
-    V part(Index i, Index j) const { return V::load(parts_ + ((i % 2) * terms_ + j) * L::lanes); }
+    V part(const double* parts, Index i, Index j) const {
+        return V::load(parts + ((i % 2) * terms_ + j) * L::lanes);
+    }
     V power(Index i, Index j) const { return V::splat(powers_[i * terms_ + j]); }
 
-    // Rows i and i + 1, each in two sums: one alone would wait for each of its additions.
-    void expand_two(Index terms, Index i, Index b, Table<L> out) {
-        V even_1 = V::splat(0.0), even_2 = even_1, odd_1 = even_1, odd_2 = even_1;
-        Index j = 0;
-        for (; j + 1 < terms; j += 2) {
-            even_1 = part(i, j) * power(i, j) + even_1;
-            odd_1 = part(i + 1, j) * power(i + 1, j) + odd_1;
-            even_2 = part(i, j + 1) * power(i, j + 1) + even_2;
-            odd_2 = part(i + 1, j + 1) * power(i + 1, j + 1) + odd_2;
+    // Rows i and i + 1 side by side, without the mean: one alone would wait for each of its additions.
+    void expand_two(const double* parts, Index terms, Index i, Index b, Table<L> out) const {
+        V first = V::splat(0.0), second = first;
+        for (Index j = 1; j < terms; ++j) {
+            first = part(parts, i, j) * power(i, j) + first;
+            second = part(parts, i + 1, j) * power(i + 1, j) + second;
         }
-        if (j < terms) {
-            even_1 = part(i, j) * power(i, j) + even_1;
-            odd_1 = part(i + 1, j) * power(i + 1, j) + odd_1;
-        }
-        out.put(i, b, even_1 + even_2);
-        out.put(i + 1, b, odd_1 + odd_2);
+        out.put(i, b, first);
+        out.put(i + 1, b, second);
     }
-    V sum(Index terms, Index i) const {
+    V sum(const double* parts, Index terms, Index i) const {
         V total = V::splat(0.0);
-        for (Index j = 0; j < terms; ++j) total = part(i, j) * power(i, j) + total;
+        for (Index j = 1; j < terms; ++j) total = part(parts, i, j) * power(i, j) + total;
         return total;
     }
 
@@ -123,7 +120,6 @@ class Expansion {
     Room room_;
     double* angles_ = nullptr;
     double* parts_ = nullptr;
-    double* fours_ = nullptr;
 };
 
 // Write series into a table of [2 term + part][kind] of a machine, times a factor.
@@ -136,11 +132,13 @@ void enter_series(const FourierRows& rows, double factor, int machine, Table<L> 
 }
 // The same of entities that are each of a kind.
 template <class L>
-void enter_series(const FourierRows& rows, const std::vector<Index>& kind, double factor, int machine, Table<L> out) {
+void enter_series(const FourierRows& rows, const std::vector<Index>& kind, double factor, int machine,
+                  Table<L> out) {
     for (Index j = 0; j < rows.terms; ++j)
         for (int part = 0; part < 2; ++part)
             for (std::size_t entity = 0; entity < kind.size(); ++entity)
-                out.one(2 * j + part, static_cast<Index>(entity), machine) = factor * rows.at(kind[entity], part, j);
+                out.one(2 * j + part, static_cast<Index>(entity), machine) =
+                    factor * rows.at(kind[entity], part, j);
 }
 
 // Coefficients of a polynomial about a point further on by `ahead`.

@@ -1,9 +1,11 @@
-// How numbers of machines lie in vectors: the one place where one machine and many side by side differ in kind.
+// How numbers of machines lie in vectors: the one place where one machine and many side by side differ in
+// kind.
 //
-// A machine has entities of several kinds: coordinates, contacts, bearings with clearance. `Coordinates<W>` holds one
-// machine, with W of its entities in a vector; `Machines<W>` holds W machines, with one entity of each in a vector.
-// Tables are [row][block][lane], a row for each power of the phase. Code that goes block by block does not ask which
-// layout it has; neither does code that goes entity by entity, with one number for each machine (`S`).
+// A machine has entities of several kinds: coordinates, contacts, bearings with clearance. `Coordinates<W>`
+// holds one machine, with W of its entities in a vector; `Machines<W>` holds W machines, with one entity of
+// each in a vector. Tables are [row][block][lane], a row for each power of the phase. Code that goes block by
+// block does not ask which layout it has; neither does code that goes entity by entity, with one number for
+// each machine (`S`).
 #pragma once
 
 #include <cstddef>
@@ -68,11 +70,13 @@ struct Table {
     S of(Index number, Index entity) const { return S::load(row(number) + entity * L::machines); }
     void set(Index number, Index entity, S value) const { value.store(row(number) + entity * L::machines); }
     V spread(Index number, Index entity) const { return L::every(of(number, entity)); }
-    double& one(Index number, Index entity, int machine) const { return row(number)[entity * L::machines + machine]; }
+    double& one(Index number, Index entity, int machine) const {
+        return row(number)[entity * L::machines + machine];
+    }
 };
 
-// Count vectors side by side, each added up in two sums: one alone would wait for each of its additions. (Spelled out
-// one by one, as compilers keep arrays of vectors in memory.)
+// Count vectors side by side, each added up in two sums: one alone would wait for each of its additions.
+// (Spelled out one by one, as compilers keep arrays of vectors in memory.)
 template <class V, int Count>
 struct Sums {
     static constexpr int lanes = sizeof(V) / sizeof(double);
@@ -127,7 +131,8 @@ struct Series {
 
 // Coefficient i of the product of two series that begin at `first` and `second`, in two sums.
 template <class L>
-[[gnu::always_inline]] inline typename L::V product(const double* first, Index first_stride, const double* second, Index second_stride, Index i) {
+[[gnu::always_inline]] inline typename L::V product(const double* first, Index first_stride,
+                                                    const double* second, Index second_stride, Index i) {
     using V = typename L::V;
     V even = V::splat(0.0), odd = even;
     const double* f = first + i * first_stride; // the newest rows come last: the others do not wait for them
@@ -152,7 +157,8 @@ template <class L>
 
 // Value of a series in a block at a step ahead.
 template <class L>
-[[gnu::always_inline]] inline typename L::V value_ahead(Table<L> series, Index order, typename L::V step, Index block) {
+[[gnu::always_inline]] inline typename L::V value_ahead(Table<L> series, Index order, typename L::V step,
+                                                        Index block) {
     typename L::V total = series.at(order, block);
     for (Index i = order - 1; i >= 0; --i) total = total * step + series.at(i, block);
     return total;

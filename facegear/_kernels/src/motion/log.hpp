@@ -26,20 +26,22 @@ struct Asked {
 struct Log {
     Asked asked;
     Index machines = 0, n = 0, m = 0, order = 0, longest = 0; // the most periods of a machine
-    std::vector<double> ends;      // (kept, 2, n)
-    std::vector<double> samples;   // (longest * per_period, n)
-    std::vector<double> tangents;  // (columns, 2, n), moved along
-    std::vector<double> growth;    // (longest,) logarithms
-    std::vector<double> divergence; // integral of the trace, with disturbances
-    std::vector<double> fractions; // (3, m) phase open, on the drive and on the back flank, rad; where the flanks of a
-                                   // mesh stand for themselves the third is, at its drive flank, how long both touch
-    std::vector<double> origin, level;           // (n,), (m,) about which coordinates and deflections are taken
-    std::vector<double> coordinates, products;   // (batches, n), (batches, n, n) upper half
-    std::vector<double> deflections, squared;    // (batches, m)
-    std::vector<double> forces;                  // (2, m) elastic force over w^2 and its magnitude
-    std::vector<double> minimum, maximum, pull;  // (m,) extremes; smallest force of spring and damper over w^2
-    std::vector<Index> taken, status;            // steps, and how the run ended
-    // Of one machine: the first steps' polynomials, and the extrema of the deflections in the order they are met.
+    std::vector<double> ends;                                 // (kept, 2, n)
+    std::vector<double> samples;                              // (longest * per_period, n)
+    std::vector<double> tangents;                             // (columns, 2, n), moved along
+    std::vector<double> growth;                               // (longest,) logarithms
+    std::vector<double> divergence;                           // integral of the trace, with disturbances
+    std::vector<double>
+        fractions; // (3, m) phase open, on the drive and on the back flank, rad; where the flanks of a
+                   // mesh stand for themselves the third is, at its drive flank, how long both touch
+    std::vector<double> origin, level;         // (n,), (m,) about which coordinates and deflections are taken
+    std::vector<double> coordinates, products; // (batches, n), (batches, n, n) upper half
+    std::vector<double> deflections, squared;  // (batches, m)
+    std::vector<double> forces;                // (2, m) elastic force over w^2 and its magnitude
+    std::vector<double> minimum, maximum, pull; // (m,) extremes; smallest force of spring and damper over w^2
+    std::vector<Index> taken, status;           // steps, and how the run ended
+    // Of one machine: the first steps' polynomials, and the extrema of the deflections in the order they are
+    // met.
     std::vector<double> step_starts, step_lengths, step_coordinates, step_deflections;
     std::vector<Index> step_states;
     std::vector<double> turning_points; // (m, 2, turns) maxima, then minima

@@ -2,9 +2,9 @@
 //
 //     F = max(law(x) + c x', 0) while flanks overlap by x > 0; on the back flank with all signs reversed
 //
-// (Hunt and Crossley, Journal of Applied Mechanics 42, 1975, on dampers that pull at the end of a contact). The cut
-// adds one edge to a contact, law(x) + c x' = 0. The force is continuous there, so disturbances pass it unchanged; it
-// jumps only where flanks meet, by c x'.
+// (Hunt and Crossley, Journal of Applied Mechanics 42, 1975, on dampers that pull at the end of a contact).
+// The cut adds one edge to a contact, law(x) + c x' = 0. The force is continuous there, so disturbances pass
+// it unchanged; it jumps only where flanks meet, by c x'.
 #pragma once
 
 #include <cmath>
@@ -22,11 +22,14 @@ void find_parting(Work<L, Law>& w) {
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
         const V side = w.side.at(0, b), rate = w.deflection.at(1, b), level = absolute(w.level.at(0, b));
         const V lower = w.lower.at(0, b), upper = w.upper.at(0, b);
-        const V spring = side * w.law.force(w.deflection, 0, b), damper = side * w.mesh_damping.at(0, b) * rate;
+        const V spring = side * w.law.force(w.deflection, 0, b),
+                damper = side * w.mesh_damping.at(0, b) * rate;
         // Overlap, and with it the spring's force, is known to the rounding of the deflection.
-        const V overlap = absolute(w.deflection.at(0, b) + w.edge.at(0, b) - where_positive(side, upper, lower));
+        const V overlap =
+            absolute(w.deflection.at(0, b) + w.edge.at(0, b) - where_positive(side, upper, lower));
         const V unknown = edge_margin(w, rate) / overlap;
-        const V size = V::splat(no_force) * (absolute(spring) + absolute(damper)) + unknown * absolute(spring);
+        const V size =
+            V::splat(no_force) * (absolute(spring) + absolute(damper)) + unknown * absolute(spring);
         // Neither open contacts nor those on the edge, nor those without any clearance.
         const V edge = where_positive(absolute(level - plus), plus, none);
         const V asked = where_positive(upper - lower, where_positive(absolute(side), edge, none), none);
@@ -34,7 +37,9 @@ void find_parting(Work<L, Law>& w) {
         const V zero = where_positive(absolute(spring + damper) - size, none, plus);
         w.parting.put(0, b, where_positive(asked, zero, none));
         w.active.put(0, b, where_positive(asked, acts, w.active.at(0, b)));
-        w.acting.put(0, b, where_positive(asked, where_positive(acts, w.mesh_damping.at(0, b), none), w.acting.at(0, b)));
+        w.acting.put(
+            0, b,
+            where_positive(asked, where_positive(acts, w.mesh_damping.at(0, b), none), w.acting.at(0, b)));
     }
 }
 

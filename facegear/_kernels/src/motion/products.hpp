@@ -1,8 +1,8 @@
 // Products with the matrices of a system, the one part of the recurrence that differs between the layouts.
 //
-// One machine: dense and padded, vectors run over contacts or coordinates. Machines side by side: sparse, entry by
-// entry. Where coordinates are coupled beside the meshes (gears that bend), one machine takes dense blocks: modes of a
-// body are felt by that body's flanks alone and couple with those of their own order only.
+// One machine: dense and padded, vectors run over contacts or coordinates. Machines side by side: sparse,
+// entry by entry. Where coordinates are coupled beside the meshes (gears that bend), one machine takes dense
+// blocks: modes of a body are felt by that body's flanks alone and couple with those of their own order only.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,8 @@ class Products;
 struct Blocks {
     std::vector<Index> starts{0}, rows; // of block b: rows[starts[b]] to rows[starts[b + 1]]
     std::vector<Index> first, last;     // its coordinates, in vectors
-    std::vector<Index> tiles{0}, columns; // the rows in vector k touch coordinates in vectors columns[tiles[k]] and on
+    std::vector<Index> tiles{0},
+        columns; // the rows in vector k touch coordinates in vectors columns[tiles[k]] and on
 };
 
 // A block is continued by the next vector of coordinates if that brings no more vectors of zeros into it.
@@ -53,7 +54,8 @@ inline Blocks blocks_from(const std::vector<char>& touches, Index rows, Index wi
     for (Index top = 0; top < rows; top += lanes) {
         for (Index c = 0; c < width; ++c) {
             bool any = false;
-            for (Index row = top; row < std::min(top + lanes, rows); ++row) any = any || touches[row * width + c];
+            for (Index row = top; row < std::min(top + lanes, rows); ++row)
+                any = any || touches[row * width + c];
             if (any) result.columns.push_back(c);
         }
         result.tiles.push_back(static_cast<Index>(result.columns.size()));
@@ -69,9 +71,13 @@ class Products<Coordinates<W>> {
 
   public:
     explicit Products(const System& system)
-        : n_(system.n), m_(system.m), contacts_(system.contacts), by_coordinate_(room_.table<L>(system.n, system.m)),
+        : n_(system.n),
+          m_(system.m),
+          contacts_(system.contacts),
+          by_coordinate_(room_.table<L>(system.n, system.m)),
           by_contact_(room_.table<L>(blocks_of<L>(system.m) * W, system.n)),
-          along_(room_.table<L>(system.rubbing(), system.n)), coupled_(system.coupled) {
+          along_(room_.table<L>(system.rubbing(), system.n)),
+          coupled_(system.coupled) {
         if (coupled_) find_blocks(system);
     }
 
@@ -86,9 +92,10 @@ class Products<Coordinates<W>> {
             const Index column = strip_columns_[strip];
             for (Index lane = 0; lane < W; ++lane) {
                 const Index k = strip_rows_[strip] * W + lane;
-                strips_[strip * W + lane] = k >= n_       ? 0.0
-                                            : column < n_ ? system.by_velocity(k, column, machine.frequency)
-                                                          : system.by_displacement(k, column - n_, machine.frequency);
+                strips_[strip * W + lane] = k >= n_ ? 0.0
+                                            : column < n_
+                                                ? system.by_velocity(k, column, machine.frequency)
+                                                : system.by_displacement(k, column - n_, machine.frequency);
             }
         }
     }
@@ -111,7 +118,8 @@ class Products<Coordinates<W>> {
         for (std::size_t block = 0; block < blocks_.first.size(); ++block) {
             for (Index at = blocks_.starts[block]; at < blocks_.starts[block + 1]; ++at) {
                 const Index row = blocks_.rows[at];
-                if (row >= contacts_ || active.data[row] != 0.0 || acting.data[row] != 0.0) pressing_[count++] = row;
+                if (row >= contacts_ || active.data[row] != 0.0 || acting.data[row] != 0.0)
+                    pressing_[count++] = row;
             }
             pressing_starts_[block + 1] = count;
         }
@@ -125,7 +133,8 @@ class Products<Coordinates<W>> {
         }
         for (std::size_t block = 0; block < blocks_.first.size(); ++block) {
             const Index* rows = pressing_.data() + pressing_starts_[block];
-            const Index count = pressing_starts_[block + 1] - pressing_starts_[block], last = blocks_.last[block];
+            const Index count = pressing_starts_[block + 1] - pressing_starts_[block],
+                        last = blocks_.last[block];
             Index b = blocks_.first[block];
             for (; b + 3 <= last; b += 3) push_columns<3>(rows, count, force.data, y.row(row), b);
             for (; b < last; ++b) push_columns<1>(rows, count, force.data, y.row(row), b);
@@ -146,7 +155,8 @@ class Products<Coordinates<W>> {
             Index strip = strip_starts_[b];
             for (; strip + 1 < strip_starts_[b + 1]; strip += 2) {
                 even = V::load(strips_ + strip * W) * V::splat(factors_[strip_columns_[strip]]) + even;
-                odd = V::load(strips_ + (strip + 1) * W) * V::splat(factors_[strip_columns_[strip + 1]]) + odd;
+                odd =
+                    V::load(strips_ + (strip + 1) * W) * V::splat(factors_[strip_columns_[strip + 1]]) + odd;
             }
             if (strip < strip_starts_[b + 1])
                 even = V::load(strips_ + strip * W) * V::splat(factors_[strip_columns_[strip]]) + even;
@@ -187,12 +197,18 @@ class Products<Coordinates<W>> {
         Index b = 0;
         for (; b + 5 < width; b += 3) add_columns<3>(matrix, rows, factors, out, b);
         switch (width - b) {
-        case 5: return add_columns<5>(matrix, rows, factors, out, b);
-        case 4: return add_columns<4>(matrix, rows, factors, out, b);
-        case 3: return add_columns<3>(matrix, rows, factors, out, b);
-        case 2: return add_columns<2>(matrix, rows, factors, out, b);
-        case 1: return add_columns<1>(matrix, rows, factors, out, b);
-        default: return;
+            case 5:
+                return add_columns<5>(matrix, rows, factors, out, b);
+            case 4:
+                return add_columns<4>(matrix, rows, factors, out, b);
+            case 3:
+                return add_columns<3>(matrix, rows, factors, out, b);
+            case 2:
+                return add_columns<2>(matrix, rows, factors, out, b);
+            case 1:
+                return add_columns<1>(matrix, rows, factors, out, b);
+            default:
+                return;
         }
     }
 
@@ -288,6 +304,81 @@ class Products<Coordinates<W>> {
     double* factors_ = nullptr;
 };
 
+// Rows of a sparse matrix with entries in the same columns, up to three: what they are multiplied by is read
+// once.
+struct RowGroup {
+    Index rows[3] = {};
+    int count = 0;
+    Index begin = 0, end = 0; // of the columns
+    Index values = 0;         // first of count values for each column
+};
+struct GroupedRows {
+    std::vector<RowGroup> groups;
+    std::vector<Index> columns, entries; // entries: which value of the Jacobian each value is
+
+    // entry: which of them each entry of the matrix is.
+    GroupedRows(const Sparse& matrix, const std::vector<Index>& entry) {
+        const Index rows = static_cast<Index>(matrix.starts.size()) - 1;
+        const auto length = [&](Index row) { return matrix.starts[row + 1] - matrix.starts[row]; };
+        const auto alike = [&](Index one, Index other) {
+            const auto begin = matrix.columns.begin();
+            return length(one) == length(other) &&
+                   std::equal(begin + matrix.starts[one], begin + matrix.starts[one + 1],
+                              begin + matrix.starts[other]);
+        };
+        std::vector<char> taken(rows, 0);
+        for (Index row = 0; row < rows; ++row) {
+            if (taken[row]) continue;
+            RowGroup group;
+            for (Index other = row; other < rows && group.count < 3; ++other) {
+                if (taken[other] || !alike(row, other)) continue;
+                group.rows[group.count++] = other;
+                taken[other] = 1;
+            }
+            group.begin = static_cast<Index>(columns.size());
+            group.values = static_cast<Index>(entries.size());
+            for (Index i = 0; i < length(row); ++i) {
+                columns.push_back(matrix.columns[matrix.starts[row] + i]);
+                for (int member = 0; member < group.count; ++member)
+                    entries.push_back(entry[matrix.starts[group.rows[member]] + i]);
+            }
+            group.end = static_cast<Index>(columns.size());
+            groups.push_back(group);
+        }
+    }
+};
+
+// Sums of Count rows over the same columns.
+template <class V, int Count>
+struct RowSums {
+    V sum;
+    RowSums<V, Count - 1> rest;
+    template <class Start>
+    void begin(Start start, const Index* rows) {
+        sum = start(rows[0]);
+        rest.begin(start, rows + 1);
+    }
+    template <class Values>
+    void add(V vector, Values values, Index at) {
+        sum = values(at) * vector + sum;
+        rest.add(vector, values, at + 1);
+    }
+    template <class Put>
+    void end(Put put, const Index* rows) const {
+        put(rows[0], sum);
+        rest.end(put, rows + 1);
+    }
+};
+template <class V>
+struct RowSums<V, 0> {
+    template <class Start>
+    void begin(Start, const Index*) {}
+    template <class Values>
+    void add(V, Values, Index) {}
+    template <class Put>
+    void end(Put, const Index*) const {}
+};
+
 template <int W>
 class Products<Machines<W>> {
     using L = Machines<W>;
@@ -295,55 +386,50 @@ class Products<Machines<W>> {
 
   public:
     explicit Products(const System& system)
-        : system_(&system), values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))),
+        : system_(&system),
+          of_contacts_(system.by_contact, numbers(system.by_contact)),
+          of_coordinates_(system.by_coordinate, system.entry),
+          contact_values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))),
+          coordinate_values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))),
           along_(room_.table<L>(1, static_cast<Index>(system.along.columns.size()))),
-          coupling_(room_.table<L>(1, static_cast<Index>(system.coupled_rows.columns.size()))) {}
+          coupling_(room_.table<L>(1, static_cast<Index>(system.coupled_rows.columns.size()))),
+          values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))) {}
 
     void enter(const Machine& machine, int lane) {
         const System& system = *machine.system;
-        for (std::size_t e = 0; e < system.by_contact.values.size(); ++e)
-            values_.one(0, static_cast<Index>(e), lane) = system.by_contact.values[e];
+        for (std::size_t e = 0; e < system.by_contact.values.size(); ++e) {
+            const Index at = static_cast<Index>(e);
+            values_.one(0, at, lane) = system.by_contact.values[e];
+            contact_values_.one(0, at, lane) = system.by_contact.values[of_contacts_.entries[e]];
+            coordinate_values_.one(0, at, lane) = system.by_contact.values[of_coordinates_.entries[e]];
+        }
         for (std::size_t e = 0; e < system.along.values.size(); ++e)
             along_.one(0, static_cast<Index>(e), lane) = system.along.values[e];
         if (!system.coupled) return;
         for (Index k = 0; k < system.n; ++k)
             for (Index e = system.coupled_rows.starts[k]; e < system.coupled_rows.starts[k + 1]; ++e) {
                 const Index column = system.coupled_rows.columns[e];
-                coupling_.one(0, e, lane) = column < system.n
-                                                ? system.by_velocity(k, column, machine.frequency)
-                                                : system.by_displacement(k, column - system.n, machine.frequency);
+                coupling_.one(0, e, lane) =
+                    column < system.n ? system.by_velocity(k, column, machine.frequency)
+                                      : system.by_displacement(k, column - system.n, machine.frequency);
             }
     }
 
     void deflect(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
-        const Sparse& rows = system_->by_contact;
-        for (Index m = 0; m < system_->m; ++m) {
-            V even = error ? -error->at(row, m) : V::splat(0.0), odd = V::splat(0.0);
-            Index e = rows.starts[m];
-            for (; e + 1 < rows.starts[m + 1]; e += 2) {
-                even = values_.at(0, e) * y.at(row, rows.columns[e]) + even;
-                odd = values_.at(0, e + 1) * y.at(row, rows.columns[e + 1]) + odd;
-            }
-            if (e < rows.starts[m + 1]) even = values_.at(0, e) * y.at(row, rows.columns[e]) + even;
-            deflection.put(row, m, even + odd);
-        }
+        const V none = V::splat(0.0);
+        multiply(
+            of_contacts_, contact_values_,
+            [&](Index contact) { return error ? -error->at(row, contact) : none; },
+            [&](Index k) { return y.at(row, k); },
+            [&](Index contact, V sum) { deflection.put(row, contact, sum); });
     }
 
     void find_pressing(Table<L>, Table<L>) {}
 
     void push(Table<L> force, Table<L> y, Index row) const {
-        const Sparse& rows = system_->by_coordinate;
-        const Index* entry = system_->entry.data();
-        for (Index k = 0; k < system_->n; ++k) {
-            V even = y.at(row, k), odd = V::splat(0.0);
-            Index e = rows.starts[k];
-            for (; e + 1 < rows.starts[k + 1]; e += 2) {
-                even = values_.at(0, entry[e]) * force.at(0, rows.columns[e]) + even;
-                odd = values_.at(0, entry[e + 1]) * force.at(0, rows.columns[e + 1]) + odd;
-            }
-            if (e < rows.starts[k + 1]) even = values_.at(0, entry[e]) * force.at(0, rows.columns[e]) + even;
-            y.put(row, k, even + odd);
-        }
+        multiply(
+            of_coordinates_, coordinate_values_, [&](Index k) { return y.at(row, k); },
+            [&](Index contact) { return force.at(0, contact); }, [&](Index k, V sum) { y.put(row, k, sum); });
     }
 
     void couple(Table<L> y, Index i) const {
@@ -385,9 +471,41 @@ class Products<Machines<W>> {
     static V largest(V lanes) { return lanes; }
 
   private:
+    static std::vector<Index> numbers(const Sparse& matrix) {
+        std::vector<Index> all(matrix.columns.size());
+        for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<Index>(e);
+        return all;
+    }
+
+    // Rows of a matrix times vectors, added to where each row starts, and put where it belongs.
+    template <class Start, class Vectors, class Put>
+    static void multiply(const GroupedRows& rows, Table<L> values, Start start, Vectors vectors, Put put) {
+        for (const RowGroup& group : rows.groups) {
+            if (group.count == 3)
+                multiply_group<3>(rows, group, values, start, vectors, put);
+            else if (group.count == 2)
+                multiply_group<2>(rows, group, values, start, vectors, put);
+            else
+                multiply_group<1>(rows, group, values, start, vectors, put);
+        }
+    }
+    template <int Count, class Start, class Vectors, class Put>
+    static void multiply_group(const GroupedRows& rows, const RowGroup& group, Table<L> values, Start start,
+                               Vectors vectors, Put put) {
+        const auto value = [&](Index at) { return values.at(0, at); };
+        RowSums<V, Count> sums;
+        sums.begin(start, group.rows);
+        Index at = group.values;
+        for (Index e = group.begin; e < group.end; ++e, at += Count)
+            sums.add(vectors(rows.columns[e]), value, at);
+        sums.end(put, group.rows);
+    }
+
     Room room_;
     const System* system_;
-    Table<L> values_, along_, coupling_;
+    GroupedRows of_contacts_, of_coordinates_;
+    Table<L> contact_values_, coordinate_values_, along_, coupling_;
+    Table<L> values_; // entry by entry
 };
 
 } // namespace facegear::motion

@@ -2,9 +2,9 @@
 //
 //     F = k (1 - c / r) (x, y) beyond the clearance c, none inside, and the bearing's damping beta dF/dt
 //
-// Each ring has three rows among the contacts, none with a force of its own: x, y, and (r^2 - c^2) / (2 c), near the
-// rim the way beyond it, whose zeros are the switches. Powers of series follow from the recurrence of f g' = p f' g
-// for g = f^p.
+// Each ring has three rows among the contacts, none with a force of its own: x, y, and (r^2 - c^2) / (2 c),
+// near the rim the way beyond it, whose zeros are the switches. Powers of series follow from the recurrence
+// of f g' = p f' g for g = f^p.
 #pragma once
 
 #include "motion/functions.hpp"
@@ -23,8 +23,8 @@ class Rings {
   public:
     Rings(const System& system, Index rows) : count_(system.rings()), first_(system.contacts) {
         for (Table<L>* each : {&stiffness_, &clearance_, &reciprocal_}) *each = room_.table<L>(1, count_);
-        for (Table<L>* each : {&x_, &y_, &dx_, &dy_, &square_, &inverse_, &cube_, &force_x_, &force_y_, &product_,
-                               &slope_xx_, &slope_xy_, &slope_yy_})
+        for (Table<L>* each : {&x_, &y_, &dx_, &dy_, &square_, &inverse_, &cube_, &force_x_, &force_y_,
+                               &product_, &slope_xx_, &slope_xy_, &slope_yy_})
             *each = room_.table<L>(rows, count_);
     }
 
@@ -48,7 +48,8 @@ class Rings {
             const S inside = i == 0 ? half * clearance : S::splat(0.0);
             deflection.set(i, rim(r), half * square / clearance - inside);
             if (i == 0)
-                reciprocal_.set(0, r, where_positive(active.of(0, rim(r)), S::splat(1.0) / square, S::splat(0.0)));
+                reciprocal_.set(0, r,
+                                where_positive(active.of(0, rim(r)), S::splat(1.0) / square, S::splat(0.0)));
         }
         power(i, -0.5, inverse_);
         for (Index b = 0; b < x_.width; ++b) {
@@ -114,7 +115,8 @@ class Rings {
         }
     }
 
-    // Coefficient i of r^2 to a power (-1/2 or -3/2), the ones before it known; zeros where no ring is pressed.
+    // Coefficient i of r^2 to a power (-1/2 or -3/2), the ones before it known; zeros where no ring is
+    // pressed.
     void power(Index i, double exponent, Table<L> out) const {
         for (Index b = 0; b < out.width; ++b) {
             const V reciprocal = reciprocal_.at(0, b);
@@ -125,7 +127,8 @@ class Rings {
             }
             V total = V::splat(0.0);
             for (Index j = 1; j <= i; ++j) {
-                const double weight = (exponent * static_cast<double>(j) - static_cast<double>(i - j)) / static_cast<double>(i);
+                const double weight =
+                    (exponent * static_cast<double>(j) - static_cast<double>(i - j)) / static_cast<double>(i);
                 total = V::splat(weight) * square_.at(j, b) * out.at(i - j, b) + total;
             }
             out.put(i, b, total * reciprocal);

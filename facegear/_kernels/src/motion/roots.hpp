@@ -1,7 +1,7 @@
 // First zero of a polynomial in an interval, certain to be found or excluded.
 //
-// Bernstein coefficients bound the polynomial, and the interval is halved until they have one change of sign or none
-// (Lane and Riesenfeld, BIT 21, 1981).
+// Bernstein coefficients bound the polynomial, and the interval is halved until they have one change of sign
+// or none (Lane and Riesenfeld, BIT 21, 1981).
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,8 @@ constexpr double beside = 1e-12;
 constexpr double close_enough = 1e-10;
 constexpr double never = 2.0;
 
-// Conversion from power to Bernstein coefficients on [0, 1], lower triangular: b_i = sum_k C(i, k) / C(degree, k) a_k.
+// Conversion from power to Bernstein coefficients on [0, 1], lower triangular: b_i = sum_k C(i, k) /
+// C(degree, k) a_k.
 inline std::vector<double> bernstein_matrix(Index degree) {
     std::vector<double> matrix((degree + 1) * (degree + 1), 0.0);
     for (Index i = 0; i <= degree; ++i) {
@@ -35,15 +36,17 @@ inline std::vector<double> bernstein_matrix(Index degree) {
 class RootFinder {
   public:
     explicit RootFinder(Index degree)
-        : degree_(degree), conversion_(bernstein_matrix(degree)), rows_((max_depth + 2) * (degree + 1)),
+        : degree_(degree),
+          conversion_(bernstein_matrix(degree)),
+          rows_((max_depth + 2) * (degree + 1)),
           polynomial_(degree + 1) {}
 
     Index degree() const { return degree_; }
     const double* conversion() const { return conversion_.data(); }
     double* polynomial() { return polynomial_.data(); }
 
-    // Smallest t in (0, 1] where the polynomial changes sign, or `never`. Zeros of even order that do not change the
-    // sign are passed over.
+    // Smallest t in (0, 1] where the polynomial changes sign, or `never`. Zeros of even order that do not
+    // change the sign are passed over.
     double first_root() {
         const double* c = polynomial_.data();
         double rest = 0.0;
@@ -92,11 +95,13 @@ class RootFinder {
     }
 
     // The one zero between low and high: Newton's method kept inside a shrinking bracket.
-    static double refine_root(const double* c, Index degree, double low, double high, double at_low, double at_high) {
+    static double refine_root(const double* c, Index degree, double low, double high, double at_low,
+                              double at_high) {
         if (at_high == 0.0) return high;
         const bool rising = at_high > at_low;
         double t = low + (high - low) * at_low / (at_low - at_high);
-        if (high - t <= beside * (high - low)) t = 0.5 * (low + high); // another zero may lie at the end, to rounding
+        if (high - t <= beside * (high - low))
+            t = 0.5 * (low + high); // another zero may lie at the end, to rounding
         for (int i = 0; i < 100; ++i) {
             double value = c[degree], slope = 0.0;
             for (Index k = degree - 1; k >= 0; --k) {

@@ -1,7 +1,7 @@
 // Run machines over whole mesh periods, as many at a time as the layout holds.
 //
-// Each machine has its own phase and step, so that it switches contacts where it does alone; the next machine enters
-// as soon as one is done. Lanes that have none repeat the first, and nothing is kept of it.
+// Each machine has its own phase and step, so that it switches contacts where it does alone; the next machine
+// enters as soon as one is done. Lanes that have none repeat the first, and nothing is kept of it.
 #pragma once
 
 #include <algorithm>
@@ -20,11 +20,11 @@ namespace facegear::motion {
 // Machines of one structure that wait for a lane.
 struct Queue {
     std::vector<Machine> machines;
-    std::vector<double> starts;   // (machines, 2, n): coordinates and their derivatives by phase
-    std::vector<Index> periods;   // of each
-    std::vector<double> longest;  // step, rad, of each
-    double begin = 0.0;           // phase at which the first period is entered; 0 where samples are asked for
-    std::vector<double> drift;    // (terms, m) added to the error in every period, by powers of the phase
+    std::vector<double> starts;  // (machines, 2, n): coordinates and their derivatives by phase
+    std::vector<Index> periods;  // of each
+    std::vector<double> longest; // step, rad, of each
+    double begin = 0.0;          // phase at which the first period is entered; 0 where samples are asked for
+    std::vector<double> drift;   // (terms, m) added to the error in every period, by powers of the phase
 };
 
 // What runs machines of one structure with a layout and a law.
@@ -46,7 +46,8 @@ class Runner final : public AnyRunner {
     static constexpr Index none = -1;
 
   public:
-    Runner(const std::shared_ptr<const System>& system, Index order, const std::vector<double>& nodes, const std::vector<double>& weights)
+    Runner(const std::shared_ptr<const System>& system, Index order, const std::vector<double>& nodes,
+           const std::vector<double>& weights)
         : work_(system, order), tally_(system->n, system->m, nodes, weights) {}
 
     const System& system() const override { return *work_.shape; }
@@ -119,7 +120,8 @@ class Runner final : public AnyRunner {
         const Index n = work_.n, columns = log_->asked.columns;
         work_.enter(queue_->machines[number], lane);
         for (Index row = 0; row < 2; ++row)
-            for (Index k = 0; k < n; ++k) work_.y.one(row, k, lane) = queue_->starts[(2 * number + row) * n + k];
+            for (Index k = 0; k < n; ++k)
+                work_.y.one(row, k, lane) = queue_->starts[(2 * number + row) * n + k];
         for (Index row = 0; row < 2 * columns; ++row)
             for (Index k = 0; k < n; ++k)
                 tangents_.table.one(row, k, lane) = log_->tangents[(2 * columns * number + row) * n + k];
@@ -138,7 +140,9 @@ class Runner final : public AnyRunner {
             S ahead = S::splat(0.0);
             bool due[L::machines], any = false;
             for (int lane = 0; lane < L::machines; ++lane) {
-                const double to = tau * static_cast<double>(sampled_[lane]) / static_cast<double>(per_period) - work_.phase[lane];
+                const double to =
+                    tau * static_cast<double>(sampled_[lane]) / static_cast<double>(per_period) -
+                    work_.phase[lane];
                 due[lane] = number_[lane] != none && sampled_[lane] < per_period && to < work_.length[lane];
                 any = any || due[lane];
                 ahead.set(lane, due[lane] ? to : 0.0);
@@ -147,7 +151,8 @@ class Runner final : public AnyRunner {
             look_ahead(work_, ahead);
             for (int lane = 0; lane < L::machines; ++lane) {
                 if (!due[lane]) continue;
-                const Index row = (number_[lane] * log_->longest + period_[lane]) * per_period + sampled_[lane]++;
+                const Index row =
+                    (number_[lane] * log_->longest + period_[lane]) * per_period + sampled_[lane]++;
                 write_row(work_.sample, 0, n, lane, log_->samples.data() + row * n);
             }
         }
@@ -209,7 +214,8 @@ class Runner final : public AnyRunner {
         if (columns == tangents_.columns) return;
         tangent_room_ = Room{};
         tangents_ = {tangent_room_.template table<L>(2 * columns, work_.n), columns};
-        if (L::machines == 1 && columns > 1 && !block_) block_ = std::make_unique<Block<L::lanes>>(work_.rows, work_.n, work_.m);
+        if (L::machines == 1 && columns > 1 && !block_)
+            block_ = std::make_unique<Block<L::lanes>>(work_.rows, work_.n, work_.m);
     }
 
     Work<L, Law> work_;
@@ -222,7 +228,8 @@ class Runner final : public AnyRunner {
     Index waiting_ = 0, running_ = 0;
     S divergence_ = S::splat(0.0);
     // Of the machine in a lane: its number, the periods it has run, steps and samples of this one.
-    Index number_[L::machines] = {}, period_[L::machines] = {}, taken_[L::machines] = {}, sampled_[L::machines] = {};
+    Index number_[L::machines] = {}, period_[L::machines] = {}, taken_[L::machines] = {},
+          sampled_[L::machines] = {};
 };
 
 } // namespace facegear::motion

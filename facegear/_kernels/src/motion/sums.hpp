@@ -1,8 +1,9 @@
 // Integrals and extremes of the motion, taken from the step polynomials themselves.
 //
-// Products of two polynomials are integrated by Gauss's rule with a quarter of the order's number of nodes and one
-// more, whose error lies below that of the step (a term that the rule misses is the square of one half way to the
-// last); extremes are the polynomials' own. So nothing depends on how densely the motion is sampled.
+// Products of two polynomials are integrated by Gauss's rule with a quarter of the order's number of nodes
+// and one more, whose error lies below that of the step (a term that the rule misses is the square of one
+// half way to the last); extremes are the polynomials' own. So nothing depends on how densely the motion is
+// sampled.
 #pragma once
 
 #include <vector>
@@ -26,7 +27,8 @@ struct Tally {
         : nodes(std::move(gauss_nodes)), weights(std::move(gauss_weights)) {
         const Index count = static_cast<Index>(nodes.size());
         for (Table<L>* each : {&origin, &coordinates}) *each = room.table<L>(1, n);
-        for (Table<L>* each : {&level, &deflections, &squared, &minimum, &maximum, &pull, &value}) *each = room.table<L>(1, m);
+        for (Table<L>* each : {&level, &deflections, &squared, &minimum, &maximum, &pull, &value})
+            *each = room.table<L>(1, m);
         forces = room.table<L>(2, m);
         fractions = room.table<L>(3, m);
         products = room.table<L>(n, n);
@@ -36,7 +38,8 @@ struct Tally {
 
     Room room;
     std::vector<double> nodes, weights; // on [0, 1]
-    Table<L> origin, coordinates, level, deflections, squared, minimum, maximum, pull, forces, fractions, products;
+    Table<L> origin, coordinates, level, deflections, squared, minimum, maximum, pull, forces, fractions,
+        products;
     Table<L> off, heavy; // coordinates at the nodes of a step, from their origin, and times their weights
     Table<L> value;      // deflections at a node
 };
@@ -55,9 +58,11 @@ void start_sums(const Work<L, Law>& w, Tally<L>& tally) {
     const auto fresh = L::every(w.fresh);
     for (Index b = 0; b < w.y.width; ++b)
         tally.origin.put(0, b, where_positive(fresh, w.y.at(0, b), tally.origin.at(0, b)));
-    for (Index b = 0; b < w.deflection.width; ++b) tally.value.put(0, b, w.deflection.at(0, b) + w.edge.at(0, b));
+    for (Index b = 0; b < w.deflection.width; ++b)
+        tally.value.put(0, b, w.deflection.at(0, b) + w.edge.at(0, b));
     for (Index mesh = 0; mesh < w.shape->pairs; ++mesh)
-        tally.value.set(0, mesh, between(w, tally.value.of(0, mesh), tally.value.of(0, mesh + w.shape->pairs), mesh));
+        tally.value.set(0, mesh,
+                        between(w, tally.value.of(0, mesh), tally.value.of(0, mesh + w.shape->pairs), mesh));
     for (Index b = 0; b < w.deflection.width; ++b)
         tally.level.put(0, b, where_positive(fresh, tally.value.at(0, b), tally.level.at(0, b)));
 }
@@ -95,8 +100,8 @@ void add_contacts(Work<L, Law>& w, Tally<L>& tally, typename L::S at, typename L
     }
 }
 
-// Largest values over the step of sign times polynomials: the best of a few points, then Newton's method on the slope
-// between their neighbours.
+// Largest values over the step of sign times polynomials: the best of a few points, then Newton's method on
+// the slope between their neighbours.
 template <class V>
 V largest_over_step(const std::vector<V>& terms, Index order, double sign) {
     const V none = V::splat(0.0), factor = V::splat(sign);
@@ -129,8 +134,10 @@ V largest_over_step(const std::vector<V>& terms, Index order, double sign) {
 template <class V>
 void widen(const std::vector<V>& terms, Index order, V& minimum, V& maximum) {
     const Reach<V> reach = reach_of(terms.data(), order);
-    if (positive_lanes(reach.top - maximum) != 0) maximum = larger(maximum, largest_over_step(terms, order, 1.0));
-    if (positive_lanes(minimum - reach.bottom) != 0) minimum = smaller(minimum, -largest_over_step(terms, order, -1.0));
+    if (positive_lanes(reach.top - maximum) != 0)
+        maximum = larger(maximum, largest_over_step(terms, order, 1.0));
+    if (positive_lanes(minimum - reach.bottom) != 0)
+        minimum = smaller(minimum, -largest_over_step(terms, order, -1.0));
 }
 
 // Extremes of the deflections, or of those of meshes with two flanks.
@@ -150,7 +157,8 @@ void add_extremes(Work<L, Law>& w, Tally<L>& tally) {
     for (Index mesh = 0; mesh < pairs; ++mesh) {
         S power = S::splat(1.0);
         for (Index i = 0; i <= w.order; ++i) {
-            w.finder[i] = power * S::splat(0.5) * (w.deflection.of(i, mesh) - w.deflection.of(i, mesh + pairs));
+            w.finder[i] =
+                power * S::splat(0.5) * (w.deflection.of(i, mesh) - w.deflection.of(i, mesh + pairs));
             power = power * w.length;
         }
         const S drive = w.deflection.of(0, mesh) + w.edge.of(0, mesh);
@@ -170,7 +178,8 @@ void add_step(Work<L, Law>& w, Tally<L>& tally) {
     const Index nodes = static_cast<Index>(tally.nodes.size());
     start_sums(w, tally);
     for (Index node = 0; node < nodes; ++node) {
-        const S ahead = w.length * S::splat(tally.nodes[node]), weight = w.length * S::splat(tally.weights[node]);
+        const S ahead = w.length * S::splat(tally.nodes[node]),
+                weight = w.length * S::splat(tally.weights[node]);
         look_ahead(w, ahead);
         for (Index b = 0; b < w.y.width; ++b) {
             const V off = w.sample.at(0, b) - tally.origin.at(0, b), heavy = L::every(weight) * off;
@@ -183,11 +192,13 @@ void add_step(Work<L, Law>& w, Tally<L>& tally) {
     for (Index k = 0; k < w.n; ++k) {
         for (Index b = k * L::machines / L::lanes; b < w.y.width; ++b) {
             V total = tally.products.at(k, b);
-            for (Index node = 0; node < nodes; ++node) total = tally.heavy.spread(node, k) * tally.off.at(node, b) + total;
+            for (Index node = 0; node < nodes; ++node)
+                total = tally.heavy.spread(node, k) * tally.off.at(node, b) + total;
             tally.products.put(k, b, total);
         }
     }
-    add_contacts(w, tally, w.length, S::splat(0.0)); // flanks are pulled most where they part, at the end of a step
+    add_contacts(w, tally, w.length,
+                 S::splat(0.0)); // flanks are pulled most where they part, at the end of a step
     add_extremes(w, tally);
 }
 
@@ -259,14 +270,16 @@ template <class L>
 void keep_whole(const Tally<L>& tally, int machine, Index number, Log& log) {
     const Index n = log.n, m = log.m;
     if (!log.fractions.empty())
-        for (Index i = 0; i < 3; ++i) write_row(tally.fractions, i, m, machine, log.fractions.data() + (3 * number + i) * m);
+        for (Index i = 0; i < 3; ++i)
+            write_row(tally.fractions, i, m, machine, log.fractions.data() + (3 * number + i) * m);
     if (log.asked.batches == 0) return;
     write_row(tally.origin, 0, n, machine, log.origin.data() + number * n);
     write_row(tally.level, 0, m, machine, log.level.data() + number * m);
     write_row(tally.minimum, 0, m, machine, log.minimum.data() + number * m);
     write_row(tally.maximum, 0, m, machine, log.maximum.data() + number * m);
     write_row(tally.pull, 0, m, machine, log.pull.data() + number * m);
-    for (Index i = 0; i < 2; ++i) write_row(tally.forces, i, m, machine, log.forces.data() + (2 * number + i) * m);
+    for (Index i = 0; i < 2; ++i)
+        write_row(tally.forces, i, m, machine, log.forces.data() + (2 * number + i) * m);
 }
 
 } // namespace facegear::motion

@@ -1,8 +1,9 @@
 // The first contact switch inside the step of each machine, by the polynomials of the deflections.
 //
-// A way is a polynomial over the fraction of the step whose first zero is a switch: a deflection's way from a level, or
-// the force of a contact that only pushes. Ways are looked at block by block; those that change their sign within the
-// step are gathered machine by machine, so that hardly a lane is idle while their zeros are refined.
+// A way is a polynomial over the fraction of the step whose first zero is a switch: a deflection's way from a
+// level, or the force of a contact that only pushes. Ways are looked at block by block; those that change
+// their sign within the step are gathered machine by machine, so that hardly a lane is idle while their zeros
+// are refined.
 #pragma once
 
 #include <algorithm>
@@ -69,8 +70,8 @@ typename L::V sign_changes(const Work<L, Law>& w) {
     return changes;
 }
 
-// Add what stands in `terms` to the ways of the machines that want it (1) if it changes its sign within the step;
-// ignores: where (1) a zero at once was decided by the rates already.
+// Add what stands in `terms` to the ways of the machines that want it (1) if it changes its sign within the
+// step; ignores: where (1) a zero at once was decided by the rates already.
 template <class L, class Law>
 void add_ways(Work<L, Law>& w, typename L::V wanted, typename L::V ignores) {
     using V = typename L::V;
@@ -87,10 +88,11 @@ void add_ways(Work<L, Law>& w, typename L::V wanted, typename L::V ignores) {
     }
 }
 
-// Add the ways from a level of those that are able (1). Where a deflection stands on the level (1), the known zero at
-// the start is divided out.
+// Add the ways from a level of those that are able (1). Where a deflection stands on the level (1), the known
+// zero at the start is divided out.
 template <class L, class Law>
-void look_at_level(Work<L, Law>& w, typename L::V level, typename L::V standing, typename L::V able, const Reach<typename L::V>& reach) {
+void look_at_level(Work<L, Law>& w, typename L::V level, typename L::V standing, typename L::V able,
+                   const Reach<typename L::V>& reach) {
     using V = typename L::V;
     const V start = w.scaled[0] - level, none = V::splat(0.0);
     const V wanted = where_positive(able, where_positive(standing, V::splat(1.0), reach.of(level)), none);
@@ -106,7 +108,8 @@ template <class L, class Law>
 void look_at_force(Work<L, Law>& w, Index b) {
     using V = typename L::V;
     const V one = V::splat(1.0), none = V::splat(0.0), length = L::every(w.length);
-    const V zero_now = w.parting.at(0, b), on_edge = where_positive(absolute(absolute(w.level.at(0, b)) - one), none, one);
+    const V zero_now = w.parting.at(0, b),
+            on_edge = where_positive(absolute(absolute(w.level.at(0, b)) - one), none, one);
     const V touching = absolute(w.side.at(0, b));
     const V able = where_positive(w.upper.at(0, b) - w.lower.at(0, b), touching, none);
     if (positive_lanes(able) == 0) return;
@@ -124,8 +127,8 @@ void look_at_force(Work<L, Law>& w, Index b) {
     add_ways(w, wanted, where_positive(zero_now, one, on_edge));
 }
 
-// The one zero before `first` of a way of the machines that want it, `never` of the others and where it comes later:
-// Newton's method kept inside a shrinking bracket.
+// The one zero before `first` of a way of the machines that want it, `never` of the others and where it comes
+// later: Newton's method kept inside a shrinking bracket.
 template <class L, class Law>
 typename L::S refine_ways(const Work<L, Law>& w, Index way, typename L::S first, typename L::S wanted) {
     using S = typename L::S;
@@ -194,9 +197,11 @@ typename L::S first_switch(Work<L, Law>& w) {
         const S spurious = where_positive(w.way_ignores.of(way, 0), early, -S::splat(1.0));
         root = where_positive(spurious, S::splat(never), root);
         first = smaller(first, root);
-        const unsigned alone = positive_lanes(where_positive(spurious, wanted, where_positive(several, wanted, none)));
+        const unsigned alone =
+            positive_lanes(where_positive(spurious, wanted, where_positive(several, wanted, none)));
         for (int machine = 0; machine < L::machines; ++machine)
-            if ((alone >> machine) & 1u) first.set(machine, std::min(first[machine], first_of_several(w, way, machine)));
+            if ((alone >> machine) & 1u)
+                first.set(machine, std::min(first[machine], first_of_several(w, way, machine)));
     }
     return first;
 }
@@ -218,7 +223,8 @@ void until_switch(Work<L, Law>& w) {
         const Reach<V> reach = reach_of(w.scaled.data(), w.order);
         const V on_level = where_positive(absolute(level), one, none);
         // Open, a contact may reach either edge; pressed in, both ends of the piece of its law.
-        const V near = where_positive(touching, none, upper), near_number = where_positive(touching, state, one);
+        const V near = where_positive(touching, none, upper),
+                near_number = where_positive(touching, state, one);
         look_at_level(w, near, where_positive(on_level, same(level, near_number), none), able, reach);
         const V far = where_positive(touching, w.extent.at(0, b), lower);
         const V far_number = where_positive(touching, state + side, -one);

@@ -1,6 +1,7 @@
 // What is integrated: unit-mass oscillators coupled by meshes with clearance (docs/dynamics.md).
 //
-//     y'' + damping y' + omega_squared y + coupling + G^T F = load(s),   F = law(s, x) + c d',   d = G y - e(s)
+//     y'' + damping y' + omega_squared y + coupling + G^T F = load(s),   F = law(s, x) + c d',   d = G y -
+//     e(s)
 //
 // with x = d - upper above `upper`, d - lower below `lower`, zero between (Kahraman and Singh 1990).
 #pragma once
@@ -48,26 +49,30 @@ inline Sparse sparse_of(const std::vector<double>& matrix, Index rows, Index col
     return result;
 }
 
-// Forces (D + W G) y' + (W N + W^2 P) y that couple coordinates beside the meshes, at a mesh frequency W; (n, n) each.
+// Forces (D + W G) y' + (W N + W^2 P) y that couple coordinates beside the meshes, at a mesh frequency W; (n,
+// n) each.
 struct Coupling {
     std::vector<double> dampers, gyroscopic, circulatory, centrifugal;
 };
 
-// A system with its frequencies in rad/s and forces in N over mass; n coordinates, m rows of contacts and rings.
+// A system with its frequencies in rad/s and forces in N over mass; n coordinates, m rows of contacts and
+// rings.
 struct System {
     Index n = 0, m = 0;
-    Index contacts = 0; // rows that are meshes or flanks; three for each ring follow: x, y, and the way past the rim
-    Index pairs = 0;    // meshes whose two flanks stand at j and j + pairs; 0 where every mesh stands for itself
+    Index contacts =
+        0; // rows that are meshes or flanks; three for each ring follow: x, y, and the way past the rim
+    Index pairs = 0; // meshes whose two flanks stand at j and j + pairs; 0 where every mesh stands for itself
     bool damping_when_open = true, push_only = false;
-    double scale = 1.0;                                       // the length that tolerances mean, m
-    std::vector<double> jacobian;                             // (m, n) derivatives of the deflections
-    std::vector<double> omega_squared, damping, weights;      // (n,) 1/s^2, 1/s, largest deflection by a unit
-    std::vector<double> mesh_damping, lower, upper, leverage; // (m,) edges in m; sum of squares of a row of jacobian
-    FourierRows error, load;                                  // of the kinds of contact, and of the coordinates
-    std::vector<Index> error_kind;                            // (m,)
-    std::vector<double> ring_stiffness, ring_clearance;       // of bearings with clearance
-    double ring_lag = 0.0;                                    // damping over stiffness, s
-    std::vector<Index> rubbing_flank;                         // of each force of friction
+    double scale = 1.0;                                  // the length that tolerances mean, m
+    std::vector<double> jacobian;                        // (m, n) derivatives of the deflections
+    std::vector<double> omega_squared, damping, weights; // (n,) 1/s^2, 1/s, largest deflection by a unit
+    std::vector<double> mesh_damping, lower, upper,
+        leverage;                  // (m,) edges in m; sum of squares of a row of jacobian
+    FourierRows error, load;       // of the kinds of contact, and of the coordinates
+    std::vector<Index> error_kind; // (m,)
+    std::vector<double> ring_stiffness, ring_clearance; // of bearings with clearance
+    double ring_lag = 0.0;                              // damping over stiffness, s
+    std::vector<Index> rubbing_flank;                   // of each force of friction
     FourierRows rubbing_ratios;
     std::vector<double> rubbing_directions; // (forces of friction, n)
     bool coupled = false;
@@ -77,8 +82,8 @@ struct System {
     Sparse by_contact, along; // jacobian and rubbing_directions without zeros
     Sparse by_coordinate;     // jacobian, coordinate by coordinate, with the rows as columns
     std::vector<Index> entry; // which entry of by_contact each of by_coordinate is
-    Sparse coupled_rows;      // columns 0 .. n - 1 by velocity, n .. 2 n - 1 by displacement; values are not used
-    bool opens = false;       // whether a contact may open
+    Sparse coupled_rows; // columns 0 .. n - 1 by velocity, n .. 2 n - 1 by displacement; values are not used
+    bool opens = false;  // whether a contact may open
 
     Index rings() const { return static_cast<Index>(ring_stiffness.size()); }
     Index rubbing() const { return static_cast<Index>(rubbing_flank.size()); }

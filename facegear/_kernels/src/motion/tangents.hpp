@@ -1,8 +1,8 @@
 // Disturbances of the motion: moved over a step by the same recurrence, with the slopes of the forces.
 //
-// A single one goes in the vectors that the motion itself uses. Many of one machine go in blocks, side by side along
-// the innermost axis: then every entry of G is read once for all of them, and those that are zero are left out. With
-// rings, friction, or coordinates coupled beside the meshes they go one by one.
+// A single one goes in the vectors that the motion itself uses. Many of one machine go in blocks, side by
+// side along the innermost axis: then every entry of G is read once for all of them, and those that are zero
+// are left out. With rings, friction, or coordinates coupled beside the meshes they go one by one.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +23,8 @@ struct Tangents {
 
 // Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
 //
-// The law alone gives none, since its force is continuous at every level (Leine and Nijmeijer 2004). Neither do flanks
-// that part where a contact only pushes: their force was zero before.
+// The law alone gives none, since its force is continuous at every level (Leine and Nijmeijer 2004). Neither
+// do flanks that part where a contact only pushes: their force was zero before.
 template <class L, class Law>
 void switch_tangents(Work<L, Law>& w, Tangents<L> tangents) {
     using S = typename L::S;
@@ -39,7 +39,8 @@ void switch_tangents(Work<L, Law>& w, Tangents<L> tangents) {
         S damping = change * w.rings.lag() * w.rings.stiffness(r) / (across * across + up * up);
         damping = where_positive(absolute(change), damping, none);
         for (Index j = 0; j < tangents.columns; ++j) {
-            const S along = across * w.products.dot(x, tangents.table, 2 * j) + up * w.products.dot(x + 1, tangents.table, 2 * j);
+            const S along = across * w.products.dot(x, tangents.table, 2 * j) +
+                            up * w.products.dot(x + 1, tangents.table, 2 * j);
             w.products.add_row(x, -(damping * along * across), tangents.table, 2 * j + 1);
             w.products.add_row(x + 1, -(damping * along * up), tangents.table, 2 * j + 1);
         }
@@ -61,12 +62,13 @@ void switch_tangents(Work<L, Law>& w, Tangents<L> tangents) {
 // Remember what acts in this step for the next.
 template <class L, class Law>
 void keep_acting(Work<L, Law>& w) {
-    for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) w.was_acting.put(0, b, shearing_damping(w, b));
+    for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b)
+        w.was_acting.put(0, b, shearing_damping(w, b));
     for (Index row = w.shape->contacts; row < w.m; ++row) w.was_acting.set(0, row, w.active.of(0, row));
 }
 
-// The steps, or so much less of them that the last terms of a curved law's slopes turn a disturbance by no more than
-// the tolerance. The motion alone says nothing of them where its force is small.
+// The steps, or so much less of them that the last terms of a curved law's slopes turn a disturbance by no
+// more than the tolerance. The motion alone says nothing of them where its force is small.
 template <class L, class Law>
 void shorten_for_tangents(Work<L, Law>& w) {
     using V = typename L::V;
@@ -86,8 +88,8 @@ void shorten_for_tangents(Work<L, Law>& w) {
     }
 }
 
-// Terms that disturbances of one machine need over a step: most steps end at a switch, below the longest. The fastest
-// disturbance's last term is then below a tenth of what the longest step leaves it.
+// Terms that disturbances of one machine need over a step: most steps end at a switch, below the longest. The
+// fastest disturbance's last term is then below a tenth of what the longest step leaves it.
 template <class L, class Law>
 Index order_needed(const Work<L, Law>& w) {
     if (L::machines > 1 || Law::curved) return w.order;
@@ -121,7 +123,10 @@ class Block {
     static constexpr Index count = width;
 
     Block(Index rows, Index n, Index m)
-        : n_(n), m_(m), y_(room_.numbers(rows * n * width)), deflection_(room_.numbers(rows * m * width)),
+        : n_(n),
+          m_(m),
+          y_(room_.numbers(rows * n * width)),
+          deflection_(room_.numbers(rows * m * width)),
           force_(room_.numbers(m * width)) {}
 
     // Move up to `count` disturbances from number `first` on.
@@ -132,7 +137,8 @@ class Block {
         for (Index row = 0; row < 2; ++row) {
             for (Index k = 0; k < n_; ++k)
                 for (Index j = 0; j < count; ++j)
-                    y_[(row * n_ + k) * width + j] = j < own ? tangents.table.one(2 * (first + j) + row, k, 0) : 0.0;
+                    y_[(row * n_ + k) * width + j] =
+                        j < own ? tangents.table.one(2 * (first + j) + row, k, 0) : 0.0;
             deflect(system.by_contact, row);
         }
         for (Index i = 0; i < order - 1; ++i) {
@@ -143,7 +149,8 @@ class Block {
         evaluate(order, w.length[0]);
         for (Index row = 0; row < 2; ++row)
             for (Index k = 0; k < n_; ++k)
-                for (Index j = 0; j < own; ++j) tangents.table.one(2 * (first + j) + row, k, 0) = y_[(row * n_ + k) * width + j];
+                for (Index j = 0; j < own; ++j)
+                    tangents.table.one(2 * (first + j) + row, k, 0) = y_[(row * n_ + k) * width + j];
     }
 
   private:
@@ -167,10 +174,12 @@ class Block {
             sums.add_odd(deflection_ + ((i + 1) * m_ + contact) * width,
                          V::splat(w.acting.one(0, contact, 0) * static_cast<double>(i + 1)));
             if (w.active.one(0, contact, 0) != 0.0) {
-                const Index block = contact / (L::lanes / L::machines), lane = contact % (L::lanes / L::machines);
+                const Index block = contact / (L::lanes / L::machines),
+                            lane = contact % (L::lanes / L::machines);
                 const double* values = slope.begin(block) + lane;
                 for (Index j = i; j >= 0; --j)
-                    sums.add_even(deflection_ + ((i - j) * m_ + contact) * width, V::splat(values[j * slope.table.stride()]));
+                    sums.add_even(deflection_ + ((i - j) * m_ + contact) * width,
+                                  V::splat(values[j * slope.table.stride()]));
             }
             sums.store(force_ + contact * width, V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2))));
         }
@@ -220,10 +229,12 @@ void move_tangents(Work<L, Law>& w, Tangents<L> tangents, Block<L::lanes>* block
     const bool plain = w.rings.count() == 0 && w.friction.count() == 0 && !w.shape->coupled;
     const Index order = plain ? order_needed(w) : w.order;
     if (block != nullptr && plain && tangents.columns > 1) {
-        for (Index first = 0; first < tangents.columns; first += Block<L::lanes>::count) block->move(w, order, tangents, first);
+        for (Index first = 0; first < tangents.columns; first += Block<L::lanes>::count)
+            block->move(w, order, tangents, first);
         return;
     }
-    for (Index column = 0; column < tangents.columns; ++column) move_tangent(w, order, tangents.table, column);
+    for (Index column = 0; column < tangents.columns; ++column)
+        move_tangent(w, order, tangents.table, column);
 }
 
 // Minus the integral over the step of the damping that acts: of the divergence of the flow.

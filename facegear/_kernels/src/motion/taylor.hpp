@@ -1,8 +1,8 @@
 // Taylor coefficients of the motion between two contact switches.
 //
-// Between switches the forces are analytic, and coefficient i of the forces needs no more than those up to i of the
-// deflections: so the coefficients of y follow from each other by a recurrence that costs one product with G, one with
-// its transpose and what the law asks for each order (docs/dynamics.md).
+// Between switches the forces are analytic, and coefficient i of the forces needs no more than those up to i
+// of the deflections: so the coefficients of y follow from each other by a recurrence that costs one product
+// with G, one with its transpose and what the law asks for each order (docs/dynamics.md).
 #pragma once
 
 #include "motion/functions.hpp"
@@ -17,7 +17,8 @@ void expand_excitation(Work<L, Law>& w, Index rows) {
     w.expansion.set_phase(w.phase);
     w.law.expand_phase(w.expansion, w.piece, w.ahead, rows);
     w.friction.expand(w.expansion, rows);
-    w.expansion.expand(w.error.column ? w.error_of_kinds : w.error_series, shape.error.terms, rows, w.error.table);
+    w.expansion.expand(w.error.column ? w.error_of_kinds : w.error_series, shape.error.terms, rows,
+                       w.error.table);
     for (Index row = 0; w.drift_terms > 0 && row < w.m; ++row) {
         for (int machine = 0; machine < L::machines; ++machine) {
             for (Index i = 0; i < w.drift_terms; ++i) w.polynomial[i] = w.drift[i * w.m + row];
@@ -32,7 +33,8 @@ void expand_excitation(Work<L, Law>& w, Index rows) {
 template <class L, class Law>
 void accelerate(Work<L, Law>& w, Table<L> y, Index i, bool disturbed) {
     using V = typename L::V;
-    const V rate = V::splat(static_cast<double>(i + 1)), factor = V::splat(1.0 / static_cast<double>((i + 1) * (i + 2)));
+    const V rate = V::splat(static_cast<double>(i + 1)),
+            factor = V::splat(1.0 / static_cast<double>((i + 1) * (i + 2)));
     const bool loaded = !disturbed && (i == 0 || w.shape->load.terms > 1);
     for (Index b = 0; b < y.width; ++b) {
         const V own = w.damping.at(0, b) * (rate * y.at(i + 1, b)) + w.omega_squared.at(0, b) * y.at(i, b);
@@ -40,11 +42,13 @@ void accelerate(Work<L, Law>& w, Table<L> y, Index i, bool disturbed) {
     }
 }
 
-// Coefficient i of the forces of all contacts, which push back; they carry the factor of the next coefficient of y.
+// Coefficient i of the forces of all contacts, which push back; they carry the factor of the next coefficient
+// of y.
 template <class L, class Law>
 void push_contacts(Work<L, Law>& w, Table<L> deflection, Index i, bool disturbed) {
     using V = typename L::V;
-    const V rate = V::splat(static_cast<double>(i + 1)), pushed = V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2)));
+    const V rate = V::splat(static_cast<double>(i + 1)),
+            pushed = V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2)));
     const bool kept = w.friction.count() > 0 || (w.shape->push_only && !disturbed);
     const Index of_law = blocks_of<L>(w.shape->contacts);
     const Series<L> slope = w.law.slope();
@@ -57,8 +61,9 @@ void push_contacts(Work<L, Law>& w, Table<L> deflection, Index i, bool disturbed
     }
 }
 
-// Fill rows 2 .. order of y and of deflection from rows 0 and 1 of both. Row 0 of the deflections is counted from the
-// edge. A disturbance of the motion is moved by the slopes of the forces along it, which must be known.
+// Fill rows 2 .. order of y and of deflection from rows 0 and 1 of both. Row 0 of the deflections is counted
+// from the edge. A disturbance of the motion is moved by the slopes of the forces along it, which must be
+// known.
 template <class L, class Law>
 void recurrence(Work<L, Law>& w, Index order, Table<L> y, Table<L> deflection, bool disturbed) {
     const auto expand_rings = [&](Index i) {
@@ -81,7 +86,8 @@ void recurrence(Work<L, Law>& w, Index order, Table<L> y, Table<L> deflection, b
     }
 }
 
-// Step at which each of the last two terms is below the tolerance times the length scale (Jorba and Zou 2005).
+// Step at which each of the last two terms is below the tolerance times the length scale (Jorba and Zou
+// 2005).
 template <class L, class Law>
 typename L::S step_length(const Work<L, Law>& w) {
     using V = typename L::V;

@@ -16,19 +16,33 @@
 
 namespace facegear::motion {
 
-// Of machines of one structure, for one thread and one order of the steps. Series have a row for each power of s.
+// Of machines of one structure, for one thread and one order of the steps. Series have a row for each power
+// of s.
 template <class L, class LawType>
 struct Work {
     using V = typename L::V;
     using S = typename L::S;
 
     Work(std::shared_ptr<const System> system, Index steps_order)
-        : shape(std::move(system)), order(steps_order), rows(steps_order + 1), n(shape->n), m(shape->m),
-          expansion(shape->harmonics(), rows), law(law_of(*shape), rows), products(*shape), rings(*shape, rows),
-          friction(*shape, rows), roots(steps_order), polynomial(rows), scaled(rows), terms(rows), finder(rows) {
+        : shape(std::move(system)),
+          order(steps_order),
+          rows(steps_order + 1),
+          n(shape->n),
+          m(shape->m),
+          expansion(shape->harmonics(), rows),
+          law(law_of(*shape), rows),
+          products(*shape),
+          rings(*shape, rows),
+          friction(*shape, rows),
+          roots(steps_order),
+          polynomial(rows),
+          scaled(rows),
+          terms(rows),
+          finder(rows) {
+        law.make_room(expansion.terms());
         for (Table<L>* each : {&omega_squared, &damping, &weights, &sample}) *each = room.table<L>(1, n);
-        for (Table<L>* each : {&mesh_damping, &lower, &upper, &leverage, &force, &state, &side, &level, &active, &acting,
-                               &edge, &extent, &parting, &was_acting})
+        for (Table<L>* each : {&mesh_damping, &lower, &upper, &leverage, &force, &state, &side, &level,
+                               &active, &acting, &edge, &extent, &parting, &was_acting})
             *each = room.table<L>(1, m);
         for (Table<L>* each : {&y, &load, &turn}) *each = room.table<L>(rows, n);
         for (Table<L>* each : {&deflection, &turned, &elastic}) *each = room.table<L>(rows, m);
@@ -97,8 +111,8 @@ struct Work {
     Room room;
     Machine entered[L::machines];
 
-    Table<L> omega_squared, damping, weights;          // over w^2, over w, as System
-    Table<L> mesh_damping, lower, upper, leverage;     // over w, as System
+    Table<L> omega_squared, damping, weights;      // over w^2, over w, as System
+    Table<L> mesh_damping, lower, upper, leverage; // over w, as System
     S scale = S::splat(1.0), tolerance = S::splat(1.0), fastest = S::splat(1.0);
     Expansion<L> expansion;
     typename LawType::template Motion<L> law;
@@ -106,35 +120,36 @@ struct Work {
     Rings<L> rings;
     Friction<L> friction;
 
-    S phase = S::splat(0.0), length = S::splat(0.0);   // of the step in the period, rad
-    S longest = S::splat(infinity);                    // that a step may be, rad
-    S fresh = S::splat(1.0);                           // 1 in the first step of a machine
-    Index piece[L::machines] = {};                     // stretch between two breaks of the law
-    double ahead[L::machines] = {};                    // phase since the first of them, rad
+    S phase = S::splat(0.0), length = S::splat(0.0); // of the step in the period, rad
+    S longest = S::splat(infinity);                  // that a step may be, rad
+    S fresh = S::splat(1.0);                         // 1 in the first step of a machine
+    Index piece[L::machines] = {};                   // stretch between two breaks of the law
+    double ahead[L::machines] = {};                  // phase since the first of them, rad
 
-    Table<L> y, deflection;                            // Taylor coefficients; deflections are counted from `edge`
+    Table<L> y, deflection; // Taylor coefficients; deflections are counted from `edge`
     Table<L> error_series, error_of_kinds, error_terms, load_series, load;
-    Series<L> error;                                   // its terms, by contact or by kind
-    Table<L> elastic;                                  // forces of the law, kept where friction or parting needs them
-    Table<L> force;                                    // of a row, with the factor of the next coefficient of y
+    Series<L> error;  // its terms, by contact or by kind
+    Table<L> elastic; // forces of the law, kept where friction or parting needs them
+    Table<L> force;   // of a row, with the factor of the next coefficient of y
     Index drift_terms = 0;
-    const double* drift = nullptr;                     // (terms, contacts) of one machine, added to the error
+    const double* drift = nullptr; // (terms, contacts) of one machine, added to the error
 
-    // Of every contact: `state` is 0 where it is open, p in piece p of the law on the drive flank, -p on the back
-    // flank; `side` its sign. `level` is 0 but where a contact stands where piece p (-p) begins. `active` and
-    // `acting` (the damping) are zero where nothing is transmitted. Deflections are counted from `edge`, and the
-    // piece ends at `extent`. `parting` is 1 where the force of a contact that only pushes is zero now.
+    // Of every contact: `state` is 0 where it is open, p in piece p of the law on the drive flank, -p on the
+    // back flank; `side` its sign. `level` is 0 but where a contact stands where piece p (-p) begins.
+    // `active` and `acting` (the damping) are zero where nothing is transmitted. Deflections are counted from
+    // `edge`, and the piece ends at `extent`. `parting` is 1 where the force of a contact that only pushes is
+    // zero now.
     Table<L> state, side, level, active, acting, edge, extent, parting;
 
-    Table<L> ways, way_changes, way_ignores;           // polynomials that may have a zero in the step
+    Table<L> ways, way_changes, way_ignores; // polynomials that may have a zero in the step
     Index way_counts[L::machines] = {};
     RootFinder roots;
     std::vector<double> polynomial;
     std::vector<V> scaled, terms;
     std::vector<S> finder;
 
-    Table<L> turn, turned, was_acting;                 // a disturbance, its deflections, damping of the last step
-    Table<L> sample;                                   // coordinates somewhere in the step
+    Table<L> turn, turned, was_acting; // a disturbance, its deflections, damping of the last step
+    Table<L> sample;                   // coordinates somewhere in the step
 };
 
 } // namespace facegear::motion

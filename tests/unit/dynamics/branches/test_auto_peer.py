@@ -13,7 +13,6 @@ import pandas as pd
 import pytest
 from law_oscillators import law_period_map
 from oscillators import backlash_oscillator
-from power_laws import PowerLaw
 from references import against, agrees
 from whole_branches import branch_at
 
@@ -21,6 +20,7 @@ from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind
+from facegear.mesh_law.power import PowerLaw
 
 AUTO = pd.read_csv(Path(__file__).parents[4] / "docs" / "measured" / "auto_peer.csv")
 LOADS = {"a": (0.1, 0.05), "b": (0.1, 0.1), "Fm2": (0.2, 0.05), "Fm3": (0.3, 0.05)}

@@ -1,7 +1,9 @@
 // The laws that contacts can have. A new one is a header like linear.hpp, and its name here.
 //
-// A law offers, beside its numbers: `curved`, whether the slope depends on the amount; `breaks`; `contacts()`;
-// `terms()`, the harmonics with the mean; `alike(other)`, whether they may share scratch space; and Motion<L> with
+// A law offers, beside its numbers: `curved`, whether the slope depends on the amount; `breaks`;
+// `contacts()`; `terms()`, the harmonics with the mean; `alike(other)`, whether they may share scratch space;
+// and Motion<L> with
+//     make_room(terms)                                of series of up to so many terms
 //     enter(law, factor, machine)                     take the numbers of a machine, forces times the factor
 //     expand_phase(expansion, piece, ahead, rows)     coefficients of what depends on the phase alone
 //     expand_pieces(expansion, state, rows)           and of what depends on the pieces that contacts are in
@@ -9,7 +11,8 @@
 //     expand_slopes(deflection, order), slope()       the series of dF/dd along the motion
 //     look_ahead(order, step), force_ahead(...)       forces at a step ahead
 //     piece_of, begin_of, end_of                      pieces, from 1, between levels of the amount
-// Deflections are counted from the level at which the piece of a contact begins; on a back flank they are negative.
+// Deflections are counted from the level at which the piece of a contact begins; on a back flank they are
+// negative.
 #pragma once
 
 #include <memory>

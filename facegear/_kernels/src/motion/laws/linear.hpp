@@ -1,7 +1,8 @@
 // The linear law: a stiffness k(s) that depends on the phase, times the amount pressed in.
 //
-// Every law is a struct of numbers at a mesh frequency of 1 rad/s, with a class `Motion<L>` that expands the force of
-// all contacts along the motions of the machines of a layout; what it must offer stands in laws/all.hpp.
+// Every law is a struct of numbers at a mesh frequency of 1 rad/s, with a class `Motion<L>` that expands the
+// force of all contacts along the motions of the machines of a layout; what it must offer stands in
+// laws/all.hpp.
 #pragma once
 
 #include <vector>
@@ -15,11 +16,13 @@ namespace facegear::motion {
 struct LinearLaw {
     static constexpr bool curved = false;
 
-    FourierRows fourier;        // k of each kind, N/m
-    std::vector<Index> kind;    // of each contact
-    std::vector<double> breaks; // phases (rad) between which k is smooth, from 0 to 2 pi; none: smooth throughout
+    FourierRows fourier;     // k of each kind, N/m
+    std::vector<Index> kind; // of each contact
+    std::vector<double>
+        breaks; // phases (rad) between which k is smooth, from 0 to 2 pi; none: smooth throughout
     Index degrees = 0;
-    std::vector<double> pieces; // (pieces, degrees, contacts): added to k, powers of the phase since the last break
+    std::vector<double>
+        pieces; // (pieces, degrees, contacts): added to k, powers of the phase since the last break
 
     Index contacts() const { return static_cast<Index>(kind.size()); }
     Index terms() const { return fourier.terms; }
@@ -42,8 +45,12 @@ class LinearLaw::Motion {
         // Where lanes are machines, contacts of a kind share its series.
         : shared_(L::lanes == L::machines && law.pieces.empty()),
           series_(room_.table<L>(2 * law.terms(), shared_ ? law.fourier.kinds : law.contacts())),
-          slope_{room_.table<L>(rows, shared_ ? law.fourier.kinds : law.contacts()), shared_ ? law.kind.data() : nullptr},
-          ahead_(room_.table<L>(1, law.contacts())), polynomial_(law.degrees) {}
+          slope_{room_.table<L>(rows, shared_ ? law.fourier.kinds : law.contacts()),
+                 shared_ ? law.kind.data() : nullptr},
+          ahead_(room_.table<L>(1, law.contacts())),
+          polynomial_(law.degrees) {}
+
+    void make_room(Index) {}
 
     // Take the numbers of a machine; factor: 1 / w^2.
     void enter(const LinearLaw& law, double factor, int machine) {
@@ -53,8 +60,8 @@ class LinearLaw::Motion {
                 : enter_series(law.fourier, law.kind, factor, machine, series_);
     }
 
-    // The first `rows` coefficients of what depends on the phase alone. piece and ahead: of each machine the stretch
-    // between two breaks, and the phase since the first of them.
+    // The first `rows` coefficients of what depends on the phase alone. piece and ahead: of each machine the
+    // stretch between two breaks, and the phase since the first of them.
     void expand_phase(Expansion<L>& expansion, const Index* piece, const double* ahead, Index rows) {
         const LinearLaw& law = *law_[0];
         expansion.expand(series_, law.terms(), rows, slope_.table);
@@ -72,7 +79,8 @@ class LinearLaw::Motion {
     Series<L> slope() const { return slope_; }
 
     void look_ahead(Index order, V step) {
-        for (Index c = 0; c < slope_.table.width; ++c) ahead_.put(0, c, value_ahead(slope_.table, order, step, c));
+        for (Index c = 0; c < slope_.table.width; ++c)
+            ahead_.put(0, c, value_ahead(slope_.table, order, step, c));
     }
     V force_ahead(V deflection, Index, V, Index block) const {
         return ahead_.at(0, slope_.column ? slope_.column[block] : block) * deflection;

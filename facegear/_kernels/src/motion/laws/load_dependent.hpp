@@ -1,7 +1,8 @@
-// The load-dependent law: between two levels of the amount the force is a cubic, whose coefficients are Fourier series
-// of the phase (docs/mesh_law.md).
+// The load-dependent law: between two levels of the amount the force is a cubic, whose coefficients are
+// Fourier series of the phase (docs/mesh_law.md).
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "motion/constants.hpp"
@@ -14,7 +15,8 @@ struct LoadDependentLaw {
     static constexpr bool curved = true;
 
     Index kinds = 0, level_count = 0, harmonics = 1; // harmonics with the mean
-    std::vector<double> table;  // (kinds, levels, harmonics, 2, 4): of the powers of the amount since the piece began
+    std::vector<double>
+        table; // (kinds, levels, harmonics, 2, 4): of the powers of the amount since the piece began
     std::vector<double> levels; // (kinds, levels), m
     std::vector<Index> kind;    // of each contact
     std::vector<double> breaks; // none: smooth in the phase
@@ -42,37 +44,42 @@ class LoadDependentLaw::Motion {
 
   public:
     Motion(const LoadDependentLaw& law, Index rows)
-        : zeroth_(room_.table<L>(rows, law.contacts())), first_(room_.table<L>(rows, law.contacts())),
-          second_(room_.table<L>(rows, law.contacts())), third_(room_.table<L>(rows, law.contacts())),
-          bend_(room_.table<L>(rows, law.contacts())), rise_(room_.table<L>(rows, law.contacts())),
-          lever_(room_.table<L>(rows, law.contacts())), slope_{room_.table<L>(rows, law.contacts()), nullptr},
-          fours_(room_.numbers(4 * rows * L::lanes)), touching_(zeroth_.width) {}
+        : zeroth_(room_.table<L>(rows, law.contacts())),
+          first_(room_.table<L>(rows, law.contacts())),
+          second_(room_.table<L>(rows, law.contacts())),
+          third_(room_.table<L>(rows, law.contacts())),
+          bend_(room_.table<L>(rows, law.contacts())),
+          rise_(room_.table<L>(rows, law.contacts())),
+          lever_(room_.table<L>(rows, law.contacts())),
+          slope_{room_.table<L>(rows, law.contacts()), nullptr},
+          turned_(2 * law.harmonics * L::lanes),
+          touching_(zeroth_.width),
+          last_(law.contacts() * L::machines) {}
+
+    // Room for parts of series of up to so many terms.
+    void make_room(Index terms) { parts_ = room_.numbers(8 * terms * L::lanes); }
 
     void enter(const LoadDependentLaw& law, double factor, int machine) {
         law_[machine] = &law;
         factor_[machine] = factor;
+        std::fill(last_.begin(), last_.end(), Index{0}); // another law may have other levels
     }
 
     void expand_phase(Expansion<L>&, const Index*, const double*, Index) {}
 
-    // The series of the four coefficients of every contact's piece, odd ones on a back flank. state: as the contacts'.
+    // The series of the four coefficients of every contact's piece, odd ones on a back flank. state: as the
+    // contacts'.
     void expand_pieces(Expansion<L>& expansion, Table<L> state, Index rows) {
+        const Index terms = law_[0]->harmonics, span = 2 * expansion.terms() * L::lanes;
         for (Index b = 0; b < zeroth_.width; ++b) {
             touching_[b] = 0;
-            for (int lane = 0; lane < L::lanes; ++lane) {
-                const Index m = entity_of<L>(b, lane), at = b * L::lanes + lane;
-                const int machine = machine_of<L>(lane);
-                const double piece = m < law_[machine]->contacts() ? state.data[at] : 0.0;
-                own_[lane] = none_;
-                if (piece == 0.0) continue;
-                touching_[b] = 1;
-                const Index number = static_cast<Index>(piece < 0.0 ? -piece : piece);
-                const double factor = factor_[machine], odd = piece > 0.0 ? factor : -factor;
-                const LoadDependentLaw& law = *law_[machine];
-                own_[lane] = fours_ + 4 * rows * lane;
-                expansion.expand_four(law.cubic(m, number), law.harmonics, machine, rows, odd, factor, own_[lane]);
-            }
-            if (touching_[b]) gather(b, rows);
+            for (int lane = 0; lane < L::lanes; ++lane)
+                turn_lane(expansion, state.data[b * L::lanes + lane], b, lane);
+            if (!touching_[b]) continue;
+            gather(expansion.terms());
+            const Table<L>* tables[] = {&zeroth_, &first_, &second_, &third_};
+            for (int power = 0; power < 4; ++power)
+                expansion.expand_parts(parts_ + power * span, terms, rows, *tables[power], b);
         }
     }
 
@@ -118,52 +125,74 @@ class LoadDependentLaw::Motion {
         return total + value_ahead(zeroth_, order, step, block);
     }
 
-    Index piece_of(int machine, Index contact, double amount) const {
+    Index piece_of(int machine, Index contact, double amount) {
+        // Mostly it is the one that was found last.
+        Index& last = last_[contact * L::machines + machine];
+        if (last > 0 && begin_of(machine, contact, last) <= amount && amount < end_of(machine, contact, last))
+            return last;
         Index low = 0, high = law_[machine]->level_count;
         while (high - low > 1) {
             const Index middle = (low + high) / 2;
             (law_[machine]->level(contact, middle) <= amount ? low : high) = middle;
         }
-        return low + 1;
+        return last = low + 1;
     }
-    double begin_of(int machine, Index contact, Index piece) const { return law_[machine]->level(contact, piece - 1); }
+    double begin_of(int machine, Index contact, Index piece) const {
+        return law_[machine]->level(contact, piece - 1);
+    }
     double end_of(int machine, Index contact, Index piece) const {
         return piece < law_[machine]->level_count ? law_[machine]->level(contact, piece) : infinity;
     }
 
   private:
-    // Turn the rows of four coefficients of every lane's contact into rows of lanes.
-    void gather(Index b, Index rows) {
-        const Index stride = zeroth_.stride(), begin = b * L::lanes;
-        for (Index i = 0; i < rows; ++i) {
+    // What the coefficients of one lane's contact are made of; zeros where it is open.
+    void turn_lane(const Expansion<L>& expansion, double piece, Index b, int lane) {
+        const Index m = entity_of<L>(b, lane);
+        const int machine = machine_of<L>(lane);
+        const LoadDependentLaw& law = *law_[machine];
+        Lanes<4>* even = turned_.data() + 2 * law.harmonics * lane;
+        if (m >= law.contacts() || piece == 0.0) {
+            std::fill(even, even + 2 * law.harmonics, Lanes<4>::splat(0.0));
+            return;
+        }
+        touching_[b] = 1;
+        const double size = factor_[machine], odd = piece > 0.0 ? size : -size;
+        Lanes<4> factor = Lanes<4>::splat(size);
+        factor.set(0, odd);
+        factor.set(2, odd);
+        const Index number = static_cast<Index>(piece < 0.0 ? -piece : piece);
+        expansion.turn_four(law.cubic(m, number), law.harmonics, machine, factor, even, even + law.harmonics);
+    }
+
+    // Turn the four coefficients of each lane into lanes of each coefficient, [even, odd][term of span].
+    void gather(Index span) {
+        const Index terms = law_[0]->harmonics;
+        for (Index at = 0; at < 2 * terms; ++at) {
+            double* to = parts_ + (at < terms ? at : span + at - terms) * L::lanes;
+            const auto of_lane = [&](int lane) { return turned_[2 * terms * lane + at]; };
             int lane = 0;
             for (; lane + 4 <= L::lanes; lane += 4) {
-                Lanes<4> zeroth = of_lane(lane, i), first = of_lane(lane + 1, i);
-                Lanes<4> second = of_lane(lane + 2, i), third = of_lane(lane + 3, i);
+                Lanes<4> zeroth = of_lane(lane), first = of_lane(lane + 1), second = of_lane(lane + 2),
+                         third = of_lane(lane + 3);
                 transpose(zeroth, first, second, third);
-                zeroth.store(zeroth_.data + i * stride + begin + lane);
-                first.store(first_.data + i * stride + begin + lane);
-                second.store(second_.data + i * stride + begin + lane);
-                third.store(third_.data + i * stride + begin + lane);
+                zeroth.store(to + lane);
+                first.store(to + 2 * span * L::lanes + lane);
+                second.store(to + 4 * span * L::lanes + lane);
+                third.store(to + 6 * span * L::lanes + lane);
             }
-            for (; lane < L::lanes; ++lane) {
-                const Lanes<4> own = of_lane(lane, i);
-                const Table<L>* tables[] = {&zeroth_, &first_, &second_, &third_};
-                for (int power = 0; power < 4; ++power) tables[power]->row(i)[begin + lane] = own[power];
-            }
+            for (; lane < L::lanes; ++lane)
+                for (int power = 0; power < 4; ++power)
+                    to[2 * power * span * L::lanes + lane] = of_lane(lane)[power];
         }
-    }
-    Lanes<4> of_lane(int lane, Index i) const {
-        return own_[lane] == none_ ? Lanes<4>::splat(0.0) : Lanes<4>::load(own_[lane] + 4 * i);
     }
 
     Room room_;
     Table<L> zeroth_, first_, second_, third_, bend_, rise_, lever_;
     Series<L> slope_;
-    double* fours_; // coefficients of the contact of each lane, or none where it is open
-    static constexpr double* none_ = nullptr;
-    double* own_[L::lanes] = {};
+    std::vector<Lanes<4>> turned_; // [lane][even, odd][term]: of the four coefficients of each lane's contact
+    double* parts_ = nullptr;      // [coefficient][even, odd][term]: of all lanes
     std::vector<char> touching_;
+    std::vector<Index> last_; // piece of every contact that was found last
     const LoadDependentLaw* law_[L::machines] = {};
     double factor_[L::machines] = {};
 };

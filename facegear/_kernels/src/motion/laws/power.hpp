@@ -1,7 +1,8 @@
 // The power law F = factor(s) c x^n of the amount x pressed in, n > 1 (Hertz: 1.5).
 //
-// x^n has no Taylor series at zero. Below a small level it is therefore the cubic a x^2 + b x^3 with slope zero at zero
-// that has value and slope of x^n at the level (Hermite): the first piece; x^n itself is the second.
+// x^n has no Taylor series at zero. Below a small level it is therefore the cubic a x^2 + b x^3 with slope
+// zero at zero that has value and slope of x^n at the level (Hermite): the first piece; x^n itself is the
+// second.
 #pragma once
 
 #include <cmath>
@@ -24,7 +25,8 @@ struct PowerLaw {
     Index contacts() const { return count; }
     Index terms() const { return factor.terms; }
     bool alike(const PowerLaw& other) const {
-        return count == other.count && exponent == other.exponent && level == other.level && terms() == other.terms();
+        return count == other.count && exponent == other.exponent && level == other.level &&
+               terms() == other.terms();
     }
     double square_part() const { return (3.0 - exponent) * std::pow(level, exponent - 2.0); }
     double cube_part() const { return (exponent - 2.0) * std::pow(level, exponent - 3.0); }
@@ -40,11 +42,19 @@ class PowerLaw::Motion {
 
   public:
     Motion(const PowerLaw& law, Index rows)
-        : law_(&law), series_(room_.table<L>(2 * law.terms(), 1)), factor_(room_.table<L>(rows, 1)),
-          side_(room_.table<L>(1, law.count)), second_piece_(room_.table<L>(1, law.count)),
-          amount_(room_.table<L>(rows, law.count)), square_(room_.table<L>(rows, law.count)),
-          shape_(room_.table<L>(rows, law.count)), bent_(room_.table<L>(rows, law.count)),
-          force_(room_.table<L>(rows, law.count)), slope_{room_.table<L>(rows, law.count), nullptr} {}
+        : law_(&law),
+          series_(room_.table<L>(2 * law.terms(), 1)),
+          factor_(room_.table<L>(rows, 1)),
+          side_(room_.table<L>(1, law.count)),
+          second_piece_(room_.table<L>(1, law.count)),
+          amount_(room_.table<L>(rows, law.count)),
+          square_(room_.table<L>(rows, law.count)),
+          shape_(room_.table<L>(rows, law.count)),
+          bent_(room_.table<L>(rows, law.count)),
+          force_(room_.table<L>(rows, law.count)),
+          slope_{room_.table<L>(rows, law.count), nullptr} {}
+
+    void make_room(Index) {}
 
     void enter(const PowerLaw& law, double factor, int machine) {
         enter_series(law.factor, factor * law.size, machine, series_);
@@ -78,7 +88,8 @@ class PowerLaw::Motion {
     void expand_slopes(Table<L>, Index order) {
         const double n = law_->exponent;
         for (Index b = 0; b < side_.width; ++b) {
-            const V second = second_piece_.at(0, b), touching = absolute(side_.at(0, b)), none = V::splat(0.0);
+            const V second = second_piece_.at(0, b), touching = absolute(side_.at(0, b)),
+                    none = V::splat(0.0);
             for (Index i = 0; i <= order; ++i) {
                 const V cubic = V::splat(2.0 * law_->square_part()) * amount_.at(i, b) +
                                 V::splat(3.0 * law_->cube_part()) * square_.at(i, b);
@@ -108,7 +119,8 @@ class PowerLaw::Motion {
         }
         V total = V::splat(0.0);
         for (Index j = 1; j <= i; ++j) {
-            const double weight = (exponent * static_cast<double>(j) - static_cast<double>(i - j)) / static_cast<double>(i);
+            const double weight =
+                (exponent * static_cast<double>(j) - static_cast<double>(i - j)) / static_cast<double>(i);
             total = V::splat(weight) * amount_.at(j, b) * out.at(i - j, b) + total;
         }
         return total / start;
