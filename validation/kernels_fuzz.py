@@ -34,29 +34,39 @@ INTEGERS = (-(2**63), -1000, -1, 0, 1, 2, 7, 2**31, 2**40)
 NUMBERS = (float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1e300, 5e-324)
 
 
-def kernels() -> dict[str, tuple[ModuleType, str]]:
-    """Return module and name of each kernel by its full name, such as `contact.influence`."""
+def kernels() -> dict[str, tuple[ModuleType | type, str]]:
+    """Return what is called: functions, classes with a constructor and methods, by full name.
+
+    The value is the module or class that holds it, and its name there: `contact.PositionSolver.solve` is
+    the method `solve` of the class `PositionSolver`.
+    """
     found = {name: part for name, part in vars(_kernels).items() if isinstance(part, ModuleType)}
     parts = {name: part for name, part in found.items() if not name.startswith("_")}
-    return {
-        f"{part_name}.{name}": (part, name)
-        for part_name, part in parts.items()
-        for name, value in vars(part).items()
-        if type(value).__name__ == "nb_func"
-    }
+    called: dict[str, tuple[ModuleType | type, str]] = {}
+    for part_name, part in parts.items():
+        for name, value in vars(part).items():
+            constructor = vars(value).get("__init__") if isinstance(value, type) else None
+            if type(value).__name__ == "nb_func" or type(constructor).__name__ == "nb_method":
+                called[f"{part_name}.{name}"] = part, name
+            if isinstance(value, type):
+                methods = [key for key, method in vars(value).items() if type(method).__name__ == "nb_method"]
+                for method in methods:
+                    if not method.startswith("__"):
+                        called[f"{part_name}.{name}.{method}"] = value, method
+    return called
 
 
 def record(tests: list[str]) -> dict[str, list[Call]]:
     """Run tests and return the arguments that each kernel answered, copied before the call."""
     calls: dict[str, list[Call]] = defaultdict(list)
     found = kernels()
-    originals = {full: getattr(part, name) for full, (part, name) in found.items()}
-    for full, (part, name) in found.items():
-        setattr(part, name, _recorder(originals[full], calls[full]))
+    originals = {full: getattr(owner, name) for full, (owner, name) in found.items()}
+    for full, (owner, name) in found.items():
+        setattr(owner, name, _recorder(originals[full], calls[full]))
     if pytest.main(["-q", "-n", "0", "-p", "no:cacheprovider", *tests]):
         raise SystemExit("The tests whose calls are to be changed do not pass")
-    for full, (part, name) in found.items():
-        setattr(part, name, originals[full])
+    for full, (owner, name) in found.items():
+        setattr(owner, name, originals[full])
     return calls
 
 
@@ -169,7 +179,7 @@ def _changed_array(array: np.ndarray, chance: random.Random) -> tuple[object, st
 def fuzz(calls: dict[str, list[Call]], number: int, seed: int, log: Path) -> dict[str, dict[str, int]]:
     """Make a number of changed calls of each kernel; return how many answered and how many raised."""
     counts: dict[str, dict[str, int]] = {}
-    for full, (part, name) in sorted(kernels().items()):
+    for full, (owner, name) in sorted(kernels().items()):
         counts[full] = {"recorded": len(calls.get(full, ())), "answered": 0, "raised": 0}
         chance = random.Random(f"{seed} {full}")
         for _ in range(number if calls.get(full) else 0):
@@ -177,7 +187,7 @@ def fuzz(calls: dict[str, list[Call]], number: int, seed: int, log: Path) -> dic
             log.write_text(f"{full} with {told}\n")
             faulthandler.dump_traceback_later(SLOWEST, exit=True)
             try:
-                getattr(part, name)(*positional, **named)
+                getattr(owner, name)(*positional, **named)
             except Exception:
                 counts[full]["raised"] += 1
             else:

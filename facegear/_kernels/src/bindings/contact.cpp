@@ -6,6 +6,8 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -385,6 +387,13 @@ void extend_add(ColumnTable added, Integers place, ColumnTable pivots, ColumnTab
     contact::extend_add(view(added), view(place), front);
 }
 
+Index exchange_steps_of(Index points) {
+    if (points < 0 || points > std::numeric_limits<std::int32_t>::max()) {
+        throw nb::value_error("points must be a number of points");
+    }
+    return contact::exchange_steps(points);
+}
+
 } // namespace
 
 void bind_contact(nb::module_ module) {
@@ -419,7 +428,7 @@ void bind_contact(nb::module_ module) {
     module.def("solve_active_set", &solve_active_set, nb::arg("compliance").noconvert(), nb::arg("gap").noconvert(),
                nb::arg("lever_arm").noconvert(), nb::arg("torque"), nb::arg("start").noconvert(),
                nb::arg("newton_steps"), nb::arg("tolerance"));
-    module.def("exchange_steps", &contact::exchange_steps, nb::arg("points"));
+    module.def("exchange_steps", &exchange_steps_of, nb::arg("points"));
     module.def("add_elements", &add_elements, nb::arg("matrices").noconvert(), nb::arg("rows").noconvert(),
                nb::arg("pointer").noconvert(), nb::arg("index").noconvert(), nb::arg("weight").noconvert(),
                nb::arg("place").noconvert(), nb::arg("pivots").noconvert(), nb::arg("below").noconvert(),
