@@ -120,7 +120,7 @@ def test_shares_of_idlers_are_those_of_planets_around_a_floating_sun(planets):
     "external source",
     "Singh 2010, enumeration of all contact sets at X_e = 0.8",
     capability="sharing_map",
-    module="facegear.transmission.contact_kernel",
+    module="facegear.transmission.block_statics",
 )
 @pytest.mark.parametrize("upper", list(PARTED))
 def test_shares_past_the_loss_of_contact_are_the_enumerated_ones(upper):
