@@ -37,54 +37,82 @@ NUMBERS = (float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1e300, 5e-324)
 
 
 def kernels() -> dict[str, tuple[ModuleType | type, str]]:
-    """Return what is called: functions, classes with a constructor and methods, by full name.
+    """List what is called: functions, classes with a constructor, and methods.
 
-    The value is the module or class that holds it, and its name there: `contact.PositionSolver.solve` is
-    the method `solve` of the class `PositionSolver`.
+    Returns
+    -------
+    dict
+        By full name the module or class that holds it, and its name there: `contact.PositionSolver.solve` is
+        the method `solve` of the class `PositionSolver`.
     """
-    found = {name: part for name, part in vars(_kernels).items() if isinstance(part, ModuleType)}
-    parts = {name: part for name, part in found.items() if not name.startswith("_")}
-    called: dict[str, tuple[ModuleType | type, str]] = {}
+    modules = {name: part for name, part in vars(_kernels).items() if isinstance(part, ModuleType)}
+    parts = {name: part for name, part in modules.items() if not name.startswith("_")}
+    by_name: dict[str, tuple[ModuleType | type, str]] = {}
     for part_name, part in parts.items():
         for name, value in vars(part).items():
             constructor = vars(value).get("__init__") if isinstance(value, type) else None
             if type(value).__name__ == "nb_func" or type(constructor).__name__ == "nb_method":
-                called[f"{part_name}.{name}"] = part, name
+                by_name[f"{part_name}.{name}"] = part, name
             if isinstance(value, type):
                 methods = [key for key, method in vars(value).items() if type(method).__name__ == "nb_method"]
                 for method in methods:
                     if not method.startswith("__"):
-                        called[f"{part_name}.{name}.{method}"] = value, method
-    return called
+                        by_name[f"{part_name}.{name}.{method}"] = value, method
+    return by_name
 
 
 def record(tests: list[str]) -> dict[str, list[Call]]:
-    """Run tests and return the arguments that each kernel answered, copied before the call."""
+    """Run tests and keep the arguments that each kernel answered, copied before the call.
+
+    Parameters
+    ----------
+    tests : list of str
+        What pytest runs.
+
+    Returns
+    -------
+    dict
+        Calls of each kernel by its full name.
+    """
     calls: dict[str, list[Call]] = defaultdict(list)
-    found = kernels()
-    originals = {full: getattr(owner, name) for full, (owner, name) in found.items()}
-    for full, (owner, name) in found.items():
+    modules = kernels()
+    originals = {full: getattr(owner, name) for full, (owner, name) in modules.items()}
+    for full, (owner, name) in modules.items():
         setattr(owner, name, _recorder(originals[full], calls[full]))
     if pytest.main(["-q", "-n", "0", "-p", "no:cacheprovider", *tests]):
         raise SystemExit("The tests whose calls are to be changed do not pass")
-    for full, (owner, name) in found.items():
+    for full, (owner, name) in modules.items():
         setattr(owner, name, originals[full])
     return calls
 
 
 def _recorder(kernel: Callable[..., object], calls: list[Call]) -> Callable[..., object]:
-    def call(*positional: object, **named: object) -> object:
-        made = tuple(map(_copied, positional)), {key: _copied(one) for key, one in named.items()}
-        answer = kernel(*positional, **named)
+    def call(*positional: object, **keywords: object) -> object:
+        copies = (
+            tuple(map(copy_argument, positional)),
+            {key: copy_argument(value) for key, value in keywords.items()},
+        )
+        answer = kernel(*positional, **keywords)
         if len(calls) < CALLS_KEPT:
-            calls.append(made)
+            calls.append(copies)
         return answer
 
     return call
 
 
-def _copied(value: object) -> object:
-    """Return a copy of arrays and plain objects; objects of the kernels are handed on, they never change."""
+def copy_argument(value: object) -> object:
+    """Copy arrays and lists; objects of the kernels are handed on, as they never change.
+
+    Parameters
+    ----------
+    value : object
+        An argument.
+
+    Returns
+    -------
+    object
+        Its copy.
+    """
     if isinstance(value, np.ndarray):
         return value.copy()
     if isinstance(value, list):
@@ -92,26 +120,55 @@ def _copied(value: object) -> object:
     return value
 
 
-def changed_call(call: Call, chance: random.Random) -> tuple[Call, str]:
-    """Return a call with one to three of its arguments changed, and what was changed."""
-    positional, named = list(map(_copied, call[0])), {key: _copied(one) for key, one in call[1].items()}
-    places: list[int | str] = [*range(len(positional)), *named]
-    told = []
-    for place in chance.sample(places, min(len(places), chance.choice((1, 1, 1, 2, 3)))):
-        value = positional[place] if isinstance(place, int) else named[place]
-        value, what = changed(value, chance)
-        if place in COUNTS and isinstance(value, np.ndarray) and value.dtype.kind in "iu":
+def change_call(call: Call, chance: random.Random) -> tuple[Call, str]:
+    """Change one to three arguments of a call.
+
+    Parameters
+    ----------
+    call : tuple
+        Positional arguments and keywords.
+    chance : random.Random
+        Source of the changes.
+
+    Returns
+    -------
+    tuple
+        The changed call, and a text that names the changes.
+    """
+    positional, keywords = (
+        list(map(copy_argument, call[0])),
+        {key: copy_argument(value) for key, value in call[1].items()},
+    )
+    names: list[int | str] = [*range(len(positional)), *keywords]
+    descriptions = []
+    for argument in chance.sample(names, min(len(names), chance.choice((1, 1, 1, 2, 3)))):
+        value = positional[argument] if isinstance(argument, int) else keywords[argument]
+        value, description = change_argument(value, chance)
+        if argument in COUNTS and isinstance(value, np.ndarray) and value.dtype.kind in "iu":
             value = np.minimum(value, 3)
-        told.append(f"{place}: {what}")
-        if isinstance(place, int):
-            positional[place] = value
+        descriptions.append(f"{argument}: {description}")
+        if isinstance(argument, int):
+            positional[argument] = value
         else:
-            named[place] = value
-    return (tuple(positional), named), ", ".join(told)
+            keywords[argument] = value
+    return (tuple(positional), keywords), ", ".join(descriptions)
 
 
-def changed(value: object, chance: random.Random) -> tuple[object, str]:
-    """Return a value in place of an argument, and what it is."""
+def change_argument(value: object, chance: random.Random) -> tuple[object, str]:
+    """Choose a value in place of an argument.
+
+    Parameters
+    ----------
+    value : object
+        The argument.
+    chance : random.Random
+        Source of the change.
+
+    Returns
+    -------
+    tuple
+        The new value, and a text that says what it is.
+    """
     if chance.random() < 0.04:
         value = chance.choice((None, "text", [], object(), -1, np.zeros(0)))
         return value, f"a {type(value).__name__}"
@@ -120,9 +177,11 @@ def changed(value: object, chance: random.Random) -> tuple[object, str]:
     if isinstance(value, bool):
         return not value, "the opposite"
     if isinstance(value, int):
-        return (number := chance.choice(INTEGERS)), str(number)
+        integer = chance.choice(INTEGERS)
+        return integer, str(integer)
     if isinstance(value, float):
-        return (number := chance.choice(NUMBERS)), str(number)
+        number = chance.choice(NUMBERS)
+        return number, str(number)
     if isinstance(value, list | tuple):
         return value[: chance.randrange(len(value) + 1)], "shorter"
     fields = [name for name in dir(value) if not name.startswith("_") and not callable(getattr(value, name))]
@@ -133,13 +192,13 @@ def changed(value: object, chance: random.Random) -> tuple[object, str]:
 
 def _changed_object(value: object, fields: list[str], chance: random.Random) -> tuple[object, str]:
     """Return an object of the same attributes, of which one is changed or missing."""
-    parts = {name: _copied(getattr(value, name)) for name in fields}
+    parts = {name: copy_argument(getattr(value, name)) for name in fields}
     name = chance.choice(fields)
     if chance.random() < 0.1:
         del parts[name]
         return SimpleNamespace(**parts), f"without {name}"
-    parts[name], what = changed(parts[name], chance)
-    return SimpleNamespace(**parts), f"{name}: {what}"
+    parts[name], description = change_argument(parts[name], chance)
+    return SimpleNamespace(**parts), f"{name}: {description}"
 
 
 def _changed_array(array: np.ndarray, chance: random.Random) -> tuple[object, str]:
@@ -150,46 +209,61 @@ def _changed_array(array: np.ndarray, chance: random.Random) -> tuple[object, st
     if kind == "shape" and array.ndim:
         axis = chance.randrange(array.ndim)
         length = array.shape[axis]
-        kept = chance.choice((max(length - 1, 0), length + 1, 1, 2 * length))
+        length_wanted = chance.choice((max(length - 1, 0), length + 1, 1, 2 * length))
         return np.take(
-            array, np.arange(kept) % max(length, 1), axis=axis, mode="clip"
-        ) if length else array, (f"{kept} along axis {axis}")
+            array, np.arange(length_wanted) % max(length, 1), axis=axis, mode="clip"
+        ) if length else array, (f"{length_wanted} along axis {axis}")
     if kind == "axis":
         return (array[None] if chance.random() < 0.5 else array.ravel()[: chance.randrange(3)]), "other axes"
     if kind == "type":
-        kind = chance.choice(
-            (np.float32, np.int32, np.int64, np.float64, np.complex128, np.uint8, object, bool)
-        )
+        dtype = np.dtype(chance.choice(["f4", "i4", "i8", "f8", "c16", "u1", "O", "?"]))
         with np.errstate(all="ignore"):
-            return array.astype(kind), kind.__name__
+            return array.astype(dtype), dtype.name
     if kind == "strides":
         return np.repeat(array, 2, axis=-1)[..., ::2] if array.ndim else array, "every second"
     if kind == "empty":
         return np.zeros([0] * array.ndim, array.dtype), "empty"
     if kind == "content" and array.size:
-        several = [chance.randrange(array.size) for _ in range(chance.choice((1, 1, 4, array.size)))]
-        choices = NUMBERS if array.dtype.kind == "f" else (-1, 0, 1, 100, 127)
+        positions = [chance.randrange(array.size) for _ in range(chance.choice((1, 1, 4, array.size)))]
+        choices: tuple[float, ...] = NUMBERS if array.dtype.kind == "f" else (-1, 0, 1, 100, 127)
         if array.dtype.kind == "i" and array.dtype.itemsize == 8:
             choices = INTEGERS
-        for place in several:
-            array.flat[place] = chance.choice(choices)
+        for position in positions:
+            array.flat[position] = chance.choice(choices)
         return array, "other numbers"
     array.flags.writeable = False
     return array, "read only"
 
 
 def fuzz(calls: dict[str, list[Call]], number: int, seed: int, log: Path) -> dict[str, dict[str, int]]:
-    """Make a number of changed calls of each kernel; return how many answered and how many raised."""
+    """Make changed calls of each kernel.
+
+    Parameters
+    ----------
+    calls : dict
+        Recorded calls by the full name of the kernel.
+    number : int
+        Changed calls of each kernel.
+    seed : int
+        Seed of the changes.
+    log : Path
+        File that names each call before it is made.
+
+    Returns
+    -------
+    dict
+        By full name how many calls were recorded, answered and raised.
+    """
     counts: dict[str, dict[str, int]] = {}
     for full, (owner, name) in sorted(kernels().items()):
         counts[full] = {"recorded": len(calls.get(full, ())), "answered": 0, "raised": 0}
         chance = random.Random(f"{seed} {full}")
         for _ in range(number if calls.get(full) else 0):
-            (positional, named), told = changed_call(chance.choice(calls[full]), chance)
-            log.write_text(f"{full} with {told}\n")
+            (positional, keywords), descriptions = change_call(chance.choice(calls[full]), chance)
+            log.write_text(f"{full} with {descriptions}\n")
             faulthandler.dump_traceback_later(SLOWEST, exit=True)
             try:
-                getattr(owner, name)(*positional, **named)
+                getattr(owner, name)(*positional, **keywords)
             except Exception:
                 counts[full]["raised"] += 1
             else:
@@ -199,7 +273,18 @@ def fuzz(calls: dict[str, list[Call]], number: int, seed: int, log: Path) -> dic
 
 
 def main(arguments: list[str]) -> int:
-    """Record, then fuzz; print the counts of each kernel as JSON."""
+    """Record calls, then change them; print the counts of each kernel as JSON.
+
+    Parameters
+    ----------
+    arguments : list of str
+        Number of changed calls, seed, log file and tests.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
     number, seed, log, *tests = arguments
     faulthandler.enable()
     calls = record(tests)

@@ -109,7 +109,10 @@ def _pushes(transmission: Mapping[str, Any]) -> list[str]:
 
 def _unrepeated(values: Mapping[str, Any]) -> list[str]:
     """Periodic torques that no mesh harmonic has."""
-    transmission, teeth = values["transmission"], values["tooth_pair"]
+    transmission = values["transmission"]
+    if not transmission["excitations"]:
+        return []
+    teeth = values["tooth_pair"]
     pinions = [pinion["name"] for pinion in transmission["pinions"]]
     names = [
         f"order {torque['order']:g} of {torque['body']}"

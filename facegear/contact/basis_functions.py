@@ -75,8 +75,18 @@ class FacingPairs:
     @cached_property
     def kernel(self) -> kernels.FacingPoints:
         """The points as the compiled kernels take them."""
-        teeth = np.ascontiguousarray(self.teeth, np.int64)
-        return kernels.FacingPoints(*map(np.ascontiguousarray, self.points), self.starts, teeth)
+        points, contiguous = self.points, np.ascontiguousarray
+        return kernels.FacingPoints(
+            contiguous(points.gap),
+            contiguous(points.lever_arm),
+            contiguous(points.pinion),
+            contiguous(points.gear),
+            contiguous(points.functions),
+            contiguous(points.values),
+            contiguous(points.area),
+            self.starts,
+            contiguous(self.teeth, np.int64),
+        )
 
 
 class Cover:

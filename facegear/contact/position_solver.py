@@ -120,7 +120,7 @@ class PositionSolver:
         Array
             Approach (m, m) of each function by a unit force on each, m/N.
         """
-        return self._kernel.influence(facing_pairs.kernel, limit)
+        return np.asarray(self._kernel.influence(facing_pairs.kernel, limit))
 
     def approach(self, facing_pairs: FacingPairs, limit: float, forces: Array, cases: Integers) -> Array:
         """Compute the approach of basis functions by forces on them.
@@ -141,7 +141,7 @@ class PositionSolver:
         Array
             Approach (k, t), m, of the functions that are wanted in any case; 0 in the others.
         """
-        return self._kernel.approach(facing_pairs.kernel, limit, forces, cases)
+        return np.asarray(self._kernel.approach(facing_pairs.kernel, limit, forces, cases))
 
 
 def _surface(lattice: Lattice, body: FlankCompliance) -> kernels.Surface:

@@ -70,9 +70,9 @@ def solve_contact(
         raise ValueError(f"torque = {torque}: must be positive")
     if not (lever_arm > 0.0).any():
         raise NotConverged("contact", where, "no candidate point can carry the torque")
-    problem = (np.ascontiguousarray(array, float) for array in (compliance, gap, lever_arm))
+    matrix, gaps, arms = (np.ascontiguousarray(array, float) for array in (compliance, gap, lever_arm))
     begin = np.zeros(gap.size, bool) if start is None else np.ascontiguousarray(start)
-    answer = kernels.solve_active_set(*problem, torque, begin, NEWTON_STEPS, TOLERANCE)
+    answer = kernels.solve_active_set(matrix, gaps, arms, torque, begin, NEWTON_STEPS, TOLERANCE)
     check_solved(answer["steps"], answer["residual"], gap.size, where)
     del answer["force_change"]
     return ContactSolution(torque=torque, **answer)

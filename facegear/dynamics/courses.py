@@ -9,7 +9,7 @@ from collections.abc import Generator, Mapping, Sequence
 from typing import TypeAlias, TypeVar
 
 from facegear.dynamics.integrator.integrator import RunResult
-from facegear.dynamics.many import run_stretches
+from facegear.dynamics.side_by_side import run_stretches
 from facegear.dynamics.stretch import Stretch
 from facegear.errors import NotConverged
 

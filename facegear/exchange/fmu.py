@@ -164,7 +164,7 @@ def _header(model: Model, speed_rpm: float) -> str:
     spins = model.reduced.basis[machine.torque_coordinates].T  # load of each coordinate by each body's torque
     load = model.system.load.copy()
     load[:, 1, 0] -= spins @ machine.torques
-    kernel_law = type(law.compiled).__name__
+    kernel_law = type(law.kernel_law).__name__
     held = linear.translations.ravel()
     bearing = linear.stiffness[held] @ model.reduced.basis
     dampers = linear.bearing_damping * bearing + linear.dampers[held] @ model.reduced.basis

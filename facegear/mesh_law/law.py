@@ -65,9 +65,21 @@ class MeshLaw(Protocol):
     def at_phase(self, cycle: float) -> "MeshLaw":
         """The law at one phase, whatever the phase."""
 
-    def held(self, cycles: Array) -> Held:
-        """The law at K phases for statics. Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any
-        other, statics asks the law itself, position by position.
+    def statics_law(self, cycles: Array) -> Held:
+        """Evaluate the law at some phases for statics.
+
+        Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any other, statics evaluates the forces
+        of the law itself, position by position.
+
+        Parameters
+        ----------
+        cycles : Array
+            Mesh periods since the start (K,), dimensionless.
+
+        Returns
+        -------
+        Held
+            The law at these phases.
         """
 
     @property
@@ -75,8 +87,8 @@ class MeshLaw(Protocol):
         """Its arrays and numbers by the names that the integrator's function for this law takes."""
 
     @property
-    def compiled(self) -> Any:
-        """What the integrator takes of it, one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
+    def kernel_law(self) -> Any:
+        """The law for the integrator's kernels: one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
 
 
 def past_levels(law: MeshLaw, beyond: Array) -> Array:

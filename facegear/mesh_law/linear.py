@@ -133,8 +133,19 @@ class LinearLaw:
         fourier[:, 1, 0] = self.stiffness(np.array([cycle]))[0]
         return LinearLaw(fourier, np.arange(self.contacts))
 
-    def held(self, cycles: Array) -> LinearHeld:
-        """k at some phases."""
+    def statics_law(self, cycles: Array) -> LinearHeld:
+        """Evaluate the stiffness at some phases for statics.
+
+        Parameters
+        ----------
+        cycles : Array
+            Mesh periods since the start (K,), dimensionless.
+
+        Returns
+        -------
+        LinearHeld
+            Stiffness (K, M), N/m.
+        """
         return LinearHeld(self.stiffness(cycles))
 
     @property
@@ -148,8 +159,8 @@ class LinearLaw:
         }
 
     @cached_property
-    def compiled(self) -> motion.LinearLaw:
-        """What the integrator takes of it."""
+    def kernel_law(self) -> motion.LinearLaw:
+        """The law as the integrator's kernels take it."""
         return motion.linear_law(**self.numbers)
 
 

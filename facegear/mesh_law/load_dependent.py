@@ -109,8 +109,19 @@ class LoadDependentLaw:
         tables = zip(self.tables, series, strict=True)
         return LoadDependentLaw(tuple(ForceTable(table.levels, *both) for table, both in tables), kind)
 
-    def held(self, cycles: Array) -> LoadDependentHeld:
-        """The law at some phases."""
+    def statics_law(self, cycles: Array) -> LoadDependentHeld:
+        """Evaluate the law at some phases for statics.
+
+        Parameters
+        ----------
+        cycles : Array
+            Mesh periods since the start (K,), dimensionless.
+
+        Returns
+        -------
+        LoadDependentHeld
+            The law at these phases.
+        """
         angle = 2.0 * np.pi * np.outer(cycles, np.arange(self._coefficients.shape[-1]))
         return LoadDependentHeld(
             np.repeat(self.steepest[None], cycles.size, axis=0),
@@ -128,8 +139,8 @@ class LoadDependentLaw:
         return {"table": _columns(self), "levels": self._levels, "kind": kind}
 
     @cached_property
-    def compiled(self) -> motion.LoadDependentLaw:
-        """What the integrator takes of it."""
+    def kernel_law(self) -> motion.LoadDependentLaw:
+        """The law as the integrator's kernels take it."""
         return motion.load_dependent_law(**self.numbers)
 
 

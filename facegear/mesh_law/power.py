@@ -73,23 +73,77 @@ class PowerLaw:
         return np.array([1.0, self.depth]) / (1.0 + self.depth)
 
     def force(self, cycles: Array, beyond: Array) -> Array:
-        """Forces (..., K, M)."""
+        """Return the forces of the contacts.
+
+        Parameters
+        ----------
+        cycles : Array
+            Mesh periods since the start (K,), dimensionless.
+        beyond : Array
+            Amounts by which the contacts are pressed in (..., K, M), m; negative on a back flank.
+
+        Returns
+        -------
+        Array
+            Forces (..., K, M), N.
+        """
         return np.asarray(self._factor(cycles)[:, None] * np.sign(beyond) * self._shape(np.abs(beyond)))
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Slopes (..., K, M)."""
+        """Return the derivatives of the forces by the amounts.
+
+        Parameters
+        ----------
+        cycles : Array
+            Mesh periods since the start (K,), dimensionless.
+        beyond : Array
+            Amounts by which the contacts are pressed in (..., K, M), m; negative on a back flank.
+
+        Returns
+        -------
+        Array
+            Slopes (..., K, M), N/m.
+        """
         return np.asarray(self._factor(cycles)[:, None] * self._slope(np.abs(beyond)))
 
     def mean(self) -> "PowerLaw":
-        """Without the change over the mesh period."""
+        """Return the law without its change over the mesh period.
+
+        Returns
+        -------
+        PowerLaw
+            The mean law.
+        """
         return replace(self, depth=0.0)
 
     def at_phase(self, cycle: float) -> "PowerLaw":
-        """The law at one phase."""
+        """Return the law at one phase.
+
+        Parameters
+        ----------
+        cycle : float
+            Mesh periods since the start, dimensionless.
+
+        Returns
+        -------
+        PowerLaw
+            The law, which no longer depends on the phase.
+        """
         return replace(self, depth=0.0, size=self.size * float(self._factor(np.array(cycle))))
 
-    def held(self, cycles: Array) -> PowerHeld:
-        """Bounds of the slopes."""
+    def statics_law(self, cycles: Array) -> PowerHeld:
+        """Return the bounds of the slopes for statics.
+
+        Parameters
+        ----------
+        cycles : Array
+            Mesh periods since the start (K,), dimensionless.
+
+        Returns
+        -------
+        PowerHeld
+            Bounds (K, M), N/m.
+        """
         return PowerHeld(np.full((cycles.size, self.contacts), self.steepest[0]))
 
     @property
@@ -104,8 +158,8 @@ class PowerLaw:
         }
 
     @cached_property
-    def compiled(self) -> motion.PowerLaw:
-        """What the integrator takes of it."""
+    def kernel_law(self) -> motion.PowerLaw:
+        """The law as the integrator's kernels take it."""
         return motion.power_law(**self.numbers)
 
     @property

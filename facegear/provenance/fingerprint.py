@@ -119,7 +119,7 @@ def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
 
 
 @cache
-def _text_hash(path: str, size: int, modified: int) -> bytes:
+def _text_hash(path: str, size: int, mtime_ns: int) -> bytes:
     return hashlib.sha256(Path(path).read_bytes()).digest()
 
 
@@ -129,7 +129,7 @@ def _source(path: Path) -> _Source:
 
 
 @cache
-def _looked_up(path: str, size: int, modified: int) -> _Source:
+def _looked_up(path: str, size: int, mtime_ns: int) -> _Source:
     """Texts, as they are compared faster than paths: a start of the workflow asks ten thousand times."""
     text = Path(path).read_bytes()
     key = hashlib.sha256(text).hexdigest()[:32]

@@ -114,7 +114,7 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
     Where every pinion has a bearing of its own and the law has a kernel, the compiled solver takes all
     positions together. Raises NotConverged.
     """
-    held, gaps = law.held(cycles), errors + flank_gaps(machine)
+    held, gaps = law.statics_law(cycles), errors + flank_gaps(machine)
     if has_blocks(machine.resting) and has_kernel(held):
         displacements, forces = _by_blocks(machine.resting, held, gaps)
         if machine.drive_line is not None and machine.resting is not machine:

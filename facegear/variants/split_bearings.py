@@ -28,8 +28,8 @@ LARGEST_K_GAMMA, LEAST_K_GAMMA = 1.3, 0.7
 MARGIN = 0.94
 """Part of what a right split allows that an estimate may reach.
 
-Estimates take a constant mesh stiffness. Over the machines of docs/measured/starters.csv they were up to 5.5 %
-below the numbers of the computed stiffness."""
+Estimates take a constant mesh stiffness. Over the machines of docs/measured/starters.csv they were up to
+5.5 % below the numbers of the computed stiffness."""
 POSITIONS, CYCLES = 2, 120
 """Positions in each mesh cycle, and cycles of the hunting cycle, that an estimate takes."""
 

@@ -14,8 +14,8 @@ EXTRAS = PROJECT["optional-dependencies"]
 IMPORTED_AS = {"scikit-fem": "skfem", "ruamel.yaml": "ruamel"}
 NOT_IMPORTED = {"snakemake", "snakemake-executor-plugin-slurm", "openpyxl"}
 """Programs that are run, and what pandas imports to write a workbook."""
-BROUGHT = {"mpl_toolkits", "pydantic_core"}
-"""Parts of matplotlib and pydantic."""
+BROUGHT = {"contourpy", "mpl_toolkits", "pydantic_core"}
+"""Parts of matplotlib and pydantic, and what matplotlib requires to contour."""
 
 
 def names(requirements):

@@ -12,8 +12,12 @@ CITED = re.compile(r"\b[A-Z]\w+(?: et al\.| and [A-Z]\w+)?,? (?:19|20)\d\d\b")
 def texts():
     for folder in ("facegear", "docs"):
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".py", ".md") and path.name != "references.md" and "joss" not in path.parts:
-                yield path, " ".join(path.read_text(encoding="utf-8").split())
+            if (
+                path.suffix in (".py", ".hpp", ".cpp", ".md")
+                and path.name != "references.md"
+                and "joss" not in path.parts
+            ):
+                yield path, " ".join(path.read_text(encoding="utf-8").replace("\n//", "\n").split())
 
 
 def test_each_reference_is_named_where_its_method_is_used():

@@ -7,20 +7,19 @@ start by closed-form pieces that share nothing with it.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numba import njit
 
 from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.many import run_many
 from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.side_by_side import run_many
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.mesh_law.linear import LinearLaw
+from validation.dynamics.closed_form import LONGEST, Oscillators, run_closed_form
 
 FURTHER = 20_000
 LOOKED_AT = 2_048
@@ -29,9 +28,6 @@ SAME = 1e-5
 """Distance over the length scale within which two states are one."""
 TOGETHER = 50
 """Oscillators judged at a time."""
-LONGEST = 512
-PARTS = 64
-"""Looks for a contact switch in each period of the closed-form run."""
 
 
 @dataclass(frozen=True)
@@ -82,14 +78,17 @@ def random_oscillators(count: int, seed: int = 13) -> Iterator[Oscillator]:
         yield Oscillator(*numbers, *start.tolist())
 
 
-def judge(oscillators: Sequence[Oscillator], settings: Settings) -> list[dict[str, object]]:
+def judge(
+    oscillators: Sequence[Oscillator], settings: Settings, closed_states: Array | None = None
+) -> list[dict[str, object]]:
     """One row each: the label with and without refinement, and what plain running says of both.
 
     agrees: the motion after FURTHER periods is the one named, on the same orbit if it is periodic. reached:
     the undisturbed run from the start comes to that orbit. sensitive: that run's own end changes when its
     tolerance is ten times tighter, so that nobody's is the only right one. The plain runs of all oscillators
-    go side by side.
+    go side by side. `closed_states` holds their states by closed_form_runs, which are computed if it is None.
     """
+    closed_states = closed_form_runs(oscillators, FURTHER) if closed_states is None else closed_states
     tolerance, starts = settings.tolerance, [oscillator.start for oscillator in oscillators]
     responses = [_response(oscillator, settings) for oscillator in oscillators]
     plain = [_response(oscillator, replace(settings, refine=False)) for oscillator in oscillators]
@@ -98,6 +97,7 @@ def judge(oscillators: Sequence[Oscillator], settings: Settings) -> list[dict[st
         map(end_of, plain_runs(oscillators, states, FURTHER, tolerance)),
         map(end_of, plain_runs(oscillators, starts, FURTHER, tolerance)),
         map(end_of, plain_runs(oscillators, starts, FURTHER, 0.1 * tolerance)),
+        map(end_of, closed_states),
     )
     return [_row(*seen) for seen in zip(oscillators, responses, plain, *ends, strict=True)]
 
@@ -113,8 +113,8 @@ def _row(
     later: "OscillatorEnd",
     direct: "OscillatorEnd",
     tighter: "OscillatorEnd",
+    closed_states: "OscillatorEnd",
 ) -> dict[str, object]:
-    closed = end_of(closed_form_run(oscillator, FURTHER))
     return {
         **vars(oscillator),
         "label": response.label,
@@ -123,7 +123,7 @@ def _row(
         "label_later": later.label,
         "agrees": _agrees(response, later),
         "reached": _agrees(response, direct),
-        "reached_closed_form": _agrees(response, closed),
+        "reached_closed_form": _agrees(response, closed_states),
         "sensitive": not _same(direct, tighter),
         "refinement_agrees": response.label == plain.label,
     }
@@ -169,104 +169,44 @@ def plain_runs(
     """States (LOOKED_AT, 2) by time at the ends of the last periods, by our integrator and nothing else."""
     integrators = [Integrator(each.system, each.speed, tolerance) for each in oscillators]
     by_phase = [each.by_phase(start) for each, start in zip(integrators, starts, strict=True)]
-    runs = run_many(integrators, by_phase, periods, kept=LOOKED_AT)
+    runs = run_many(integrators, by_phase, periods, last_periods=LOOKED_AT)
     speeds = [oscillator.speed for oscillator in oscillators]
     return [run.ends[:, :, 0] * np.array([1.0, speed]) for run, speed in zip(runs, speeds, strict=True)]
 
 
+def closed_form_runs(oscillators: Sequence[Oscillator], periods: int) -> Array:
+    """Return the states at the ends of the last periods, by the closed form of each stretch.
+
+    Parameters
+    ----------
+    oscillators : Sequence[Oscillator]
+        Oscillators (n,) with their starts, dimensionless.
+    periods : int
+        Length of the run, in periods of the load.
+
+    Returns
+    -------
+    Array
+        Displacement and velocity (n, min(periods, LOOKED_AT), 2), dimensionless.
+    """
+    rows = [(item.damping, item.mean, item.amplitude * item.speed**2, item.speed) for item in oscillators]
+    starts = np.array([(item.displacement, item.velocity) for item in oscillators])
+    return run_closed_form(Oscillators(*np.array(rows).T), starts, periods, LOOKED_AT)
+
+
 def closed_form_run(oscillator: Oscillator, periods: int) -> Array:
-    """The same by the closed form of each stretch between two switches, which bisection locates."""
-    force = oscillator.amplitude * oscillator.speed**2
-    terms = _Terms(oscillator.damping, oscillator.mean, force, oscillator.speed)
-    states = np.empty((periods, 2))
-    _closed_form(terms, oscillator.displacement, oscillator.velocity, states)
-    return states
-
-
-class _Terms(NamedTuple):
-    """Damping ratio, mean force, alternating force and speed of the equation."""
-
-    damping: float
-    mean: float
-    force: float
-    speed: float
-
-
-@njit(cache=True)
-def _closed_form(terms: _Terms, x: float, v: float, states: Array) -> None:
-    part = 2.0 * np.pi / terms.speed / PARTS
-    for period in range(states.shape[0]):
-        for look in range(PARTS):
-            now, stop = look * part, (look + 1) * part
-            while now < stop:
-                side = 1.0 if x > 1.0 or (x == 1.0 and v > 0.0) else 0.0
-                side = -1.0 if x < -1.0 or (x == -1.0 and v < 0.0) else side
-                x, v, now = _until(terms, x, v, side, now, stop)
-        states[period, 0], states[period, 1] = x, v
-
-
-@njit(cache=True)
-def _until(
-    terms: _Terms, x: float, v: float, side: float, now: float, stop: float
-) -> tuple[float, float, float]:
-    """State and time at the next switch, or at `stop` if there is none before."""
-    end, rate = _moved(terms, x, v, side, now, stop - now)
-    if _inside(end, side):
-        return end, rate, stop
-    low, high = 0.0, stop - now
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if _inside(_moved(terms, x, v, side, now, middle)[0], side):
-            low = middle
-        else:
-            high = middle
-    end, rate = _moved(terms, x, v, side, now, high)
-    edge = 1.0 if end > 0.0 else -1.0
-    return edge, rate, now + high
-
-
-@njit(cache=True)
-def _inside(x: float, side: float) -> bool:
-    return -1.0 <= x <= 1.0 if side == 0.0 else side * x >= 1.0
-
-
-@njit(cache=True)
-def _moved(terms: _Terms, x: float, v: float, side: float, now: float, ahead: float) -> tuple[float, float]:
-    """The linear equation of one stretch: x'' + 2 z x' + k (x - side) = mean + force cos W t, k = 1 or 0."""
-    damping, mean, force, speed = terms
-    stiffness = 1.0 if side != 0.0 else 0.0
-    gap, lag = stiffness - speed**2, 2.0 * damping * speed
-    size = force / (gap**2 + lag**2)
-    cosine, sine = size * gap, size * lag
-    before = cosine * np.cos(speed * now) + sine * np.sin(speed * now)
-    before_rate = speed * (sine * np.cos(speed * now) - cosine * np.sin(speed * now))
-    then = speed * (now + ahead)
-    after = cosine * np.cos(then) + sine * np.sin(then)
-    after_rate = speed * (sine * np.cos(then) - cosine * np.sin(then))
-    decay = np.exp(-damping * ahead)
-    if side == 0.0:
-        drift = mean / (2.0 * damping)
-        free = v - before_rate - drift
-        fade = decay**2
-        moved = x - before + drift * ahead + free * (1.0 - fade) / (2.0 * damping)
-        return moved + after, drift + free * fade + after_rate
-    rest = side + mean
-    natural = np.sqrt(1.0 - damping**2)
-    a = x - before - rest
-    b = (v - before_rate + damping * a) / natural
-    c, s = np.cos(natural * ahead), np.sin(natural * ahead)
-    free = decay * (a * c + b * s)
-    free_rate = decay * (natural * (b * c - a * s) - damping * (a * c + b * s))
-    return rest + free + after, free_rate + after_rate
+    """Return the states (min(periods, LOOKED_AT), 2) of one oscillator, see `closed_form_runs`."""
+    return closed_form_runs([oscillator], periods)[0]
 
 
 def suite(count: int, settings: Settings, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
     """judge() for `count` random oscillators, one row each."""
     rows: list[dict[str, object]] = []
     oscillators = list(random_oscillators(count))
+    closed_states = closed_form_runs(oscillators, FURTHER)
     for begin in range(0, count, TOGETHER):
         of_turn = oscillators[begin : begin + TOGETHER]
-        rows += judge(of_turn, settings)
+        rows += judge(of_turn, settings, closed_states[begin : begin + TOGETHER])
         for _ in of_turn:
             step()
     return pd.DataFrame(rows)

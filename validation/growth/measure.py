@@ -24,14 +24,14 @@ third of their time.
 COLUMNS = ["curve", "size", "seconds", "seconds_largest", "peak_mb", "own_mb", "load"]
 NEGLIGIBLE_MB = 10.0
 """Memory below this cannot be distinguished from what the process itself takes."""
-ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "MKL", "OPENBLAS", "NUMBA")}
+ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "MKL", "OPENBLAS")}
 
 
 def measured(name: str, number: int) -> dict[str, float]:
     """Point `number` of a curve, in this process: size, seconds, peak_mb of the process, own_mb of the call,
     and `called_s` that the longest call took.
 
-    The time is the least of a few calls, the first of which loads machine code; the memory that of the last.
+    The time is the least of a few calls, the first of which loads libraries; the memory that of the last.
     """
     from validation.growth.curves import CURVES
 

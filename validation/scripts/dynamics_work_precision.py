@@ -23,11 +23,11 @@ with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     built = wired_machine(*lumped_sections(**params.machine), harmonics)
-    loaded = facegear.example()._machine()
+    load_dependent = facegear.example()._machine()
     problems = [
         *machine_problems(built, params.speed_rpm),
         oscillator_problem(),
-        *law_problems(built, loaded, params.speed_rpm),
+        *law_problems(built, load_dependent, params.speed_rpm),
     ]
     comparisons = [(problems, all_methods()), (tangent_problems(problems), tangent_methods())]
     step = Progress("methods", sum(len(first) * len(second) for first, second in comparisons)).step

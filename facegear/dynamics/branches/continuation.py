@@ -175,7 +175,7 @@ def _track(
         track.specials += [replace(special, after=base + special.after) for special in located.specials]
         track.points += [*located.inner, *last]
         progress(there)
-        if _cut_at_junction(track):
+        if _cut_at_junction(track, base):
             junction = BranchEnd.SYMMETRY
         if junction is not None:
             end = junction
@@ -273,11 +273,12 @@ def _between_points(
     return Located(specials, located.inner), list(meeting), BranchEnd.DOUBLING
 
 
-def _cut_at_junction(track: _Track) -> bool:
+def _cut_at_junction(track: _Track, begin: int) -> bool:
     """Whether the track has just met a branch point at which it turns round: it ends there, where the other
-    branch goes through, and what follows is its own mirror image.
+    branch goes through, and what follows is its own mirror image. `begin`: number of the point from which the
+    last step went; points that were put inside it do not count as steps.
     """
-    late = [special for special in track.specials if special.after > len(track.points) - 1 - NEAR_JUNCTION]
+    late = [special for special in track.specials if special.after > begin + 1 - NEAR_JUNCTION]
     for special in late:
         if special.kind is Kind.BRANCH and any(o.kind is Kind.FOLD and _at(o, special.point) for o in late):
             before = [o for o in track.specials if o.after < special.after and not _at(o, special.point)]

@@ -10,8 +10,8 @@ from facegear.dynamics.branches.extrema import extrema
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import RING_ROWS
-from facegear.dynamics.many import run_many
 from facegear.dynamics.motion import State
+from facegear.dynamics.side_by_side import run_many
 from facegear.dynamics.steady_state.orbits import monodromy
 
 PARAMETER_STEP = 1e-5

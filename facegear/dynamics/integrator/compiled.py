@@ -21,7 +21,20 @@ def pack(system: System, frequency: float, tolerance: float) -> motion.Machine:
 
 
 def fastest(system: System, frequency: float) -> float:
-    """Bound of the angular frequency of what the system answers with, over the mesh frequency."""
+    """Return a bound of the angular frequencies in the response of a system.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    frequency : float
+        Angular mesh frequency, rad/s.
+
+    Returns
+    -------
+    float
+        Bound over the mesh frequency, dimensionless.
+    """
     natural, harmonics = _fastest(system)
     coupling = system.coupling
     return natural / frequency + harmonics + (coupling.fastest(frequency) if coupling else 0.0)
@@ -29,8 +42,19 @@ def fastest(system: System, frequency: float) -> float:
 
 @lru_cache(maxsize=16)
 def packed_system(system: System) -> motion.System:
-    """A system at 1 rad/s."""
-    return motion.system(law=system.law.compiled, **system_numbers(system))
+    """Pack a system for the kernels; the result is cached by identity.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+
+    Returns
+    -------
+    motion.System
+        The system at an angular mesh frequency of 1 rad/s.
+    """
+    return motion.system(law=system.law.kernel_law, **system_numbers(system))
 
 
 def system_numbers(system: System) -> dict[str, Any]:
@@ -76,26 +100,62 @@ def system_numbers(system: System) -> dict[str, Any]:
 
 @lru_cache(maxsize=16)
 def edges_of(system: System) -> tuple[Array, Array]:
-    """Lower and upper edge (m,) of every row, m; only read.
+    """Return the deflections at which each row of a system comes into contact.
 
-    A clearance within rounding of the deflections is none: its edges could not be distinguished.
+    A clearance within rounding of the deflections is set to zero: its edges could not be distinguished.
+
+    Parameters
+    ----------
+    system : System
+        The system with m rows.
+
+    Returns
+    -------
+    tuple of Array
+        Lower and upper edges (m,), m. The arrays are cached and must not be changed.
     """
-    closed = system.upper - system.lower <= MIN_CLEARANCE * system.scale
-    return np.where(closed, system.upper, system.lower), _contiguous(system.upper)
+    without_clearance = system.upper - system.lower <= MIN_CLEARANCE * system.scale
+    return np.where(without_clearance, system.upper, system.lower), _contiguous(system.upper)
 
 
 @lru_cache(maxsize=16)
 def weights_of(system: System) -> Array:
-    """Largest motion along a mesh or a force of friction that one unit of each coordinate makes, (n,)."""
+    """Return the largest motion that one unit of each coordinate makes along a mesh or a friction force.
+
+    Parameters
+    ----------
+    system : System
+        The system with n coordinates.
+
+    Returns
+    -------
+    Array
+        Weights (n,), dimensionless. The array is cached and must not be changed.
+    """
     rows = [system.mesh_jacobian]
     if system.rubbing is not None:
         rows.append(system.rubbing.directions)
     return np.asarray(np.abs(np.concatenate(rows)).max(axis=0))
 
 
-def make_runner(system: System, order: int, many: bool = False) -> motion.Runner:
-    """Scratch space for runs of machines of one structure: of one, or of `many` side by side."""
-    return motion.runner(packed_system(system), order, many, *_gauss(order // 4 + 1))
+def make_runner(system: System, order: int, in_lanes: bool = False) -> motion.Runner:
+    """Allocate the scratch space for runs of machines of one structure.
+
+    Parameters
+    ----------
+    system : System
+        A system of the structure.
+    order : int
+        Order of the Taylor steps.
+    in_lanes : bool
+        Whether machines run side by side, one in each lane of a vector; otherwise one machine runs alone.
+
+    Returns
+    -------
+    motion.Runner
+        The scratch space. Only one run may use it at a time.
+    """
+    return motion.runner(packed_system(system), order, in_lanes, *_gauss(order // 4 + 1))
 
 
 @cache

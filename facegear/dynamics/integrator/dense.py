@@ -31,10 +31,32 @@ class Extrema(NamedTuple):
 
 
 def steps_of(log: motion.Log) -> Steps:
-    """The steps that a run of one machine has kept."""
+    """Return the steps that a run of one machine has stored.
+
+    Parameters
+    ----------
+    log : motion.Log
+        Log of the run.
+
+    Returns
+    -------
+    Steps
+        Polynomials of the steps.
+    """
     return Steps(*(getattr(log, f"step_{name}") for name in Steps._fields))
 
 
 def extrema_of(log: motion.Log) -> Extrema:
-    """The extrema that a run of one machine has kept."""
+    """Return the extrema that a run of one machine has stored.
+
+    Parameters
+    ----------
+    log : motion.Log
+        Log of the run.
+
+    Returns
+    -------
+    Extrema
+        Deflections where they change direction.
+    """
     return Extrema(log.turning_points, log.turning_counts)

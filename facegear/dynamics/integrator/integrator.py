@@ -25,7 +25,7 @@ from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
 
-DONE, TOO_MANY_STEPS, NOT_FINITE = range(3)
+SUCCESS, TOO_MANY_STEPS, NOT_FINITE = range(3)
 """How the kernels say that a run has ended."""
 
 
@@ -87,8 +87,8 @@ class Integrator:
         self.machine: motion.Machine = pack(system, frequency, tolerance)
         if order is None:
             order = Settings(tolerance=tolerance).taylor_order
-        made = packed_system(system)
-        shares = like is not None and like.order == order and packed_system(like.system).fits(made)
+        kernel_system = packed_system(system)
+        shares = like is not None and like.order == order and packed_system(like.system).fits(kernel_system)
         self.work: motion.Runner = like.work if like is not None and shares else make_runner(system, order)
 
     @property
@@ -217,12 +217,25 @@ class Integrator:
         return extrema_of(log)
 
     def accelerations(self, phase: float, state: Array) -> Array:
-        """Second derivatives (n,) by phase of the coordinates at a phase, rad, and a state (2, n)."""
+        """Return the second derivatives of the coordinates by phase.
+
+        Parameters
+        ----------
+        phase : float
+            Mesh phase, rad.
+        state : Array
+            Coordinates and their derivatives by phase, (2, n), m and m/rad.
+
+        Returns
+        -------
+        Array
+            Second derivatives (n,), m/rad^2.
+        """
         return motion.accelerations(self.work, self.machine, phase, np.ascontiguousarray(state))
 
-    def _run(self, state: Array, periods: int, **asked: Any) -> motion.Log:
-        """A run of this machine alone. Raises NotConverged."""
-        log = run_machines(self.work, [self], [state], [periods], kept=periods, **asked)
+    def _run(self, state: Array, periods: int, **options: Any) -> motion.Log:
+        """Run this machine alone. Raises NotConverged."""
+        log = run_machines(self.work, [self], [state], [periods], last_periods=periods, **options)
         require(int(log.status[0]))
         return log
 
@@ -232,7 +245,7 @@ def run_machines(
     integrators: Sequence[Integrator],
     states: Sequence[Array],
     periods: Sequence[int],
-    kept: int,
+    last_periods: int,
     tangents: Array | None = None,
     samples: int = 0,
     batches: int = 0,
@@ -244,22 +257,58 @@ def run_machines(
     steps: int = 0,
     turns: int = 0,
 ) -> motion.Log:
-    """Run machines of one structure over whole mesh periods from states (2, n).
+    """Run machines of one structure over whole mesh periods. Failures are in the log's `status`.
 
-    kept: of how many of the last periods the ends are kept; tangents (columns, 2, n) of one machine, or
-    (machines, columns, 2, n). The others are as in `Integrator`.
+    Parameters
+    ----------
+    runner : motion.Runner
+        Scratch space for their structure and order, from make_runner().
+    integrators : sequence of Integrator
+        The machines; all have n coordinates and m rows of meshes, flanks and rings.
+    states : sequence of Array
+        Start of each machine: coordinates and their derivatives by phase, (2, n), m and m/rad.
+    periods : sequence of int
+        Number of mesh periods of each machine.
+    last_periods : int
+        Number of last periods whose end states are stored.
+    tangents : Array, optional
+        Disturbances that are moved along, (columns, 2, n) of one machine or (machines, columns, 2, n), any
+        unit.
+    samples : int
+        Number of samples of the coordinates in each period.
+    batches : int
+        Number of batches of the sums.
+    growth : bool
+        Whether the one tangent is brought back to length one after every period.
+    fine : bool
+        Whether steps are as short as tangents need.
+    longest : float
+        Longest step where `fine` is false, rad.
+    begin : float
+        Mesh phase at the start, rad.
+    drift : Array, optional
+        Addition (terms, up to m) to the error in every period by powers of the phase, m/rad^power.
+    steps : int
+        Number of first steps that are stored.
+    turns : int
+        Number of first maxima, and of first minima, that are stored of each deflection.
+
+    Returns
+    -------
+    motion.Log
+        Results of all machines; result_of(), steps_of() and extrema_of() read it.
     """
     first, count = integrators[0], len(integrators)
     n, m = first.size, first.rows
     columns = np.zeros((count, 0, 2, n)) if tangents is None else tangents.reshape(count, -1, 2, n)
-    steps_up_to = [one.longest_step if fine else longest for one in integrators]
+    steps_up_to = [integrator.longest_step if fine else longest for integrator in integrators]
     polynomial = np.zeros((0, m))
     if drift is not None:
         polynomial = np.zeros((len(drift), m))
         polynomial[:, : drift.shape[1]] = drift
     return motion.run(
         runner,
-        [one.machine for one in integrators],
+        [integrator.machine for integrator in integrators],
         starts=np.array(states, dtype=float),
         periods=np.array(periods, dtype=np.int64),
         tangents=np.ascontiguousarray(columns),
@@ -270,23 +319,42 @@ def run_machines(
         batches=batches,
         growth=growth,
         fine=fine,
-        kept=kept,
+        kept=last_periods,
         steps=steps,
         turns=turns,
     )
 
 
 def result_of(log: motion.Log, number: int, integrator: Integrator, periods: int) -> RunResult:
-    """What a machine of a run has left. Raises NotConverged."""
+    """Return the result of one machine of a run. Raises NotConverged.
+
+    Parameters
+    ----------
+    log : motion.Log
+        Log of the run.
+    number : int
+        Index of the machine in the run.
+    integrator : Integrator
+        The machine.
+    periods : int
+        Number of mesh periods that it has run.
+
+    Returns
+    -------
+    RunResult
+        State at the end and all that the run was asked for.
+    """
     require(int(log.status[number]))
     ends = log.ends[number, :periods]
-    shared = len(log.fractions) > 0
+    has_fractions = len(log.fractions) > 0
     return RunResult(
         state=ends[-1],
         ends=ends,
         tangents=log.tangents[number],
         samples=log.samples[number, : periods * (log.samples.shape[1] // log.periods)],
-        fractions=log.fractions[number] / (TAU * periods) if shared else np.zeros((3, integrator.rows)),
+        fractions=log.fractions[number] / (TAU * periods)
+        if has_fractions
+        else np.zeros((3, integrator.rows)),
         divergence=float(log.divergence[number]),
         growth=log.growth[number, :periods] if len(log.growth) else np.zeros(0),
         steps=int(log.steps[number]),
@@ -295,9 +363,23 @@ def result_of(log: motion.Log, number: int, integrator: Integrator, periods: int
 
 
 def disturbance_step(fastest: float, order: int, tolerance: float) -> float:
-    """Step at which the last Taylor term of the fastest disturbance is a hundred times the tolerance.
+    """Return the step at which the last Taylor term of the fastest disturbance is 100 times the tolerance.
 
     The fastest are the most damped; one of half its frequency is then below the tolerance at any order used.
+
+    Parameters
+    ----------
+    fastest : float
+        Angular frequency of the fastest disturbance over the mesh frequency, dimensionless.
+    order : int
+        Order of the Taylor steps.
+    tolerance : float
+        Local error of a step over the length scale, dimensionless.
+
+    Returns
+    -------
+    float
+        Length of the step, rad of mesh phase.
     """
     logarithm = math.log(min(100.0 * tolerance, 0.01))
     for i in range(2, order + 1):
@@ -311,5 +393,5 @@ def require(status: int) -> None:
         TOO_MANY_STEPS: f"a mesh period took more than {motion.MAX_STEPS} steps",
         NOT_FINITE: "the motion grew beyond all bounds",
     }
-    if status != DONE:
+    if status != SUCCESS:
         raise NotConverged("dynamics", "time integration", reported[status])

@@ -48,7 +48,24 @@ class Sums(NamedTuple):
 
 
 def sums_of(log: motion.Log, number: int, n: int, m: int) -> Sums:
-    """What a machine of a run has added up."""
+    """Return the integrals and extremes of one machine of a run.
+
+    Parameters
+    ----------
+    log : motion.Log
+        Log of the run.
+    number : int
+        Index of the machine in the run.
+    n : int
+        Number of coordinates.
+    m : int
+        Number of rows of meshes, flanks and rings.
+
+    Returns
+    -------
+    Sums
+        Integrals without batches where the run was made without.
+    """
     if not len(log.coordinates):
         return Sums(
             *(np.zeros(shape) for shape in ((n,), (m,), (0, n), (0, n, n), (0, m), (0, m), (2, m))),

@@ -15,7 +15,7 @@ from test_bending_gears import machine as bending_gears
 from test_dynamics_hard_cases import CASES
 
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.many import WIDTH, _groups, run_many, run_stretches
+from facegear.dynamics.side_by_side import WIDTH, _groups, run_many, run_stretches
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.dynamics.stretch import Stretch
 from facegear.errors import NotConverged
@@ -108,7 +108,7 @@ def apart(found, starts, periods):
     "second implementation",
     "the integrator of a single machine, whose vectors hold its meshes",
     capability="branches_starts",
-    module="facegear.dynamics.many",
+    module="facegear.dynamics.side_by_side",
 )
 @pytest.mark.parametrize("name", [*MACHINES, *OSCILLATORS])
 def test_a_machine_moves_beside_others_as_it_does_alone(name):
@@ -136,7 +136,7 @@ def test_more_machines_than_lanes_come_out_in_their_order_with_their_samples():
         for i, speed in enumerate(speeds_of)
     ]
     starts = [np.array([[1.0 + 0.05 * i], [0.1]]) for i in range(count)]
-    runs = run_many(found, starts, 5, kept=2, samples=12)
+    runs = run_many(found, starts, 5, last_periods=2, samples=12)
     for one, start, run in zip(found, starts, runs, strict=True):
         alone = one.run(start, 5, samples=12)
         assert run.ends.shape == (2, 2, 1)

@@ -103,7 +103,7 @@ def two_linear_meshes():
     "manufactured",
     "motion in contact whose disturbances solve Ermakov's equation",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.tangents",
+    module="facegear.dynamics.integrator.integrator",
 )
 @pytest.mark.parametrize("make", [curved_mesh, two_linear_meshes])
 def test_tangents_of_a_known_motion_converge_with_the_tolerance(make):

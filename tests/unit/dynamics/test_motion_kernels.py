@@ -1,4 +1,4 @@
-"""What the kernels of motion refuse: arrays that do not fit raise, and nothing is read beyond their ends."""
+"""The kernels of motion refuse arrays that do not fit, and read nothing beyond their ends."""
 
 import numpy as np
 import pytest

@@ -27,7 +27,7 @@ def test_a_law_has_its_header_its_runners_its_python_file_and_an_oscillator(law)
     made = getattr(importlib.import_module(f"facegear.mesh_law.{name}"), f"{law}Law")
     assert callable(getattr(motion, f"{name}_law"))
     own = [system.law for system, _ in OSCILLATORS.values() if isinstance(system.law, made)]
-    assert own and all(type(each.compiled) is getattr(motion, f"{law}Law") for each in own)
+    assert own and all(type(each.kernel_law) is getattr(motion, f"{law}Law") for each in own)
 
 
 def test_the_recipe_names_files_that_are_there():

@@ -50,7 +50,7 @@ def path_stiffness():
 @against(
     "external source",
     "Singh 2010, formula and public numbers for idlers",
-    capability="statics",
+    capability="sharing_map",
     module="facegear.transmission.statics",
 )
 @pytest.mark.parametrize(("idlers", "upper"), list(SHARES))
@@ -74,7 +74,7 @@ def test_shares_of_idlers_are_the_printed_ones(idlers, upper):
 @against(
     "external source",
     "Singh 2010, thresholds 1 / (N - 3) and 1 / (N - 1)",
-    capability="statics",
+    capability="sharing_map",
     module="facegear.transmission.statics",
 )
 @pytest.mark.parametrize(("idlers", "upper"), [(3, HELD), (5, HELD), (5, FLOATING), (6, FLOATING)])
@@ -103,7 +103,7 @@ PLANETS = {
 @against(
     "external source",
     "Ligata et al. 2009, planet load shares with one planet out of place",
-    capability="statics",
+    capability="sharing_map",
     module="facegear.transmission.statics",
 )
 @pytest.mark.parametrize("planets", list(PLANETS))
@@ -119,8 +119,8 @@ def test_shares_of_idlers_are_those_of_planets_around_a_floating_sun(planets):
 @against(
     "external source",
     "Singh 2010, enumeration of all contact sets at X_e = 0.8",
-    capability="statics",
-    module="facegear.transmission.contact_kernel",
+    capability="sharing_map",
+    module="facegear.transmission.block_statics",
 )
 @pytest.mark.parametrize("upper", list(PARTED))
 def test_shares_past_the_loss_of_contact_are_the_enumerated_ones(upper):
@@ -176,7 +176,7 @@ def fits_at(place, teeth):
 @against(
     "external source",
     "Zhao and Li 2018, whole pitches between the pinions of a concentric face gear",
-    capability="statics",
+    capability="sharing_map",
     module="facegear.transmission.assembly",
 )
 @pytest.mark.parametrize("teeth", [120, 143])

@@ -71,7 +71,7 @@ def pressed(held, forces, amounts):
 def test_compiled_statics_see_the_same_law():
     cycles, law = np.array([0.1, 0.85]), replace(LAW, kind=np.arange(AMOUNTS.size - 1) % 2)
     forces = law.force(cycles, np.tile(AMOUNTS[1:], (2, 1)))
-    found = pressed(law.held(cycles), forces, AMOUNTS[1:])
+    found = pressed(law.statics_law(cycles), forces, AMOUNTS[1:])
     np.testing.assert_allclose(found, forces, rtol=1e-12, atol=1e-12)
 
 

@@ -61,7 +61,7 @@ def held_forces(machine):
     gaps = (constant_errors(machine) + flank_gaps(machine))[None]
     law = linear_law(gaps.size * [FLAT])
     start = np.zeros(springs.loads.size)
-    _, forces, residual = settle_all(springs, law.held(np.zeros(1)), gaps, TOLERANCE, start)
+    _, forces, residual = settle_all(springs, law.statics_law(np.zeros(1)), gaps, TOLERANCE, start)
     assert residual[0] < 1e-12
     drive, back = np.split(forces[0], 2)
     return drive - back

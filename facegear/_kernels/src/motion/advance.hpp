@@ -30,7 +30,7 @@ typename L::S rest_of_period(Work<L, Law>& w) {
 // The forces that the recurrence does not need, where steps or switches do.
 template <class L, class Law>
 void expand_last_forces(Work<L, Law>& w) {
-    if (!Law::curved && !w.shape->push_only) return;
+    if (!w.all_forces || (!Law::curved && !w.shape->push_only)) return;
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
         for (Index i = w.order - 1; i <= w.order; ++i) {
             const auto force = w.law.force(w.deflection, i, b);

@@ -64,33 +64,56 @@ void set_state(Work<L, Law>& w, Index contact, int machine, double state) {
     of(w.edge) = edge;
 }
 
-// The pieces of a curved law that contacts of a block are in, whose amounts lie beyond the edges.
+// The piece of one contact's law that holds its amount beyond the edge, or where it begins if the contact
+// stands there.
+template <class L, class Law>
+void find_piece(Work<L, Law>& w, Index b, int lane, double margin) {
+    const Index contact = entity_of<L>(b, lane), at = b * L::lanes + lane;
+    const int machine = machine_of<L>(lane);
+    double& state = w.state.data[at];
+    double& level = w.level.data[at];
+    if (level != 0.0 || w.lower.data[at] >= w.upper.data[at]) return;
+    const double bound = state > 0.0 ? w.upper.data[at] : w.lower.data[at], sign = state;
+    const double amount = std::fabs(w.deflection.data[at] - bound);
+    const Index piece = w.law.piece_of(machine, contact, amount);
+    state = sign * static_cast<double>(piece);
+    if (piece > 1 && amount - w.law.begin_of(machine, contact, piece) <= margin)
+        level = state;
+    else if (w.law.end_of(machine, contact, piece) - amount <= margin)
+        level = state + sign;
+    if (level != 0.0) state = state_beside(level, w.deflection.row(1)[at]);
+}
+
+// The pieces of a curved law that contacts of a block are in, and where they begin and end. Mostly they are
+// those that were found last.
 template <class L, class Law>
 void find_pieces(Work<L, Law>& w, Index b, typename L::V margin, typename L::V& begin, typename L::V& end) {
-    for (int lane = 0; lane < L::lanes; ++lane) {
-        const Index contact = entity_of<L>(b, lane), at = b * L::lanes + lane;
-        const int machine = machine_of<L>(lane);
-        double& state = w.state.data[at];
-        double& level = w.level.data[at];
-        if (contact >= w.shape->contacts || (state == 0.0 && level == 0.0)) continue;
-        if (level == 0.0 && w.lower.data[at] < w.upper.data[at]) {
-            const double bound = state > 0.0 ? w.upper.data[at] : w.lower.data[at], sign = state;
-            const double amount = std::fabs(w.deflection.data[at] - bound);
-            const Index piece = w.law.piece_of(machine, contact, amount);
-            const double from = w.law.begin_of(machine, contact, piece),
-                         to = w.law.end_of(machine, contact, piece);
-            state = sign * static_cast<double>(piece);
-            if (piece > 1 && amount - from <= margin[lane])
-                level = state;
-            else if (to - amount <= margin[lane])
-                level = state + sign;
-            if (level != 0.0) state = state_beside(level, w.deflection.row(1)[at]);
-        }
-        double from, to;
-        ends_of_piece(w, contact, machine, state, from, to);
-        begin.set(lane, from);
-        end.set(lane, to);
+    using V = typename L::V;
+    const V none = V::splat(0.0), one = V::splat(1.0), side = w.state.at(0, b),
+            known = w.known_state.at(0, b);
+    const V lower = w.lower.at(0, b), upper = w.upper.at(0, b), on_level = absolute(w.level.at(0, b));
+    const V amount = absolute(w.deflection.at(0, b) - where_positive(side, upper, lower));
+    const V from = w.known_begin.at(0, b), to = w.known_end.at(0, b);
+    V same = where_positive(smaller(amount - from, to - amount) - margin, one, none);
+    same = where_positive(side * known, same, none);
+    same = where_positive(on_level, none, where_positive(upper - lower, same, none));
+    w.state.put(0, b, where_positive(same, known, side));
+    begin = where_positive(same, from, none);
+    end = where_positive(same, to, V::splat(infinity));
+    const V asked = where_positive(same, none, absolute(side) + on_level);
+    const unsigned lanes = positive_lanes(asked);
+    for (int lane = 0; lanes != 0 && lane < L::lanes; ++lane) {
+        const Index contact = entity_of<L>(b, lane);
+        if (!((lanes >> lane) & 1u) || contact >= w.shape->contacts) continue;
+        find_piece(w, b, lane, margin[lane]);
+        double first, last;
+        ends_of_piece(w, contact, machine_of<L>(lane), w.state.data[b * L::lanes + lane], first, last);
+        begin.set(lane, first);
+        end.set(lane, last);
     }
+    w.known_state.put(0, b, w.state.at(0, b));
+    w.known_begin.put(0, b, begin);
+    w.known_end.put(0, b, end);
 }
 
 // Contact states from deflection and, on a level of the law, its direction of motion.

@@ -206,6 +206,26 @@ typename L::S first_switch(Work<L, Law>& w) {
     return first;
 }
 
+// The two levels that deflections of a block may pass, and whether (1) they stand on them: open, a contact
+// may reach either edge; pressed in, both ends of the piece of its law.
+template <class V>
+struct Levels {
+    V near, far, on_near, on_far;
+};
+template <class L, class Law>
+Levels<typename L::V> levels_of(const Work<L, Law>& w, Index b) {
+    using V = typename L::V;
+    const V one = V::splat(1.0), none = V::splat(0.0);
+    const V side = w.side.at(0, b), touching = absolute(side), state = w.state.at(0, b),
+            level = w.level.at(0, b);
+    const V on_level = where_positive(absolute(level), one, none);
+    const auto standing = [&](V number) { return where_positive(absolute(level - number), none, on_level); };
+    return {where_positive(touching, none, w.upper.at(0, b)),
+            where_positive(touching, w.extent.at(0, b), w.lower.at(0, b)),
+            standing(where_positive(touching, state, one)),
+            standing(where_positive(touching, state + side, -one))};
+}
+
 // Shorten the step of each machine to the first contact switch inside it.
 template <class L, class Law>
 void until_switch(Work<L, Law>& w) {
@@ -213,22 +233,14 @@ void until_switch(Work<L, Law>& w) {
     if (!w.shape->opens) return;
     const V one = V::splat(1.0), none = V::splat(0.0);
     std::fill(w.way_counts, w.way_counts + L::machines, Index{0});
-    const auto same = [&](V a, V b) { return where_positive(absolute(a - b), none, one); };
     for (Index b = 0; b < w.deflection.width; ++b) {
-        const V lower = w.lower.at(0, b), upper = w.upper.at(0, b), level = w.level.at(0, b);
-        const V able = where_positive(upper - lower, one, none);
+        const V able = where_positive(w.upper.at(0, b) - w.lower.at(0, b), one, none);
         if (positive_lanes(able) == 0) continue;
-        const V side = w.side.at(0, b), touching = absolute(side), state = w.state.at(0, b);
         put_down(w, b);
         const Reach<V> reach = reach_of(w.scaled.data(), w.order);
-        const V on_level = where_positive(absolute(level), one, none);
-        // Open, a contact may reach either edge; pressed in, both ends of the piece of its law.
-        const V near = where_positive(touching, none, upper),
-                near_number = where_positive(touching, state, one);
-        look_at_level(w, near, where_positive(on_level, same(level, near_number), none), able, reach);
-        const V far = where_positive(touching, w.extent.at(0, b), lower);
-        const V far_number = where_positive(touching, state + side, -one);
-        look_at_level(w, far, where_positive(on_level, same(level, far_number), none), able, reach);
+        const Levels<V> levels = levels_of(w, b);
+        look_at_level(w, levels.near, levels.on_near, able, reach);
+        look_at_level(w, levels.far, levels.on_far, able, reach);
         if (w.shape->push_only && b < blocks_of<L>(w.shape->contacts)) look_at_force(w, b);
     }
     w.length = w.length * first_switch(w);

@@ -41,8 +41,9 @@ struct Work {
           finder(rows) {
         law.make_room(expansion.terms());
         for (Table<L>* each : {&omega_squared, &damping, &weights, &sample}) *each = room.table<L>(1, n);
-        for (Table<L>* each : {&mesh_damping, &lower, &upper, &leverage, &force, &state, &side, &level,
-                               &active, &acting, &edge, &extent, &parting, &was_acting})
+        for (Table<L>* each :
+             {&mesh_damping, &lower, &upper, &leverage, &force, &state, &side, &level, &active, &acting,
+              &edge, &known_state, &known_begin, &known_end, &extent, &parting, &was_acting})
             *each = room.table<L>(1, m);
         for (Table<L>* each : {&y, &load, &turn}) *each = room.table<L>(rows, n);
         for (Table<L>* each : {&deflection, &turned, &elastic}) *each = room.table<L>(rows, m);
@@ -84,6 +85,7 @@ struct Work {
             lower.one(0, row, lane) = system.lower[row];
             upper.one(0, row, lane) = system.upper[row];
             leverage.one(0, row, lane) = system.leverage[row];
+            known_state.one(0, row, lane) = 0.0;
         }
         enter_series(system.error, system.error_kind, 1.0, lane, error_series);
         enter_series(system.error, 1.0, lane, error_of_kinds);
@@ -140,6 +142,8 @@ struct Work {
     // `edge`, and the piece ends at `extent`. `parting` is 1 where the force of a contact that only pushes is
     // zero now.
     Table<L> state, side, level, active, acting, edge, extent, parting;
+    Table<L> known_state, known_begin, known_end; // pieces that were found last, and where they begin and end
+    bool all_forces = true; // whether the forces are needed up to the order of the steps
 
     Table<L> ways, way_changes, way_ignores; // polynomials that may have a zero in the step
     Index way_counts[L::machines] = {};

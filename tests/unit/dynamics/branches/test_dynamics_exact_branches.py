@@ -254,7 +254,7 @@ def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
     assert abs(deepest + shallowest) > 1e-3
     assert np.abs(period_map.gap(point.z, point.u)).max() < 1e-9
     middle = aside.points[len(aside.points) // 2]
-    for largest in (0.3, 0.05, 0.011):
+    for largest in (0.3, 0.1, 0.05, 0.02, 0.011):
         again = follow(period_map, middle, ContinuationSettings(0.345, 0.6, ds_max=largest))
         assert again.ends[0] is BranchEnd.SYMMETRY, "its mirror image is a branch of its own"
         agrees("end of the branch without symmetry", again.points[0].value, 0.348540186191, relative=1e-8)

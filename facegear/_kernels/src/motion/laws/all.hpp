@@ -1,8 +1,8 @@
 // The laws that contacts can have. A new one is a header like linear.hpp, and its name here.
 //
-// A law offers, beside its numbers: `curved`, whether the slope depends on the amount; `breaks`;
-// `contacts()`; `terms()`, the harmonics with the mean; `alike(other)`, whether they may share scratch space;
-// and Motion<L> with
+// A law offers, beside its numbers: `curved`, whether the slope depends on the amount; `ahead_by_forces`,
+// whether force_ahead needs all coefficients of the forces; `breaks`; `contacts()`; `terms()`, the harmonics
+// with the mean; `alike(other)`, whether they may share scratch space; and Motion<L> with
 //     make_room(terms)                                of series of up to so many terms
 //     enter(law, factor, machine)                     take the numbers of a machine, forces times the factor
 //     expand_phase(expansion, piece, ahead, rows)     coefficients of what depends on the phase alone

@@ -14,7 +14,7 @@
 namespace facegear::motion {
 
 struct LinearLaw {
-    static constexpr bool curved = false;
+    static constexpr bool curved = false, ahead_by_forces = false;
 
     FourierRows fourier;     // k of each kind, N/m
     std::vector<Index> kind; // of each contact

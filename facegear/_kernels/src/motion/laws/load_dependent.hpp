@@ -12,7 +12,7 @@
 namespace facegear::motion {
 
 struct LoadDependentLaw {
-    static constexpr bool curved = true;
+    static constexpr bool curved = true, ahead_by_forces = false;
 
     Index kinds = 0, level_count = 0, harmonics = 1; // harmonics with the mean
     std::vector<double>
@@ -53,8 +53,7 @@ class LoadDependentLaw::Motion {
           lever_(room_.table<L>(rows, law.contacts())),
           slope_{room_.table<L>(rows, law.contacts()), nullptr},
           turned_(2 * law.harmonics * L::lanes),
-          touching_(zeroth_.width),
-          last_(law.contacts() * L::machines) {}
+          touching_(zeroth_.width) {}
 
     // Room for parts of series of up to so many terms.
     void make_room(Index terms) { parts_ = room_.numbers(8 * terms * L::lanes); }
@@ -62,7 +61,6 @@ class LoadDependentLaw::Motion {
     void enter(const LoadDependentLaw& law, double factor, int machine) {
         law_[machine] = &law;
         factor_[machine] = factor;
-        std::fill(last_.begin(), last_.end(), Index{0}); // another law may have other levels
     }
 
     void expand_phase(Expansion<L>&, const Index*, const double*, Index) {}
@@ -125,17 +123,13 @@ class LoadDependentLaw::Motion {
         return total + value_ahead(zeroth_, order, step, block);
     }
 
-    Index piece_of(int machine, Index contact, double amount) {
-        // Mostly it is the one that was found last.
-        Index& last = last_[contact * L::machines + machine];
-        if (last > 0 && begin_of(machine, contact, last) <= amount && amount < end_of(machine, contact, last))
-            return last;
+    Index piece_of(int machine, Index contact, double amount) const {
         Index low = 0, high = law_[machine]->level_count;
         while (high - low > 1) {
             const Index middle = (low + high) / 2;
             (law_[machine]->level(contact, middle) <= amount ? low : high) = middle;
         }
-        return last = low + 1;
+        return low + 1;
     }
     double begin_of(int machine, Index contact, Index piece) const {
         return law_[machine]->level(contact, piece - 1);
@@ -192,7 +186,6 @@ class LoadDependentLaw::Motion {
     std::vector<Lanes<4>> turned_; // [lane][even, odd][term]: of the four coefficients of each lane's contact
     double* parts_ = nullptr;      // [coefficient][even, odd][term]: of all lanes
     std::vector<char> touching_;
-    std::vector<Index> last_; // piece of every contact that was found last
     const LoadDependentLaw* law_[L::machines] = {};
     double factor_[L::machines] = {};
 };

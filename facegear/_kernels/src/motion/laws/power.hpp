@@ -15,7 +15,7 @@
 namespace facegear::motion {
 
 struct PowerLaw {
-    static constexpr bool curved = true;
+    static constexpr bool curved = true, ahead_by_forces = true;
 
     FourierRows factor; // of all contacts: one kind
     double size = 1.0, exponent = 1.5, level = 1e-3;

@@ -24,21 +24,40 @@ def run_many(
     integrators: Sequence[Integrator],
     starts: Sequence[Array],
     periods: int,
-    kept: int | None = None,
+    last_periods: int | None = None,
     samples: int = 0,
     fewest: int = FEWEST,
 ) -> list[RunResult]:
-    """Run machines from starts (2, n) by phase, with the steps and to the errors of `Integrator.run`.
+    """Run machines with the steps and to the errors of `Integrator.run`.
 
-    kept: states at the ends of how many of the last periods are kept, None for all. Raises NotConverged if
-    any of the runs fails. fewest: as in run_stretches().
+    Raises NotConverged if any of the runs fails.
+
+    Parameters
+    ----------
+    integrators : sequence of Integrator
+        The machines, in any order and of any structures.
+    starts : sequence of Array
+        Start of each machine: coordinates and their derivatives by phase, (2, n), m and m/rad.
+    periods : int
+        Number of mesh periods.
+    last_periods : int, optional
+        Number of last periods whose end states are returned; all if None.
+    samples : int
+        Number of samples of the coordinates in each period.
+    fewest : int
+        Number of machines of one structure from which they run side by side.
+
+    Returns
+    -------
+    list of RunResult
+        Result of each machine.
     """
     stretches = [
         Stretch(integrator, start, periods, samples=samples)
         for integrator, start in zip(integrators, starts, strict=True)
     ]
     runs = []
-    for run in run_stretches(stretches, kept, fewest):
+    for run in run_stretches(stretches, last_periods, fewest):
         if isinstance(run, NotConverged):
             raise run
         runs.append(run)
@@ -46,41 +65,54 @@ def run_many(
 
 
 def run_stretches(
-    stretches: Sequence[Stretch], kept: int | None = None, fewest: int = FEWEST
+    stretches: Sequence[Stretch], last_periods: int | None = None, fewest: int = FEWEST
 ) -> list[RunResult | NotConverged]:
-    """Run stretches of many machines; what one fails with stands in the place of its result.
+    """Run stretches of many machines, side by side where they share a structure and a request.
 
-    Machines of one structure that are asked for the same run side by side; those of which there are fewer
-    than `fewest` run one after the other. kept: as in run_many().
+    Parameters
+    ----------
+    stretches : sequence of Stretch
+        The stretches, in any order.
+    last_periods : int, optional
+        Number of last periods whose end states are returned; all if None.
+    fewest : int
+        Number of stretches of one structure and request from which they run side by side; fewer run one
+        after the other.
+
+    Returns
+    -------
+    list of RunResult or NotConverged
+        Result of each stretch, or the error that it failed with.
     """
     runs: dict[int, RunResult | NotConverged] = {}
-    for alike in _groups(stretches) if len(stretches) >= fewest else ():
-        if numbers := _in_lanes({number: stretches[number].periods for number in alike}, fewest):
-            group = [stretches[number] for number in numbers]
-            runs |= zip(numbers, _side_by_side(group, kept), strict=True)
+    for group in _groups(stretches) if len(stretches) >= fewest else ():
+        if numbers := _in_lanes({number: stretches[number].periods for number in group}, fewest):
+            group_runs = _side_by_side([stretches[number] for number in numbers], last_periods)
+            runs |= zip(numbers, group_runs, strict=True)
     return [
-        runs[number] if number in runs else _alone(stretch, kept) for number, stretch in enumerate(stretches)
+        runs[number] if number in runs else _alone(stretch, last_periods)
+        for number, stretch in enumerate(stretches)
     ]
 
 
 def _groups(stretches: Sequence[Stretch]) -> list[list[int]]:
     """Numbers of the stretches that may run side by side."""
     structures: list[motion.System] = []
-    known: dict[motion.System, int] = {}
+    structure_of: dict[motion.System, int] = {}
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
     for number, stretch in enumerate(stretches):
         system = packed_system(stretch.integrator.system)
-        if system not in known:
-            fitting = (place for place, other in enumerate(structures) if other.fits(system))
-            known[system] = next(fitting, len(structures))
-            if known[system] == len(structures):
+        if system not in structure_of:
+            fitting = (index for index, structure in enumerate(structures) if structure.fits(system))
+            structure_of[system] = next(fitting, len(structures))
+            if structure_of[system] == len(structures):
                 structures.append(system)
-        groups[(known[system], stretch.integrator.order, *stretch.asks)].append(number)
+        groups[(structure_of[system], stretch.integrator.order, *stretch.asks)].append(number)
     return list(groups.values())
 
 
 def _in_lanes(periods: Mapping[int, int], fewest: int) -> list[int]:
-    """Those of machines that are alike, with their mesh periods by number, which run in lanes, longest first.
+    """Choose which machines of one structure run in lanes, from the mesh periods of each; longest first.
 
     Lanes take as long for one machine as for all: time is counted as if each period of theirs cost as much as
     `fewest` of a single run. The longest run singly where the other lanes would wait for them.
@@ -100,24 +132,26 @@ def _busy(lengths: Sequence[int], lanes: int) -> int:
     return max(ends)
 
 
-def _alone(stretch: Stretch, kept: int | None) -> RunResult | NotConverged:
+def _alone(stretch: Stretch, last_periods: int | None) -> RunResult | NotConverged:
     try:
         run = stretch.run()
     except NotConverged as failure:
         return failure
-    return run if kept is None else replace(run, ends=run.ends[max(stretch.periods - kept, 0) :])
+    if last_periods is None:
+        return run
+    return replace(run, ends=run.ends[max(stretch.periods - last_periods, 0) :])
 
 
-def _side_by_side(stretches: Sequence[Stretch], kept: int | None) -> list[RunResult | NotConverged]:
-    """Runs of machines of one structure that are asked for the same."""
+def _side_by_side(stretches: Sequence[Stretch], last_periods: int | None) -> list[RunResult | NotConverged]:
+    """Run stretches of one structure and request in lanes."""
     first, periods = stretches[0], [stretch.periods for stretch in stretches]
     integrators = [stretch.integrator for stretch in stretches]
     log = run_machines(
-        make_runner(first.integrator.system, first.integrator.order, many=True),
+        make_runner(first.integrator.system, first.integrator.order, in_lanes=True),
         integrators,
         [stretch.state for stretch in stretches],
         periods,
-        kept=max(periods) if kept is None else kept,
+        last_periods=max(periods) if last_periods is None else last_periods,
         tangents=np.array([stretch.disturbances for stretch in stretches]),
         samples=first.samples,
         batches=first.batches,
@@ -128,7 +162,7 @@ def _side_by_side(stretches: Sequence[Stretch], kept: int | None) -> list[RunRes
 
 
 def _result(log: motion.Log, number: int, stretch: Stretch) -> RunResult | NotConverged:
-    """What a machine of a run has left."""
+    """Return the result of one machine of a run, or the error that it failed with."""
     try:
         return result_of(log, number, stretch.integrator, stretch.periods)
     except NotConverged as failure:
