@@ -1,7 +1,8 @@
 // Dynamic model of a facegear machine as an FMU for co-simulation (FMI 3.0), C++17.
 //
-// The motion is that of facegear itself: motion/ and simd.hpp are its sources, one machine and one number in a vector,
-// without extensions of a compiler. model.hpp holds the numbers of the machine. Time is counted as mesh phase s = w t.
+// The motion is that of facegear itself: motion/ and simd.hpp are its sources, one machine and one number in
+// a vector, without extensions of a compiler. model.hpp holds the numbers of the machine. Time is counted as
+// mesh phase s = w t.
 #define FACEGEAR_SCALAR
 
 #include <algorithm>
@@ -61,7 +62,8 @@ class Instance {
     }
     double input(std::size_t number) const { return input_[number]; }
 
-    // Deflections (m), then elastic forces (N) of all contacts, then forces of the bodies on their bearings (N).
+    // Deflections (m), then elastic forces (N) of all contacts, then forces of the bodies on their bearings
+    // (N).
     double output(std::size_t number) {
         if (!observed_) observe();
         return output_[number];
@@ -148,12 +150,13 @@ class Instance {
     }
 
     const std::vector<double> load_of_torque_ = model::load_of_torque(); // (n, bodies)
-    const std::vector<double> bearing_stiffness_ = model::bearing_stiffness(), bearing_damping_ = model::bearing_damping();
+    const std::vector<double> bearing_stiffness_ = model::bearing_stiffness(),
+                              bearing_damping_ = model::bearing_damping();
     const std::vector<Index> body_in_ring_ = model::body_in_ring();
     std::shared_ptr<System> system_;
     std::vector<double> base_load_; // without the torques
     Work<Layout, model::Law> work_;
-    double phase_ = 0.0, behind_ = 0.0; // rad; what the last step left to this one
+    double phase_ = 0.0, behind_ = 0.0;                            // rad; what the last step left to this one
     std::vector<double> input_, displacement_, velocity_, output_; // velocities by time
     bool observed_ = false;
 };
@@ -174,7 +177,9 @@ EXPORT void* fmi3InstantiateCoSimulation(const char*, const char* token, const c
     }
 }
 
-EXPORT void fmi3FreeInstance(void* instance) { std::unique_ptr<Instance>(static_cast<Instance*>(instance)).reset(); }
+EXPORT void fmi3FreeInstance(void* instance) {
+    std::unique_ptr<Instance>(static_cast<Instance*>(instance)).reset();
+}
 
 EXPORT Status fmi3Reset(void* instance) {
     instance_of(instance).begin();
@@ -186,11 +191,12 @@ EXPORT Status fmi3EnterInitializationMode(void* instance, bool, double, double s
     return OK;
 }
 
-EXPORT Status fmi3SetFloat64(void* instance, const Reference* references, std::size_t count, const double* values,
-                             std::size_t number) {
+EXPORT Status fmi3SetFloat64(void* instance, const Reference* references, std::size_t count,
+                             const double* values, std::size_t number) {
     if (count != number) return ERROR;
     for (std::size_t i = 0; i < count; ++i)
-        if (references[i] < 1 || references[i] > inputs || !instance_of(instance).set(references[i] - 1, values[i]))
+        if (references[i] < 1 || references[i] > inputs ||
+            !instance_of(instance).set(references[i] - 1, values[i]))
             return ERROR;
     return OK;
 }
@@ -209,8 +215,8 @@ EXPORT Status fmi3GetFloat64(void* instance, const Reference* references, std::s
     return OK;
 }
 
-EXPORT Status fmi3DoStep(void* instance, double time, double step, bool, bool* event, bool* terminate, bool* early,
-                         double* last) {
+EXPORT Status fmi3DoStep(void* instance, double time, double step, bool, bool* event, bool* terminate,
+                         bool* early, double* last) {
     Instance& machine = instance_of(instance);
     *event = *terminate = *early = false;
     *last = machine.time;
@@ -221,8 +227,10 @@ EXPORT Status fmi3DoStep(void* instance, double time, double step, bool, bool* e
 }
 
 // What this model does without, in two groups: nothing to do, and nothing to give.
-#define DONE(name, ...) EXPORT Status name(__VA_ARGS__) { return OK; }
-#define NONE(name, ...) EXPORT Status name(__VA_ARGS__) { return ERROR; }
+#define DONE(name, ...) \
+    EXPORT Status name(__VA_ARGS__) { return OK; }
+#define NONE(name, ...) \
+    EXPORT Status name(__VA_ARGS__) { return ERROR; }
 DONE(fmi3SetDebugLogging, void*, bool, std::size_t, const char* const*)
 DONE(fmi3ExitInitializationMode, void*)
 DONE(fmi3EnterStepMode, void*)
@@ -230,7 +238,7 @@ DONE(fmi3EnterEventMode, void*)
 DONE(fmi3EnterConfigurationMode, void*)
 DONE(fmi3ExitConfigurationMode, void*)
 DONE(fmi3Terminate, void*)
-#define OTHER(type, name) \
+#define OTHER(type, name)                                                         \
     NONE(fmi3Get##name, void*, const Reference*, std::size_t, type*, std::size_t) \
     NONE(fmi3Set##name, void*, const Reference*, std::size_t, const type*, std::size_t)
 OTHER(float, Float32)
@@ -243,9 +251,10 @@ OTHER(std::uint32_t, UInt32)
 OTHER(std::int64_t, Int64)
 OTHER(std::uint64_t, UInt64)
 OTHER(bool, Boolean)
-OTHER(char *, String)
+OTHER(char*, String)
 NONE(fmi3GetBinary, void*, const Reference*, std::size_t, std::size_t*, const std::uint8_t**, std::size_t)
-NONE(fmi3SetBinary, void*, const Reference*, std::size_t, const std::size_t*, const std::uint8_t*const*, std::size_t)
+NONE(fmi3SetBinary, void*, const Reference*, std::size_t, const std::size_t*, const std::uint8_t* const*,
+     std::size_t)
 NONE(fmi3GetClock, void*, const Reference*, std::size_t, bool*)
 NONE(fmi3SetClock, void*, const Reference*, std::size_t, const bool*)
 NONE(fmi3GetNumberOfVariableDependencies, void*, Reference, std::size_t*)
@@ -256,14 +265,17 @@ NONE(fmi3FreeFMUState, void*, void**)
 NONE(fmi3SerializedFMUStateSize, void*, void*, std::size_t*)
 NONE(fmi3SerializeFMUState, void*, void*, std::uint8_t*, std::size_t)
 NONE(fmi3DeserializeFMUState, void*, const std::uint8_t*, std::size_t, void**)
-NONE(fmi3GetDirectionalDerivative, void*, const Reference*, std::size_t, const Reference*, std::size_t, const double*, std::size_t, double*, std::size_t)
-NONE(fmi3GetAdjointDerivative, void*, const Reference*, std::size_t, const Reference*, std::size_t, const double*, std::size_t, double*, std::size_t)
+NONE(fmi3GetDirectionalDerivative, void*, const Reference*, std::size_t, const Reference*, std::size_t,
+     const double*, std::size_t, double*, std::size_t)
+NONE(fmi3GetAdjointDerivative, void*, const Reference*, std::size_t, const Reference*, std::size_t,
+     const double*, std::size_t, double*, std::size_t)
 NONE(fmi3GetIntervalDecimal, void*, const Reference*, std::size_t, double*, int*)
 NONE(fmi3GetIntervalFraction, void*, const Reference*, std::size_t, std::uint64_t*, std::uint64_t*, int*)
 NONE(fmi3GetShiftDecimal, void*, const Reference*, std::size_t, double*)
 NONE(fmi3GetShiftFraction, void*, const Reference*, std::size_t, std::uint64_t*, std::uint64_t*)
 NONE(fmi3SetIntervalDecimal, void*, const Reference*, std::size_t, const double*)
-NONE(fmi3SetIntervalFraction, void*, const Reference*, std::size_t, const std::uint64_t*, const std::uint64_t*)
+NONE(fmi3SetIntervalFraction, void*, const Reference*, std::size_t, const std::uint64_t*,
+     const std::uint64_t*)
 NONE(fmi3SetShiftDecimal, void*, const Reference*, std::size_t, const double*)
 NONE(fmi3SetShiftFraction, void*, const Reference*, std::size_t, const std::uint64_t*, const std::uint64_t*)
 NONE(fmi3EvaluateDiscreteStates, void*)
@@ -278,7 +290,8 @@ NONE(fmi3GetContinuousStates, void*, double*, std::size_t)
 NONE(fmi3GetNominalsOfContinuousStates, void*, double*, std::size_t)
 NONE(fmi3GetNumberOfEventIndicators, void*, std::size_t*)
 NONE(fmi3GetNumberOfContinuousStates, void*, std::size_t*)
-NONE(fmi3GetOutputDerivatives, void*, const Reference*, std::size_t, const std::int32_t*, double*, std::size_t)
+NONE(fmi3GetOutputDerivatives, void*, const Reference*, std::size_t, const std::int32_t*, double*,
+     std::size_t)
 NONE(fmi3ActivateModelPartition, void*, Reference, double)
 EXPORT void* fmi3InstantiateModelExchange() { return nullptr; }
 EXPORT void* fmi3InstantiateScheduledExecution() { return nullptr; }

@@ -62,14 +62,16 @@ void require_finite(std::span<const double> values, const char* otherwise) {
 
 // A rising list that begins with 0 and ends with `end`.
 void require_ends(std::span<const Index> ends, Index end, const char* otherwise) {
-    require(!ends.empty() && ends.front() == 0 && ends.back() == end && std::is_sorted(ends.begin(), ends.end()),
-            otherwise);
+    require(
+        !ends.empty() && ends.front() == 0 && ends.back() == end && std::is_sorted(ends.begin(), ends.end()),
+        otherwise);
 }
 
 // Sparse rows over `columns` columns.
 SparseRows sparse_rows(const Integers& pointer, const Integers& index, const Numbers& weight, Index columns) {
     require(index.size() == weight.size(), "each entry of sparse rows has an index and a weight");
-    require_ends(view(pointer), static_cast<Index>(index.size()), "pointers of sparse rows rise from 0 to their entries");
+    require_ends(view(pointer), static_cast<Index>(index.size()),
+                 "pointers of sparse rows rise from 0 to their entries");
     require_below(index.data(), index.size(), columns, "an index of sparse rows is out of range");
     return {view(pointer), view(index), view(weight)};
 }
@@ -80,7 +82,9 @@ nb::object owned(std::vector<Stored> values, std::initializer_list<std::size_t> 
     static_assert(sizeof(Value) == sizeof(Stored));
     auto held = std::make_unique<std::vector<Stored>>(std::move(values));
     void* data = held->data();
-    nb::capsule owner(held.get(), [](void* list) noexcept { std::unique_ptr<std::vector<Stored>>(static_cast<std::vector<Stored>*>(list)); });
+    nb::capsule owner(held.get(), [](void* list) noexcept {
+        std::unique_ptr<std::vector<Stored>>(static_cast<std::vector<Stored>*>(list));
+    });
     held.release();
     return nb::cast(nb::ndarray<nb::numpy, Value>(static_cast<Value*>(data), shape, owner));
 }
@@ -113,25 +117,34 @@ struct BoundPoints {
 
     BoundPoints(Numbers gap, Numbers lever_arm, NumberTable pinion, NumberTable gear, IntegerTable function,
                 NumberTable value, Numbers area, Integers starts, Integers teeth)
-        : gap(gap), lever_arm(lever_arm), pinion(pinion), gear(gear), function(function), value(value), area(area),
-          starts(starts), teeth(teeth) {
+        : gap(gap),
+          lever_arm(lever_arm),
+          pinion(pinion),
+          gear(gear),
+          function(function),
+          value(value),
+          area(area),
+          starts(starts),
+          teeth(teeth) {
         const std::size_t count = gap.size();
         require(lever_arm.size() == count && area.size() == count && pinion.shape(0) == count &&
                     gear.shape(0) == count && function.shape(0) == count && value.shape(0) == count,
                 "arrays of points must have the same length");
         require(pinion.shape(1) == 2 && gear.shape(1) == 2, "points have two lattice coordinates");
         require(function.shape(1) == value.shape(1), "each function at a point has a value");
-        require(starts.size() == teeth.size() + 1, "there is a first point for each pair of teeth and an end");
-        require_ends(facegear::view(starts), static_cast<Index>(count), "first points rise from 0 to the number of points");
+        require(starts.size() == teeth.size() + 1,
+                "there is a first point for each pair of teeth and an end");
+        require_ends(facegear::view(starts), static_cast<Index>(count),
+                     "first points rise from 0 to the number of points");
         for (const Index tooth : facegear::view(teeth)) {
             require(tooth >= -MOST_TEETH && tooth <= MOST_TEETH, "a tooth's number is out of range");
         }
     }
 
     contact::FacingPoints view() const {
-        return {facegear::view(gap),      facegear::view(lever_arm), facegear::view(pinion),
-                facegear::view(gear),     facegear::view(function),  facegear::view(value),
-                facegear::view(area),     facegear::view(starts),    facegear::view(teeth)};
+        return {facegear::view(gap),  facegear::view(lever_arm), facegear::view(pinion),
+                facegear::view(gear), facegear::view(function),  facegear::view(value),
+                facegear::view(area), facegear::view(starts),    facegear::view(teeth)};
     }
 };
 
@@ -140,16 +153,20 @@ struct BoundCover {
     Numbers min_area;
     contact::Cover cover;
 
-    BoundCover(Numbers min_area, Index first, std::pair<Index, Index> shape, std::pair<double, double> flank_ends)
-        : min_area(min_area), cover{facegear::view(min_area), first,           shape.first, shape.second,
-                                    flank_ends.first,         flank_ends.second} {
-        require(first >= 0 && first <= static_cast<Index>(min_area.size()), "the first node's function is out of range");
+    BoundCover(Numbers min_area, Index first, std::pair<Index, Index> shape,
+               std::pair<double, double> flank_ends)
+        : min_area(min_area),
+          cover{facegear::view(min_area), first, shape.first, shape.second, flank_ends.first,
+                flank_ends.second} {
+        require(first >= 0 && first <= static_cast<Index>(min_area.size()),
+                "the first node's function is out of range");
         require(shape.first > 0 && shape.second > 0 && shape.first < MOST_TEETH && shape.second < MOST_TEETH,
                 "a lattice has rows and columns");
     }
 
     void require_functions(const contact::FacingPoints& points) const {
-        require_below(points.function.data, static_cast<std::size_t>(points.function.rows * points.function.columns),
+        require_below(points.function.data,
+                      static_cast<std::size_t>(points.function.rows * points.function.columns),
                       static_cast<Index>(min_area.size()), "a basis function's number is out of range");
     }
 };
@@ -163,16 +180,17 @@ struct BoundSurface {
     Array<const double, 3> others;
     contact::Surface surface;
 
-    BoundSurface(std::pair<Index, Index> shape, IntegerTable steps, Integers pointer, Integers index, Numbers weight,
-                 NumberTable own, Array<const double, 3> others, double scale)
+    BoundSurface(std::pair<Index, Index> shape, IntegerTable steps, Integers pointer, Integers index,
+                 Numbers weight, NumberTable own, Array<const double, 3> others, double scale)
         : steps(steps), pointer(pointer), index(index), weight(weight), own(own), others(others) {
         const auto [rows, columns] = shape;
         const auto coarse = static_cast<Index>(others.shape(1));
-        require(steps.shape(1) == 2 && (steps.shape(0) == 4 || steps.shape(0) == 9), "a face has 4 or 9 nodes");
+        require(steps.shape(1) == 2 && (steps.shape(0) == 4 || steps.shape(0) == 9),
+                "a face has 4 or 9 nodes");
         const Index size = steps.shape(0) == 4 ? 1 : 2;
         require_below(steps.data(), steps.size(), size + 1, "a node of a face is out of range");
-        require(rows > size && columns > size && rows < MOST_TEETH && columns < MOST_TEETH && (rows - 1) % size == 0 &&
-                    (columns - 1) % size == 0,
+        require(rows > size && columns > size && rows < MOST_TEETH && columns < MOST_TEETH &&
+                    (rows - 1) % size == 0 && (columns - 1) % size == 0,
                 "a lattice consists of whole faces");
         require(own.shape(0) == own.shape(1) && static_cast<Index>(own.shape(0)) == rows * columns,
                 "the compliance of a tooth has a row and a column for each refined node");
@@ -180,7 +198,8 @@ struct BoundSurface {
                 "the compliance of neighbours has a square block for each tooth");
         surface.faces = {rows, columns, facegear::view(steps), size};
         surface.interpolation = sparse_rows(pointer, index, weight, coarse);
-        require(surface.interpolation.count() == rows * columns, "there is an interpolation for each refined node");
+        require(surface.interpolation.count() == rows * columns,
+                "there is an interpolation for each refined node");
         surface.own = facegear::view(own);
         surface.others = others.data();
         surface.reach = static_cast<Index>(others.shape(0)) / 2;
@@ -199,7 +218,8 @@ struct BoundSolver {
     BoundSolver(BoundCover given_cover, BoundSurface given_pinion, BoundSurface given_gear, bool coupled,
                 Index newton_steps, double tolerance)
         : cover(given_cover), pinion(given_pinion), gear(given_gear) {
-        require(cover.cover.rows == pinion.surface.faces.rows && cover.cover.columns == pinion.surface.faces.columns,
+        require(cover.cover.rows == pinion.surface.faces.rows &&
+                    cover.cover.columns == pinion.surface.faces.columns,
                 "the cover and the pinion's surface have one lattice");
         require(newton_steps >= 0 && newton_steps <= 10000, "the number of Newton steps is out of range");
         solver.cover = cover.cover;
@@ -209,8 +229,8 @@ struct BoundSolver {
         solver.limits = {newton_steps, tolerance};
     }
 
-    nb::dict solve(const BoundPoints& given, Numbers torques, double limit, double gap, double width, double wider,
-                   double begin, double begin_width, MarkTable near) {
+    nb::dict solve(const BoundPoints& given, Numbers torques, double limit, double gap, double width,
+                   double wider, double begin, double begin_width, MarkTable near) {
         const contact::FacingPoints points = given.view();
         cover.require_functions(points);
         require(torques.size() > 0, "there must be a torque");
@@ -221,7 +241,8 @@ struct BoundSolver {
         require(!known || (near.shape(0) == given.teeth.size() &&
                            static_cast<Index>(near.shape(1)) == solver.cover.rows * solver.cover.columns),
                 "known contact marks the nodes of each pair");
-        const contact::SearchStrip strip{gap, width, wider, begin, begin_width, known ? view(near) : Table<const bool>{}};
+        const contact::SearchStrip strip{gap,   width,       wider,
+                                         begin, begin_width, known ? view(near) : Table<const bool>{}};
         contact::PositionContact found;
         {
             nb::gil_scoped_release released;
@@ -267,7 +288,8 @@ struct BoundSolver {
         const contact::FacingPoints points = given.view();
         cover.require_functions(points);
         require(forces.shape(1) == cases.size(), "there is a number of cases for each force");
-        require_below(cases.data(), cases.size(), static_cast<Index>(forces.shape(0)) + 1, "a case is out of range");
+        require_below(cases.data(), cases.size(), static_cast<Index>(forces.shape(0)) + 1,
+                      "a case is out of range");
         const std::lock_guard lock(busy);
         require(solver.fill_whole_approach(points, limit, view(forces), view(cases)),
                 "there is a force for each basis function");
@@ -290,19 +312,26 @@ nb::dict find_functions(const BoundPoints& given, const BoundCover& cover, doubl
     result["gap"] = owned(std::move(found.gap));
     result["lever_arm"] = owned(std::move(found.lever_arm));
     result["fillet"] = owned_marks(std::move(found.fillet));
-    result["average"] = nb::make_tuple(owned(std::move(found.average.pointer)), owned(std::move(found.average.index)),
-                                       owned(std::move(found.average.weight)));
+    result["average"] =
+        nb::make_tuple(owned(std::move(found.average.pointer)), owned(std::move(found.average.index)),
+                       owned(std::move(found.average.weight)));
     return result;
 }
 
-// Averages (n, m) of a compliance by rows on both sides; the lower triangle is left out where it is `symmetric`.
-nb::object two_sided_average(NumberTable compliance, Integers seen_pointer, Integers seen_index, Numbers seen_weight,
-                             Integers load_pointer, Integers load_index, Numbers load_weight, bool symmetric) {
-    require(compliance.shape(1) >= static_cast<std::size_t>(contact::LANES), "a compliance has four columns or more");
+// Averages (n, m) of a compliance by rows on both sides; the lower triangle is left out where it is
+// `symmetric`.
+nb::object two_sided_average(NumberTable compliance, Integers seen_pointer, Integers seen_index,
+                             Numbers seen_weight, Integers load_pointer, Integers load_index,
+                             Numbers load_weight, bool symmetric) {
+    require(compliance.shape(1) >= static_cast<std::size_t>(contact::LANES),
+            "a compliance has four columns or more");
     require(!symmetric || compliance.shape(0) == compliance.shape(1), "a symmetric compliance is square");
-    const SparseRows seen = sparse_rows(seen_pointer, seen_index, seen_weight, static_cast<Index>(compliance.shape(0)));
-    const SparseRows load = sparse_rows(load_pointer, load_index, load_weight, static_cast<Index>(compliance.shape(1)));
-    require(!symmetric || seen.count() == load.count(), "a symmetric average has the same rows on both sides");
+    const SparseRows seen =
+        sparse_rows(seen_pointer, seen_index, seen_weight, static_cast<Index>(compliance.shape(0)));
+    const SparseRows load =
+        sparse_rows(load_pointer, load_index, load_weight, static_cast<Index>(compliance.shape(1)));
+    require(!symmetric || seen.count() == load.count(),
+            "a symmetric average has the same rows on both sides");
     contact::OwnedTable matrix;
     matrix.reset(load.count(), seen.count());
     {
@@ -351,8 +380,8 @@ contact::Front front_of(const ColumnTable& pivots, const ColumnTable& below, con
     return {view(pivots), view(below), view(update)};
 }
 
-void add_elements(Array<const double, 3> matrices, IntegerTable rows, Integers pointer, Integers index, Numbers weight,
-                  Integers place, ColumnTable pivots, ColumnTable below, ColumnTable update) {
+void add_elements(Array<const double, 3> matrices, IntegerTable rows, Integers pointer, Integers index,
+                  Numbers weight, Integers place, ColumnTable pivots, ColumnTable below, ColumnTable update) {
     const contact::Front front = front_of(pivots, below, update);
     const std::size_t size = rows.shape(1);
     require(matrices.shape(0) == rows.shape(0) && (rows.size() == 0 || matrices.shape(1) == size) &&
@@ -360,7 +389,8 @@ void add_elements(Array<const double, 3> matrices, IntegerTable rows, Integers p
             "each element matrix has a row for each of its unknowns");
     const Index end = front.pivots.rows + front.update.rows;
     const SparseRows unknowns{view(pointer), view(index), view(weight)};
-    require(pointer.size() > 0 && index.size() == weight.size(), "each entry of sparse rows has an index and a weight");
+    require(pointer.size() > 0 && index.size() == weight.size(),
+            "each entry of sparse rows has an index and a weight");
     require_below(rows.data(), rows.size(), unknowns.count(), "a row of an element is out of range");
     for (const Index row : std::span(rows.data(), rows.size())) {
         const Index first = unknowns.pointer[row], last = unknowns.pointer[row + 1];
@@ -368,20 +398,24 @@ void add_elements(Array<const double, 3> matrices, IntegerTable rows, Integers p
                 "pointers of sparse rows rise from 0 to their entries");
         for (Index k = first; k < last; ++k) {
             const Index unknown = unknowns.index[k];
-            require(unknown >= 0 && unknown < static_cast<Index>(place.size()) && place.data()[unknown] >= 0 &&
-                        place.data()[unknown] < end,
+            require(unknown >= 0 && unknown < static_cast<Index>(place.size()) &&
+                        place.data()[unknown] >= 0 && place.data()[unknown] < end,
                     "an unknown of an element has no place in the front");
         }
     }
-    const Table<const double> table{matrices.data(), static_cast<Index>(matrices.shape(0)), static_cast<Index>(size * size)};
+    const Table<const double> table{matrices.data(), static_cast<Index>(matrices.shape(0)),
+                                    static_cast<Index>(size * size)};
     nb::gil_scoped_release released;
     contact::add_elements(table, view(rows), unknowns, view(place), front);
 }
 
-void extend_add(ColumnTable added, Integers place, ColumnTable pivots, ColumnTable below, ColumnTable update) {
+void extend_add(ColumnTable added, Integers place, ColumnTable pivots, ColumnTable below,
+                ColumnTable update) {
     const contact::Front front = front_of(pivots, below, update);
-    require(added.shape(0) == added.shape(1) && added.shape(0) == place.size(), "each row of an update has a place");
-    require_below(place.data(), place.size(), front.pivots.rows + front.update.rows, "a place is not in the front");
+    require(added.shape(0) == added.shape(1) && added.shape(0) == place.size(),
+            "each row of an update has a place");
+    require_below(place.data(), place.size(), front.pivots.rows + front.update.rows,
+                  "a place is not in the front");
     require(std::is_sorted(place.data(), place.data() + place.size()), "places must rise");
     nb::gil_scoped_release released;
     contact::extend_add(view(added), view(place), front);
@@ -398,7 +432,8 @@ Index exchange_steps_of(Index points) {
 
 void bind_contact(nb::module_ module) {
     nb::class_<BoundPoints>(module, "FacingPoints")
-        .def(nb::init<Numbers, Numbers, NumberTable, NumberTable, IntegerTable, NumberTable, Numbers, Integers, Integers>(),
+        .def(nb::init<Numbers, Numbers, NumberTable, NumberTable, IntegerTable, NumberTable, Numbers,
+                      Integers, Integers>(),
              nb::arg("gap").noconvert(), nb::arg("lever_arm").noconvert(), nb::arg("pinion").noconvert(),
              nb::arg("gear").noconvert(), nb::arg("function").noconvert(), nb::arg("value").noconvert(),
              nb::arg("area").noconvert(), nb::arg("starts").noconvert(), nb::arg("teeth").noconvert());
@@ -413,21 +448,22 @@ void bind_contact(nb::module_ module) {
              nb::arg("others").noconvert(), nb::arg("scale"));
     nb::class_<BoundSolver>(module, "PositionSolver")
         .def(nb::init<BoundCover, BoundSurface, BoundSurface, bool, Index, double>(), nb::arg("cover"),
-             nb::arg("pinion"), nb::arg("gear"), nb::arg("coupled"), nb::arg("newton_steps"), nb::arg("tolerance"))
-        .def("solve", &BoundSolver::solve, nb::arg("points"), nb::arg("torques").noconvert(), nb::arg("limit"),
-             nb::arg("gap"), nb::arg("width"), nb::arg("wider"), nb::arg("begin"), nb::arg("begin_width"),
-             nb::arg("near").noconvert())
+             nb::arg("pinion"), nb::arg("gear"), nb::arg("coupled"), nb::arg("newton_steps"),
+             nb::arg("tolerance"))
+        .def("solve", &BoundSolver::solve, nb::arg("points"), nb::arg("torques").noconvert(),
+             nb::arg("limit"), nb::arg("gap"), nb::arg("width"), nb::arg("wider"), nb::arg("begin"),
+             nb::arg("begin_width"), nb::arg("near").noconvert())
         .def("influence", &BoundSolver::influence, nb::arg("points"), nb::arg("limit"))
-        .def("approach", &BoundSolver::approach, nb::arg("points"), nb::arg("limit"), nb::arg("forces").noconvert(),
-             nb::arg("cases").noconvert());
+        .def("approach", &BoundSolver::approach, nb::arg("points"), nb::arg("limit"),
+             nb::arg("forces").noconvert(), nb::arg("cases").noconvert());
     module.def("find_functions", &find_functions, nb::arg("points"), nb::arg("cover"), nb::arg("limit"));
     module.def("two_sided_average", &two_sided_average, nb::arg("compliance").noconvert(),
                nb::arg("seen_pointer").noconvert(), nb::arg("seen_index").noconvert(),
                nb::arg("seen_weight").noconvert(), nb::arg("load_pointer").noconvert(),
                nb::arg("load_index").noconvert(), nb::arg("load_weight").noconvert(), nb::arg("symmetric"));
-    module.def("solve_active_set", &solve_active_set, nb::arg("compliance").noconvert(), nb::arg("gap").noconvert(),
-               nb::arg("lever_arm").noconvert(), nb::arg("torque"), nb::arg("start").noconvert(),
-               nb::arg("newton_steps"), nb::arg("tolerance"));
+    module.def("solve_active_set", &solve_active_set, nb::arg("compliance").noconvert(),
+               nb::arg("gap").noconvert(), nb::arg("lever_arm").noconvert(), nb::arg("torque"),
+               nb::arg("start").noconvert(), nb::arg("newton_steps"), nb::arg("tolerance"));
     module.def("exchange_steps", &exchange_steps_of, nb::arg("points"));
     module.def("add_elements", &add_elements, nb::arg("matrices").noconvert(), nb::arg("rows").noconvert(),
                nb::arg("pointer").noconvert(), nb::arg("index").noconvert(), nb::arg("weight").noconvert(),

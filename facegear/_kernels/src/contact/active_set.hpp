@@ -46,7 +46,8 @@ inline void fill_distances(const ContactProblem& problem, std::span<const double
     }
 }
 
-// Largest relative violation of balance, no tension, no penetration and complementarity, by the distances (n) m.
+// Largest relative violation of balance, no tension, no penetration and complementarity, by the distances (n)
+// m.
 inline double violation(const ContactProblem& problem, std::span<const double> force, double rotation,
                         std::span<const double> distance) {
     double turned = 0.0, nearest = 0.0, touching = 0.0, balance = 0.0, deepest = 0.0;
@@ -68,12 +69,12 @@ inline double violation(const ContactProblem& problem, std::span<const double> f
 
 // What happens if exactly some points touch: C f = r a - gap among them, and a . f = torque.
 struct TouchingPoints {
-    std::vector<Index> index;     // (k)
-    CholeskyFactor factor;        // of their compliance (k, k)
-    std::vector<double> turning;  // (k) N/rad, forces by a unit rotation
-    std::vector<double> closing;  // (k) N, forces that would close the gaps
-    double stiffness = 0.0;       // N m/rad
-    double rotation = 0.0;        // rad
+    std::vector<Index> index;    // (k)
+    CholeskyFactor factor;       // of their compliance (k, k)
+    std::vector<double> turning; // (k) N/rad, forces by a unit rotation
+    std::vector<double> closing; // (k) N, forces that would close the gaps
+    double stiffness = 0.0;      // N m/rad
+    double rotation = 0.0;       // rad
 
     // Forces (n) N are filled in; false where the compliance is not positive definite.
     bool solve(const ContactProblem& problem, const Mask& active, std::span<double> force) {
@@ -140,7 +141,8 @@ struct ActiveSetSolver {
     std::vector<double> force;  // (n) N of the last solution
     std::vector<double> change; // (n) N/(N m) of its forces with the torque, while the same points touch
 
-    // Newton's method from the points `start` (n) that touch, and where that fails an exchange of one at a time.
+    // Newton's method from the points `start` (n) that touch, and where that fails an exchange of one at a
+    // time.
     ContactSolution solve(const ContactProblem& problem, const Mask& start, const SolverLimits& limits) {
         const Index count = problem.points();
         force.assign(count, 0.0);
@@ -183,13 +185,15 @@ struct ActiveSetSolver {
     void guess_first(const ContactProblem& problem) {
         fill_turns(problem);
         target = turns;
-        const auto driving = static_cast<Index>(std::count_if(turns.begin(), turns.end(), [](double turn) { return turn < INFINITE; }));
+        const auto driving = static_cast<Index>(
+            std::count_if(turns.begin(), turns.end(), [](double turn) { return turn < INFINITE; }));
         const auto last = target.begin() + std::max(driving - 1, Index{0}) / 4;
         std::nth_element(target.begin(), last, target.end());
         for (Index i = 0; i < problem.points(); ++i) active[i] = turns[i] <= *last;
     }
 
-    // Displacement of which a penetration is a rounding error: the largest by the rotation and the widest gap closed.
+    // Displacement of which a penetration is a rounding error: the largest by the rotation and the widest gap
+    // closed.
     double scale(const ContactProblem& problem) const {
         double turned = 0.0, nearest = 0.0;
         for (Index i = 0; i < problem.points(); ++i) {

@@ -25,10 +25,10 @@ struct NodalDisplacement {
     // Load cases that are summed together; more are summed in turns.
     static constexpr Index CASES = 6;
 
-    // Add the displacements of `nodes` (u), rising, by rows of nodal forces times `forces` (t, m of the rows).
-    // A loaded node stands in a row of the compliance, whose neighbours are read together.
-    void add(std::span<const Index> nodes, Table<const double> compliance, SparseRows rows, Table<const double> forces,
-             Index first_force, OwnedTable& displacement) {
+    // Add the displacements of `nodes` (u), rising, by rows of nodal forces times `forces` (t, m of the
+    // rows). A loaded node stands in a row of the compliance, whose neighbours are read together.
+    void add(std::span<const Index> nodes, Table<const double> compliance, SparseRows rows,
+             Table<const double> forces, Index first_force, OwnedTable& displacement) {
         load_nodes(rows, forces, first_force, compliance.rows);
         blocks.begin_with(compliance.columns);
         blocks.mark(nodes);
@@ -48,7 +48,8 @@ struct NodalDisplacement {
     }
 
   private:
-    // Rows of the compliance that are summed together: their used columns stay in the processor's first cache.
+    // Rows of the compliance that are summed together: their used columns stay in the processor's first
+    // cache.
     static constexpr Index TOGETHER = 8;
 
     ColumnBlocks blocks;
@@ -73,19 +74,26 @@ struct NodalDisplacement {
             for (Index t = 0; t < forces.rows; ++t) {
                 const double force = forces(t, first_force + i);
                 if (force == 0.0) continue;
-                for (std::size_t k = 0; k < columns.size(); ++k) pushed(loaded.slot[columns[k]], t) += weights[k] * force;
+                for (std::size_t k = 0; k < columns.size(); ++k)
+                    pushed(loaded.slot[columns[k]], t) += weights[k] * force;
             }
         }
     }
 
     void sum_cases(Index first, Index t, Index count) {
         switch (count) {
-        case 1: return sum_all<1, 8>(first, t);
-        case 2: return sum_all<2, 4>(first, t);
-        case 3: return sum_all<3, 4>(first, t);
-        case 4: return sum_all<4, 2>(first, t);
-        case 5: return sum_all<5, 2>(first, t);
-        default: return sum_all<CASES, 2>(first, t);
+            case 1:
+                return sum_all<1, 8>(first, t);
+            case 2:
+                return sum_all<2, 4>(first, t);
+            case 3:
+                return sum_all<3, 4>(first, t);
+            case 4:
+                return sum_all<4, 2>(first, t);
+            case 5:
+                return sum_all<5, 2>(first, t);
+            default:
+                return sum_all<CASES, 2>(first, t);
         }
     }
 
@@ -96,7 +104,8 @@ struct NodalDisplacement {
         for (; block < blocks.blocks(); ++block) sum_blocks<Cases, 1>(first, t, block);
     }
 
-    // `Cases` load cases from `t` on of `Width` neighbouring blocks are summed in registers, over the copied rows.
+    // `Cases` load cases from `t` on of `Width` neighbouring blocks are summed in registers, over the copied
+    // rows.
     template <int Cases, int Width>
     void sum_blocks(Index first, Index t, Index block) {
         Vector sum[Width][Cases];
@@ -121,9 +130,9 @@ struct NodalDisplacement {
 
 // Approach of basis functions by forces on others, pair by pair.
 struct Approach {
-    // Fill in the approach (k, t) m of the wanted functions, of which those of pair p are ends[p] up to ends[p + 1],
-    // in the cases wanted of each; 0 in the others. `every`: nodal forces of all functions on both refined surfaces;
-    // `force` (t, m) N on the functions of `pushing`.
+    // Fill in the approach (k, t) m of the wanted functions, of which those of pair p are ends[p] up to
+    // ends[p + 1], in the cases wanted of each; 0 in the others. `every`: nodal forces of all functions on
+    // both refined surfaces; `force` (t, m) N on the functions of `pushing`.
     void fill(const WantedRows& wanted, std::span<const Index> ends, const SparseRowList (&every)[2],
               const Surface (&surfaces)[2], std::span<const Index> teeth, const FunctionForces& pushing,
               Table<const double> force, bool coupled, OwnedTable& total) {
@@ -131,12 +140,15 @@ struct Approach {
         for (Index pair = 0; pair < static_cast<Index>(teeth.size()); ++pair) {
             for (int side = 0; side < 2 && ends[pair] < ends[pair + 1]; ++side) {
                 const Surface& body = surfaces[side];
-                const std::span<const Index> rows(wanted.row.data() + ends[pair], wanted.row.data() + ends[pair + 1]);
-                const std::span<const Index> cases(wanted.cases.data() + ends[pair], wanted.cases.data() + ends[pair + 1]);
+                const std::span<const Index> rows(wanted.row.data() + ends[pair],
+                                                  wanted.row.data() + ends[pair + 1]);
+                const std::span<const Index> cases(wanted.cases.data() + ends[pair],
+                                                   wanted.cases.data() + ends[pair + 1]);
                 find_nodes(every[side], rows, cases, body.faces.nodes(), nodes);
                 moved.reset(static_cast<Index>(nodes.wanted.row.size()), force.rows);
                 if (pushing.any(pair)) {
-                    nodal.add(nodes.wanted.row, body.own, pushing.refined_of(side, pair), force, pushing.ends[pair], moved);
+                    nodal.add(nodes.wanted.row, body.own, pushing.refined_of(side, pair), force,
+                              pushing.ends[pair], moved);
                 }
                 if (coupled) add_others(body, side, pair, teeth, pushing, force);
                 average(every[side], rows, cases, nodes.slot, moved, body.scale, total.row(ends[pair]));
@@ -155,11 +167,12 @@ struct Approach {
     NodalDisplacement nodal;
 
     // Nodes of some rows, each for as many cases as any of its rows.
-    static void find_nodes(SparseRows rows, std::span<const Index> which, std::span<const Index> cases, Index count,
-                           Nodes& found) {
+    static void find_nodes(SparseRows rows, std::span<const Index> which, std::span<const Index> cases,
+                           Index count, Nodes& found) {
         found.slot.assign(count, 0);
         for (std::size_t i = 0; i < which.size(); ++i) {
-            for (const Index node : rows.columns(which[i])) found.slot[node] = std::max(found.slot[node], cases[i]);
+            for (const Index node : rows.columns(which[i]))
+                found.slot[node] = std::max(found.slot[node], cases[i]);
         }
         found.wanted.clear();
         for (Index node = 0; node < count; ++node) {
@@ -178,15 +191,18 @@ struct Approach {
             // what teeth do to each other is symmetric: this block has a row for each loaded node
             const Index places = teeth[other] - teeth[pair];
             if (other == pair || !pushing.any(other) || !body.reaches(places)) continue;
-            nodal.add(coarse.wanted.row, body.beside(places), pushing.coarse_of(side, other), force, pushing.ends[other],
-                      beside);
+            nodal.add(coarse.wanted.row, body.beside(places), pushing.coarse_of(side, other), force,
+                      pushing.ends[other], beside);
         }
-        average(body.interpolation, nodes.wanted.row, nodes.wanted.cases, coarse.slot, beside, 1.0, moved.row(0));
+        average(body.interpolation, nodes.wanted.row, nodes.wanted.cases, coarse.slot, beside, 1.0,
+                moved.row(0));
     }
 
-    // Add to the first cases[i] columns of total (k, t) the averages by some rows of displacements (u, t) of nodes.
+    // Add to the first cases[i] columns of total (k, t) the averages by some rows of displacements (u, t) of
+    // nodes.
     static void average(SparseRows rows, std::span<const Index> which, std::span<const Index> cases,
-                        const std::vector<Index>& slot, OwnedTable& displacement, double scale, double* total) {
+                        const std::vector<Index>& slot, OwnedTable& displacement, double scale,
+                        double* total) {
         for (std::size_t i = 0; i < which.size(); ++i) {
             double* sums = total + static_cast<Index>(i) * displacement.columns;
             const auto columns = rows.columns(which[i]);

@@ -69,7 +69,8 @@ struct OwnedTable {
     void resize(Index row_count, Index column_count) {
         rows = row_count;
         columns = column_count;
-        if (const auto size = static_cast<std::size_t>(rows * columns); values.size() < size) values.resize(size);
+        if (const auto size = static_cast<std::size_t>(rows * columns); values.size() < size)
+            values.resize(size);
     }
     void reset(Index row_count, Index column_count) {
         resize(row_count, column_count);

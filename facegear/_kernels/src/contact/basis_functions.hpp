@@ -25,7 +25,8 @@ struct FacingPoints {
     }
 };
 
-// All basis functions of a pair of teeth: those of the gear's tip edge, of the pinion's lattice, of its tip edge.
+// All basis functions of a pair of teeth: those of the gear's tip edge, of the pinion's lattice, of its tip
+// edge.
 struct Cover {
     std::span<const double> min_area; // (n) m2: with less of it opposite a tooth, a function is left out
     Index first = 0;                  // number of the function of the lattice's first node
@@ -68,7 +69,8 @@ struct FunctionSums {
 // Difference of weights that count as equal where the heaviest point of a function is looked for.
 constexpr double EQUAL_WEIGHTS = 1e-12;
 
-inline Index nearest_node(const BasisFunctions& functions, Index row, Table<const double> at, const Cover& cover) {
+inline Index nearest_node(const BasisFunctions& functions, Index row, Table<const double> at,
+                          const Cover& cover) {
     const SparseRows average = functions.average;
     const auto points = average.columns(row);
     const auto weights = average.weights(row);
@@ -77,7 +79,8 @@ inline Index nearest_node(const BasisFunctions& functions, Index row, Table<cons
         if (weights[k] > weights[best] + EQUAL_WEIGHTS) best = k;
     }
     const double* place = at.row(points[best]);
-    const double last_row = static_cast<double>(cover.rows - 1), last_column = static_cast<double>(cover.columns - 1);
+    const double last_row = static_cast<double>(cover.rows - 1),
+                 last_column = static_cast<double>(cover.columns - 1);
     const auto across = static_cast<Index>(std::clamp(std::rint(place[0]), 0.0, last_row));
     const auto along = static_cast<Index>(std::clamp(std::rint(place[1]), 0.0, last_column));
     return across * cover.columns + along;
@@ -95,7 +98,8 @@ struct GapClosing {
         list_points(points, cover, found);
         const Index nodes = cover.rows * cover.columns;
         for (Index i = 0; i < found.count(); ++i) {
-            if (found.node[i] < 0 || found.node[i] >= nodes) found.node[i] = nearest_node(found, i, points.pinion, cover);
+            if (found.node[i] < 0 || found.node[i] >= nodes)
+                found.node[i] = nearest_node(found, i, points.pinion, cover);
         }
     }
 

@@ -1,4 +1,5 @@
-// Cholesky factorisation A = U^T U of small dense matrices, and solutions by it (Golub and Van Loan 2013, 4.2).
+// Cholesky factorisation A = U^T U of small dense matrices, and solutions by it (Golub and Van Loan
+// 2013, 4.2).
 #pragma once
 
 #include <cmath>
@@ -7,7 +8,8 @@
 
 namespace facegear::contact {
 
-// The upper triangle by rows. Each row is as long as whole vectors need; what lies left of the diagonal has no meaning.
+// The upper triangle by rows. Each row is as long as whole vectors need; what lies left of the diagonal has
+// no meaning.
 struct CholeskyFactor {
     OwnedTable upper;
     Index size = 0;
@@ -77,7 +79,8 @@ struct CholeskyFactor {
         for (int r = 0; r < Rows; ++r) {
             for (int p = 0; p < LANES; ++p) factor[r][p] = Vector::splat(-upper(first + p, row + r));
         }
-        const double* above[LANES] = {upper.row(first), upper.row(first + 1), upper.row(first + 2), upper.row(first + 3)};
+        const double* above[LANES] = {upper.row(first), upper.row(first + 1), upper.row(first + 2),
+                                      upper.row(first + 3)};
         double* values = upper.row(row);
         for (Index i = start(row); i < upper.columns; i += LANES) {
             const Vector a = Vector::load(above[0] + i), b = Vector::load(above[1] + i);

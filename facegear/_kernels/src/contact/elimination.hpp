@@ -17,9 +17,9 @@ struct ColumnTable {
 
 // A front: p unknowns that are eliminated, and m that it is coupled to.
 struct Front {
-    ColumnTable pivots;  // (p, p)
-    ColumnTable below;   // (m, p)
-    ColumnTable update;  // (m, m) what remains for the fronts after it
+    ColumnTable pivots; // (p, p)
+    ColumnTable below;  // (m, p)
+    ColumnTable update; // (m, m) what remains for the fronts after it
 
     void add(Index row, Index column, double value) const {
         const Index size = pivots.rows;
@@ -33,8 +33,8 @@ struct Front {
     }
 };
 
-// Add element matrices (k, a, a). Row `rows(e, a)` of `unknowns` says by which unknowns, with which weights, each
-// row of matrix e moves; `place` says where in the front an unknown stands.
+// Add element matrices (k, a, a). Row `rows(e, a)` of `unknowns` says by which unknowns, with which weights,
+// each row of matrix e moves; `place` says where in the front an unknown stands.
 inline void add_elements(Table<const double> matrices, Table<const Index> rows, SparseRows unknowns,
                          std::span<const Index> place, const Front& front) {
     for (Index element = 0; element < rows.rows; ++element) {

@@ -8,12 +8,13 @@ namespace facegear::contact {
 
 // Contact surface of one gear and how it gives way.
 struct Surface {
-    Faces faces;                // of the elements, on the refined nodes (n)
-    SparseRows interpolation;   // (n, c) displacements of the refined nodes by those before refinement
-    Table<const double> own;    // (n, n) m/N, symmetric: on the loaded tooth, times `scale`
-    const double* others = nullptr; // (2 reach + 1, c, c) m/N: on the tooth t - reach further along, times `scale`
-    Index reach = 0;            // teeth on each side that a loaded tooth moves
-    Index coarse_nodes = 0;     // c
+    Faces faces;              // of the elements, on the refined nodes (n)
+    SparseRows interpolation; // (n, c) displacements of the refined nodes by those before refinement
+    Table<const double> own;  // (n, n) m/N, symmetric: on the loaded tooth, times `scale`
+    const double* others =
+        nullptr;            // (2 reach + 1, c, c) m/N: on the tooth t - reach further along, times `scale`
+    Index reach = 0;        // teeth on each side that a loaded tooth moves
+    Index coarse_nodes = 0; // c
     double scale = 1.0;
 
     // Compliance for a tooth `places` further than the loaded one, not scaled.
@@ -28,14 +29,16 @@ struct ColumnRange {
     Index begin;
     Index end;
 
-    // The part of it in `size` columns from `start` on, counted from there; empty ranges end where they begin.
+    // The part of it in `size` columns from `start` on, counted from there; empty ranges end where they
+    // begin.
     ColumnRange within(Index start, Index size) const {
         const Index first = std::clamp(begin - start, Index{0}, size);
         return {first, std::max(std::min(end - start, size), first)};
     }
 };
 
-// Adds averages on both sides of a compliance C: matrix(j, i) += scale * sum over k, l of seen(i, k) C(k, l) load(j, l).
+// Adds averages on both sides of a compliance C: matrix(j, i) += scale * sum over k, l of seen(i, k) C(k, l)
+// load(j, l).
 struct TwoSidedAverage {
     // Columns of C that stay in the processor's cache while they are averaged.
     static constexpr Index BLOCK = 512;
@@ -50,7 +53,8 @@ struct TwoSidedAverage {
     std::vector<double> weight;       // (e) weights of `load` times the scale
     std::vector<ColumnRange> reached; // (n + 1) columns that the first 0, 1 ... n rows of `load` use
     OwnedTable half;                  // (4 b, m) C averaged by `seen`, its columns as rows
-    std::vector<Vector> lines = std::vector<Vector>(TOGETHER * BLOCK / LANES); // rows of it, before they are turned
+    std::vector<Vector> lines =
+        std::vector<Vector>(TOGETHER * BLOCK / LANES); // rows of it, before they are turned
 
     // `symmetric`: `load` and `seen` are the same rows and C is symmetric; only j <= i are added then.
     void add(Table<double> matrix, Index first_row, Index first_column, double scale, SparseRows seen,
@@ -119,7 +123,8 @@ struct TwoSidedAverage {
         rows.values.resize(rows.count(), size);
         for (Index each = 0; each < rows.count(); ++each) {
             const Index needed = std::clamp(row_end[each] - start, Index{0}, size);
-            const auto begin = std::span<const Index>(blocks.begin).subspan(start / LANES, (needed + LANES - 1) / LANES);
+            const auto begin =
+                std::span<const Index>(blocks.begin).subspan(start / LANES, (needed + LANES - 1) / LANES);
             UsedRows::copy_row(compliance.row(rows.row[each]), begin, rows.values.row(each));
         }
     }
@@ -144,7 +149,8 @@ struct TwoSidedAverage {
             Vector* line = lines.data() + i * BLOCK / LANES;
             std::fill(line + first, line + last, Vector::splat(0.0));
             const Index begin = seen.pointer[group + i] - seen.pointer.front();
-            const std::span<const Index> used(row_place.data() + begin, static_cast<std::size_t>(seen.size(group + i)));
+            const std::span<const Index> used(row_place.data() + begin,
+                                              static_cast<std::size_t>(seen.size(group + i)));
             sum_rows(values.view(), used, seen.weights(group + i), LANES * first, line + first, last - first);
         }
         for (Index v = first; v < last; ++v) {
@@ -156,8 +162,8 @@ struct TwoSidedAverage {
         }
     }
 
-    void average_columns(Table<double> matrix, Index first_row, Index first_column, Index count, SparseRows load,
-                         bool symmetric) {
+    void average_columns(Table<double> matrix, Index first_row, Index first_column, Index count,
+                         SparseRows load, bool symmetric) {
         const Index offset = load.pointer.front();
         for (Index start = 0; start < count; start += BLOCK) {
             const Index end = std::min(start + BLOCK, count);
@@ -172,7 +178,8 @@ struct TwoSidedAverage {
     }
 
     // out[i] += weight[k] * half(row[k], i), from i = `from` up to `end`.
-    void add_rows(std::span<const Index> row, std::span<const double> factor, Index from, Index end, double* out) {
+    void add_rows(std::span<const Index> row, std::span<const double> factor, Index from, Index end,
+                  double* out) {
         Vector sums[BLOCK / LANES];
         const Index whole = (end - from) / LANES;
         for (Index v = 0; v < whole; ++v) sums[v] = Vector::load(out + from + LANES * v);
@@ -199,23 +206,26 @@ inline void mirror(Table<double> matrix) {
     }
 }
 
-// Forces of basis functions on the nodes of both surfaces, refined and before refinement; of pair p the functions
-// from ends[p] up to ends[p + 1].
+// Forces of basis functions on the nodes of both surfaces, refined and before refinement; of pair p the
+// functions from ends[p] up to ends[p + 1].
 struct FunctionForces {
-    std::vector<Index> ends;    // (p + 1)
-    SparseRowList refined[2];   // pinion, gear
+    std::vector<Index> ends;  // (p + 1)
+    SparseRowList refined[2]; // pinion, gear
     SparseRowList coarse[2];
 
     SparseRows refined_of(int side, Index pair) const {
         return SparseRows(refined[side]).part(ends[pair], ends[pair + 1]);
     }
-    SparseRows coarse_of(int side, Index pair) const { return SparseRows(coarse[side]).part(ends[pair], ends[pair + 1]); }
+    SparseRows coarse_of(int side, Index pair) const {
+        return SparseRows(coarse[side]).part(ends[pair], ends[pair + 1]);
+    }
     bool any(Index pair) const { return ends[pair + 1] > ends[pair]; }
 };
 
 // Fill in the influence matrix (m, m) m/N of basis functions of pairs `teeth`; uncoupled, teeth move alone.
-inline void fill_influence(const FunctionForces& forces, std::span<const Index> teeth, const Surface (&surfaces)[2],
-                           bool coupled, TwoSidedAverage& average, OwnedTable& matrix) {
+inline void fill_influence(const FunctionForces& forces, std::span<const Index> teeth,
+                           const Surface (&surfaces)[2], bool coupled, TwoSidedAverage& average,
+                           OwnedTable& matrix) {
     matrix.reset(forces.ends.back(), forces.ends.back());
     const auto pairs = static_cast<Index>(teeth.size());
     for (Index i = 0; i < pairs; ++i) {
@@ -224,12 +234,13 @@ inline void fill_influence(const FunctionForces& forces, std::span<const Index> 
             for (Index j = 0; coupled && j < i; ++j) {
                 const Index places = teeth[i] - teeth[j];
                 if (!body.reaches(places) || !forces.any(i) || !forces.any(j)) continue;
-                average.add(matrix.view(), forces.ends[j], forces.ends[i], body.scale, forces.coarse_of(side, i),
-                            body.beside(places), forces.coarse_of(side, j), false);
+                average.add(matrix.view(), forces.ends[j], forces.ends[i], body.scale,
+                            forces.coarse_of(side, i), body.beside(places), forces.coarse_of(side, j), false);
             }
             const SparseRows own = forces.refined_of(side, i);
             if (forces.any(i)) {
-                average.add(matrix.view(), forces.ends[i], forces.ends[i], body.scale, own, body.own, own, true);
+                average.add(matrix.view(), forces.ends[i], forces.ends[i], body.scale, own, body.own, own,
+                            true);
             }
         }
     }

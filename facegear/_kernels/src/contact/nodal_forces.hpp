@@ -42,14 +42,16 @@ inline PointOnFace on_face(const Faces& faces, double row, double column) {
     std::array<Index, 2> corner;
     const auto size = static_cast<double>(faces.size);
     for (int axis = 0; axis < 2; ++axis) {
-        const auto last = static_cast<double>((shape[axis] - 1 - faces.size) / faces.size);
+        const Index whole = (shape[axis] - 1 - faces.size) / faces.size;
+        const auto last = static_cast<double>(whole);
         const double number = std::min(std::max(std::floor(at[axis] / size), 0.0), last);
         corner[axis] = faces.size * static_cast<Index>(number);
         along[axis] = interval_functions((at[axis] - static_cast<double>(corner[axis])) / size, faces.size);
     }
     PointOnFace point;
     point.first = corner[0] * faces.columns + corner[1];
-    for (Index a = 0; a < faces.width(); ++a) point.value[a] = along[0][faces.steps(a, 0)] * along[1][faces.steps(a, 1)];
+    for (Index a = 0; a < faces.width(); ++a)
+        point.value[a] = along[0][faces.steps(a, 0)] * along[1][faces.steps(a, 1)];
     return point;
 }
 
@@ -81,7 +83,8 @@ struct NodalSpreading {
     void spread(SparseRows rows, Table<const double> at, const Faces& faces, SparseRowList& out) {
         located.assign(at.rows, {});
         std::array<Index, MAX_FACE_NODES> offset{};
-        for (Index a = 0; a < faces.width(); ++a) offset[a] = faces.steps(a, 0) * faces.columns + faces.steps(a, 1);
+        for (Index a = 0; a < faces.width(); ++a)
+            offset[a] = faces.steps(a, 0) * faces.columns + faces.steps(a, 1);
         collector.begin(faces.nodes(), out);
         for (Index row = 0; row < rows.count(); ++row) {
             const auto points = rows.columns(row);
@@ -92,7 +95,8 @@ struct NodalSpreading {
                 for (Index a = 0; a < MAX_FACE_NODES; ++a) force[a] += weights[k] * point.value[a];
                 // neighbouring points mostly lie on one face: their forces are put on its nodes together
                 if (k + 1 < points.size() && locate(points[k + 1], at, faces).first == point.first) continue;
-                for (Index a = 0; a < faces.width(); ++a) collector.add(point.first + offset[a], force[a], out);
+                for (Index a = 0; a < faces.width(); ++a)
+                    collector.add(point.first + offset[a], force[a], out);
                 force.fill(0.0);
             }
             out.end_row();
@@ -108,7 +112,8 @@ struct NodalSpreading {
             for (std::size_t k = 0; k < middle.size(); ++k) {
                 const auto last = inner.columns(middle[k]);
                 const auto factors = inner.weights(middle[k]);
-                for (std::size_t m = 0; m < last.size(); ++m) collector.add(last[m], weights[k] * factors[m], out);
+                for (std::size_t m = 0; m < last.size(); ++m)
+                    collector.add(last[m], weights[k] * factors[m], out);
             }
             out.end_row();
         }

@@ -1,9 +1,10 @@
-// Contact of all pairs of teeth at a position under all torques: what may touch, the strip that is expected to, its
-// influence and solution, and the check of the rest.
+// Contact of all pairs of teeth at a position under all torques: what may touch, the strip that is expected
+// to, its influence and solution, and the check of the rest.
 //
-// A force on one basis function moves all others away from the other gear, so that only functions whose gap a rigid
-// rotation would close can touch. Most of those do not: the bodies give way around the strip that does. The influence
-// matrix of the strip alone is many times cheaper, and one product shows whether the rest stays clear.
+// A force on one basis function moves all others away from the other gear, so that only functions whose gap a
+// rigid rotation would close can touch. Most of those do not: the bodies give way around the strip that does.
+// The influence matrix of the strip alone is many times cheaper, and one product shows whether the rest stays
+// clear.
 #pragma once
 
 #include "contact/active_set.hpp"
@@ -19,23 +20,24 @@ struct SearchStrip {
     double wider = 0.0;       // factor on the width where contact is missed beside the strip
     double begin = 0.0;       // the first guess: turn over the limit
     double begin_width = 0.0; // and width
-    Table<const bool> near;   // (p, nodes) functions that belong to the strip in any case; (0, 0) if none is known
+    Table<const bool>
+        near; // (p, nodes) functions that belong to the strip in any case; (0, 0) if none is known
 };
 
 // Contact under torques (t), the largest first. Without a solution under one of them its steps are 0.
 struct PositionContact {
     std::vector<double> rotation, slope, residual; // (t) as in ContactSolution
     std::vector<Index> steps;                      // (t)
-    Index candidates = 0; // functions that a rotation by the limit closes
-    Index forward = 0;    // of these, how many can carry the torque
-    Index strip_size = 0; // among how many functions the solution is
+    Index candidates = 0;                          // functions that a rotation by the limit closes
+    Index forward = 0;                             // of these, how many can carry the torque
+    Index strip_size = 0;                          // among how many functions the solution is
     double overlap = 0.0; // rad, rotation that would part the teeth where they stand in each other
     // Functions (m) that are loaded by any torque, and their forces.
     std::vector<Index> pair, node;
     std::vector<double> lever_arm;
     Mask fillet;
-    std::vector<double> force;        // (t, m) N
-    std::vector<double> on_nodes[2];  // (t, p, c) N on the nodes of pinion and gear before refinement
+    std::vector<double> force;       // (t, m) N
+    std::vector<double> on_nodes[2]; // (t, p, c) N on the nodes of pinion and gear before refinement
 };
 
 // Solves positions one after the other in the same memory.
@@ -45,8 +47,8 @@ struct PositionSolver {
     bool coupled = true; // whether a loaded tooth moves its neighbours
     SolverLimits limits;
 
-    // Contact of functions that a rotation by `limit` (rad) closes. If the first torque turns the pinion further,
-    // only its rotation is of use.
+    // Contact of functions that a rotation by `limit` (rad) closes. If the first torque turns the pinion
+    // further, only its rotation is of use.
     PositionContact solve(const FacingPoints& points, std::span<const double> torques, double limit,
                           const SearchStrip& strip) {
         find_candidates(points, limit);
@@ -61,7 +63,8 @@ struct PositionSolver {
             if (!solve_strip(torques, limit, strip, result)) break;
             unsolved = check_others(points, strip, limit, width * strip.wider, result);
         }
-        fill_loads(points, result);
+        fill_loaded_functions(result);
+        fill_nodal_forces(points, result);
         return result;
     }
 
@@ -86,7 +89,8 @@ struct PositionSolver {
             if (cases[i] > 0) others.push_back(i, cases[i]);
         }
         count_pairs(others.row, points.pairs(), other_ends);
-        approach.fill(others, other_ends, every, surfaces, points.teeth, strip_forces, forces, coupled, moved);
+        approach.fill(others, other_ends, every, surfaces, points.teeth, strip_forces, forces, coupled,
+                      moved);
         return true;
     }
 
@@ -98,17 +102,17 @@ struct PositionSolver {
   private:
     GapClosing closing;
     NodalSpreading spreading;
-    SparseRowList every[2];       // nodal forces of all functions on both refined surfaces
-    std::vector<double> turn;     // (n) rad that closes each function's gap
-    std::vector<double> column;   // (n) rad, the least of it in the function's column across the profile
+    SparseRowList every[2];     // nodal forces of all functions on both refined surfaces
+    std::vector<double> turn;   // (n) rad that closes each function's gap
+    std::vector<double> column; // (n) rad, the least of it in the function's column across the profile
     std::vector<double> of_column;
-    Mask in_strip;                // (n)
+    Mask in_strip;                      // (n)
     std::vector<Index> strip_functions; // (m) numbers of the strip's functions
     FunctionForces strip_forces;
     TwoSidedAverage two_sided;
     ActiveSetSolver active_set;
     Approach approach;
-    OwnedTable force;             // (t, m) N on the strip's functions
+    OwnedTable force; // (t, m) N on the strip's functions
     std::vector<Index> other_ends;
     std::vector<double> strip_gap, strip_arm;
     Mask start;
@@ -148,7 +152,9 @@ struct PositionSolver {
         for (Index i = 0; i < functions.count(); ++i) column[i] = of_column[column_of(i)];
     }
 
-    Index column_of(Index i) const { return functions.pair[i] * cover.columns + functions.node[i] % cover.columns; }
+    Index column_of(Index i) const {
+        return functions.pair[i] * cover.columns + functions.node[i] % cover.columns;
+    }
 
     // The lesser a column's least turn, the wider the strip is in it.
     bool expected(Index i, double least_turn, double width) const {
@@ -190,16 +196,20 @@ struct PositionSolver {
         count_pairs(strip_functions, points.pairs(), strip_forces.ends);
         for (int side = 0; side < 2; ++side) {
             const Surface& body = surfaces[side];
-            spreading.compose(strip_forces.refined[side], body.interpolation, body.coarse_nodes, strip_forces.coarse[side]);
+            spreading.compose(strip_forces.refined[side], body.interpolation, body.coarse_nodes,
+                              strip_forces.coarse[side]);
         }
     }
 
-    // Solve the strip under all torques; false where one has no solution or the first turns the pinion beyond the limit.
-    bool solve_strip(std::span<const double> torques, double limit, const SearchStrip& strip, PositionContact& result) {
+    // Solve the strip under all torques; false where one has no solution or the first turns the pinion beyond
+    // the limit.
+    bool solve_strip(std::span<const double> torques, double limit, const SearchStrip& strip,
+                     PositionContact& result) {
         const auto count = static_cast<Index>(strip_functions.size());
         force.reset(static_cast<Index>(torques.size()), count);
         start.resize(count);
-        for (Index i = 0; i < count; ++i) start[i] = expected(strip_functions[i], strip.begin * limit, strip.begin_width);
+        for (Index i = 0; i < count; ++i)
+            start[i] = expected(strip_functions[i], strip.begin * limit, strip.begin_width);
         const OwnedTable& influence = matrix;
         ContactProblem problem{influence.view(), strip_gap, strip_arm, 0.0};
         for (std::size_t t = 0; t < torques.size(); ++t) {
@@ -213,13 +223,14 @@ struct PositionSolver {
             if (solution.steps == 0 || result.rotation[0] > limit) return false;
             // the next torque begins with the points that would still press if the same ones touched
             const double following = torques[std::min(t + 1, torques.size() - 1)] - torques[t];
-            for (Index i = 0; i < count; ++i) start[i] = active_set.force[i] + following * active_set.change[i] > 0.0;
+            for (Index i = 0; i < count; ++i)
+                start[i] = active_set.force[i] + following * active_set.change[i] > 0.0;
         }
         return true;
     }
 
-    // Check the functions beside the strip; those that would penetrate join it, with a wider strip around them.
-    // Whether there are any.
+    // Check the functions beside the strip; those that would penetrate join it, with a wider strip around
+    // them. Whether there are any.
     bool check_others(const FacingPoints& points, const SearchStrip& strip, double limit, double wider,
                       PositionContact& result) {
         const auto count = static_cast<Index>(result.rotation.size());
@@ -236,14 +247,16 @@ struct PositionSolver {
         if (others.row.empty()) return false;
         count_pairs(others.row, points.pairs(), other_ends);
         const OwnedTable& pushing = force;
-        approach.fill(others, other_ends, every, surfaces, points.teeth, strip_forces, pushing.view(), coupled, moved);
+        approach.fill(others, other_ends, every, surfaces, points.teeth, strip_forces, pushing.view(),
+                      coupled, moved);
         bool missed = false;
         for (std::size_t k = 0; k < others.row.size(); ++k) {
             const Index i = others.row[k];
             double deepest = 0.0;
             for (Index t = 0; t < others.cases[k]; ++t) {
                 const double rotation = result.rotation[t];
-                const double distance = functions.gap[i] + moved(static_cast<Index>(k), t) - rotation * functions.lever_arm[i];
+                const double distance =
+                    functions.gap[i] + moved(static_cast<Index>(k), t) - rotation * functions.lever_arm[i];
                 const double part = -distance / (std::fabs(rotation) * longest);
                 deepest = std::max(deepest, part);
                 result.residual[t] = std::max(result.residual[t], part);
@@ -257,8 +270,8 @@ struct PositionSolver {
         return missed;
     }
 
-    // What the loaded functions are, and the forces on the nodes before refinement.
-    void fill_loads(const FacingPoints& points, PositionContact& result) const {
+    // What the loaded functions are, with their forces.
+    void fill_loaded_functions(PositionContact& result) const {
         const Index torques = force.rows, count = force.columns;
         const Table<const double> forces = force.view();
         result.strip_size = count;
@@ -280,6 +293,12 @@ struct PositionSolver {
         for (Index t = 0; t < torques; ++t) {
             for (const Index i : loaded) result.force.push_back(forces(t, i));
         }
+    }
+
+    // Forces on the nodes before refinement.
+    void fill_nodal_forces(const FacingPoints& points, PositionContact& result) const {
+        const Index torques = force.rows, count = force.columns;
+        const Table<const double> forces = force.view();
         for (int side = 0; side < 2; ++side) {
             const Index nodes = surfaces[side].coarse_nodes, pairs = points.pairs();
             result.on_nodes[side].assign(torques * pairs * nodes, 0.0);
@@ -292,7 +311,8 @@ struct PositionSolver {
                         const double pushed = forces(t, strip_forces.ends[pair] + i);
                         if (pushed == 0.0) continue;
                         double* total = result.on_nodes[side].data() + (t * pairs + pair) * nodes;
-                        for (std::size_t k = 0; k < columns.size(); ++k) total[columns[k]] += weights[k] * pushed;
+                        for (std::size_t k = 0; k < columns.size(); ++k)
+                            total[columns[k]] += weights[k] * pushed;
                     }
                 }
             }

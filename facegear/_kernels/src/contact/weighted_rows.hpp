@@ -12,8 +12,9 @@ constexpr Index LANES = 4;
 // Blocks of four neighbouring columns that hold all columns in use, so that they are read together.
 struct ColumnBlocks {
     std::vector<Index> begin; // (b) first column of each block, rising
-    std::vector<Index> slot;  // (columns) place of a column among the 4 b columns of the blocks, -1 if not in use
-    Mask used;                // (columns)
+    std::vector<Index>
+        slot;  // (columns) place of a column among the 4 b columns of the blocks, -1 if not in use
+    Mask used; // (columns)
 
     void begin_with(Index columns) { used.assign(columns, 0); }
     void mark(std::span<const Index> columns) {
@@ -26,15 +27,16 @@ struct ColumnBlocks {
         slot.assign(count, -1);
         for (Index column = 0; column < count; ++column) {
             if (!used[column]) continue;
-            if (begin.empty() || column >= begin.back() + LANES) begin.push_back(std::min(column, count - LANES));
+            if (begin.empty() || column >= begin.back() + LANES)
+                begin.push_back(std::min(column, count - LANES));
             slot[column] = LANES * (static_cast<Index>(begin.size()) - 1) + column - begin.back();
         }
     }
     Index blocks() const { return static_cast<Index>(begin.size()); }
 };
 
-// Rows in use, copied one behind the other: rows of a large matrix each lie on a page of memory of their own, and
-// finding pages takes longer than the sums.
+// Rows in use, copied one behind the other: rows of a large matrix each lie on a page of memory of their own,
+// and finding pages takes longer than the sums.
 struct UsedRows {
     std::vector<Index> row;  // (u) rows in use, rising
     std::vector<Index> slot; // (rows) number of each row among these, -1 if not in use
@@ -59,7 +61,8 @@ struct UsedRows {
     // Copy blocks of columns that begin at `begin` of the rows from `first` up to `last`.
     void copy(Table<const double> matrix, Index first, Index last, std::span<const Index> begin) {
         values.resize(last - first, LANES * static_cast<Index>(begin.size()));
-        for (Index each = first; each < last; ++each) copy_row(matrix.row(row[each]), begin, values.row(each - first));
+        for (Index each = first; each < last; ++each)
+            copy_row(matrix.row(row[each]), begin, values.row(each - first));
     }
     static void copy_row(const double* from, std::span<const Index> begin, double* to) {
         for (const Index column : begin) {
@@ -78,7 +81,8 @@ inline void sum_rows(Table<const double> table, std::span<const Index> row, std:
     for (std::size_t k = 0; k < row.size(); ++k) {
         const double* values = table.row(row[k]) + column;
         const Vector factor = Vector::splat(weight[k]);
-        for (int v = 0; v < Count; ++v) sum[v] = multiply_add(factor, Vector::load(values + LANES * v), sum[v]);
+        for (int v = 0; v < Count; ++v)
+            sum[v] = multiply_add(factor, Vector::load(values + LANES * v), sum[v]);
     }
     for (int v = 0; v < Count; ++v) sums[v] = sum[v];
 }
