@@ -30,9 +30,9 @@ MEMORY = 8 << 30
 """Bytes of address space: a wrong size ends in an exception before it takes the machine's memory."""
 COUNTS = ("periods",)
 """Arguments that say how much is to be done: large ones are answered late, not wrongly."""
-WATCHED = "libasan" in Path("/proc/self/maps").read_text() if sys.platform == "linux" else False
+WATCHED_ARGUMENTS = "libasan" in Path("/proc/self/maps").read_text() if sys.platform == "linux" else False
 """AddressSanitizer ends the process where memory cannot be had, and reserves terabytes of addresses."""
-INTEGERS = (-(2**63), -1000, -1, 0, 1, 2, 7, *(() if WATCHED else (2**31, 2**40)))
+INTEGERS = (-(2**63), -1000, -1, 0, 1, 2, 7, *(() if WATCHED_ARGUMENTS else (2**31, 2**40)))
 NUMBERS = (float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1e300, 5e-324)
 
 
@@ -288,7 +288,7 @@ def main(arguments: list[str]) -> int:
     number, seed, log, *tests = arguments
     faulthandler.enable()
     calls = record(tests)
-    if not WATCHED:
+    if not WATCHED_ARGUMENTS:
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     print(json.dumps(fuzz(calls, int(number), int(seed), Path(log))))
     return 0
