@@ -3,7 +3,10 @@
 An editable install is a path, in which Snakemake finds its plugin, and its kernels lie beside their sources.
 """
 
+import base64
+import hashlib
 import tempfile
+import zipfile
 from pathlib import Path
 
 import kernels
@@ -51,4 +54,27 @@ def build_editable(
 ) -> str:
     """Build the kernels beside their sources and the wheel that names this folder; return its file name."""
     kernels.build_in_place()
-    return skbuild.build_editable(wheel_directory, config_settings, metadata_directory)
+    with tempfile.TemporaryDirectory() as folder:
+        name = skbuild.build_editable(folder, config_settings, metadata_directory)
+        keep_path_alone(Path(folder) / name, Path(wheel_directory) / name)
+    return name
+
+
+def keep_path_alone(wheel: Path, result: Path) -> None:
+    """Write the editable wheel without its import hook, which would go before PYTHONPATH."""
+    record, rows = "", []
+    with zipfile.ZipFile(wheel) as source, zipfile.ZipFile(result, "w", zipfile.ZIP_DEFLATED) as target:
+        for name in source.namelist():
+            content = source.read(name)
+            if name.endswith(".dist-info/RECORD"):
+                record = name
+                continue
+            if "/" not in name and name.endswith(".py"):
+                continue
+            if name.endswith(".pth"):
+                lines = content.decode().splitlines(keepends=True)
+                content = "".join(line for line in lines if not line.startswith("import ")).encode()
+            digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+            rows.append(f"{name},sha256={digest},{len(content)}")
+            target.writestr(source.getinfo(name), content)
+        target.writestr(record, "\n".join([*rows, f"{record},,", ""]))
