@@ -14,7 +14,7 @@ from types import ModuleType
 VARIABLE = "FACEGEAR_INSTRUCTIONS"
 """Environment variable that chooses the module for every processor where it is `baseline`."""
 _SOURCES = Path(__file__).with_name("src")
-_REMEDY = "rebuild them by `make kernels`, or install this folder by pip again"
+_REMEDY = "rebuild them by `make kernels`, or by `pip install -e .` where pip installed this folder"
 
 try:
     _module = import_module(f"{__name__}._baseline")
