@@ -86,8 +86,7 @@ def with_half_backlash(machine: Machine, half: float) -> Machine:
     Machine
         With this backlash.
     """
-    flaws = replace(machine.imperfections, half_backlash=np.full(len(machine.layout.meshes), np.nan))
-    return replace(machine, half_backlash=half, imperfections=flaws)
+    return replace(machine, half_backlash=np.full(len(machine.layout.meshes), half))
 
 
 def _with_layout(machine: Machine, layout: Layout) -> Machine:

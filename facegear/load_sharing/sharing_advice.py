@@ -207,7 +207,7 @@ def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
         floating_gear = MappedMachine(floated(machine, sides))
         from_to = f"{format_number(1e-6 * stiffness)} to 0 N/um in its plane"
         yield Change(words, from_to, floating_gear, options, 1.0)
-    if (half := float(machine.half_backlashes.mean())) > 0.0:
+    if (half := float(machine.half_backlash.mean())) > 0.0:
         new_machine = MappedMachine(with_half_backlash(machine, SOFTER * half))
         yield Change(
             "halve the backlash of all meshes",

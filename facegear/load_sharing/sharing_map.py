@@ -283,7 +283,7 @@ class MappedMachine:
         float
             m.
         """
-        return float(2.0 * self.machine.half_backlashes[list(group.meshes)].mean())
+        return float(2.0 * self.machine.half_backlash[list(group.meshes)].mean())
 
     def number(self, group: LoadGroup, deviation: float) -> float:
         """Number that decides the sharing of a group, dimensionless.

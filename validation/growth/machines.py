@@ -42,6 +42,7 @@ def resized(machine: Machine, count: int, harmonics: int) -> Machine:
         torques=balanced_torques(layout, torque),
         stiffness=falling(machine.stiffness, harmonics),
         error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
+        half_backlash=np.full(len(layout.meshes), machine.half_backlash.max()),
         imperfections=perfect(layout),
         forces=np.zeros((len(layout.bodies), 3)),
     )
