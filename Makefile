@@ -9,8 +9,10 @@ COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gen
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 env: .venv/run
-.venv/run: requirements-run.lock requirements-build.lock requirements-zig.lock pyproject.toml # and this repository, editable
-	$(PYTHON) -m venv .venv
+.venv/bin/python .venv/bin/pip: ; $(PYTHON) building/environment.py # makes .venv, or mends the one that is there
+.venv/bin/pip: .venv/bin/python
+.venv/run: requirements-run.lock requirements-build.lock requirements-zig.lock pyproject.toml .venv/bin/pip # and this repository, editable
+	$(BIN)/python building/environment.py --check
 	$(LOCKED) requirements-run.lock -r requirements-build.lock
 	$(PYTHON) building/kernels.py --has-compiler || $(LOCKED) requirements-zig.lock
 	$(BIN)/python building/kernels.py
@@ -20,10 +22,9 @@ kernels: env # compiles the C++ sources that have changed
 	@$(BIN)/python building/kernels.py
 tools: .venv/tools
 .venv/tools: requirements.lock .venv/run
-	$(LOCKED) requirements.lock
-	touch $@
 .venv/cluster: requirements-cluster.lock .venv/tools # submission to Slurm
-	$(LOCKED) requirements-cluster.lock
+.venv/tools .venv/cluster:
+	$(LOCKED) $<
 	touch $@
 check: kernels
 	@$(BIN)/python -m facegear.system_check
@@ -66,5 +67,4 @@ lock: tools
 	$(COMPILE) --group zig -o requirements-zig.lock
 	$(COMPILE) pyproject.toml --extra workflow -c requirements.lock -o requirements-run.lock
 	$(COMPILE) pyproject.toml --extra cluster -c requirements.lock -o requirements-cluster.lock
-clean:
-	rm -rf results/*/ .snakemake
+clean: ; rm -rf results/*/ .snakemake

@@ -28,7 +28,8 @@ struct Queue {
     bool (*stop)() = nullptr;    // asked every `between_looks` steps: true ends the run
 };
 
-// Steps between two looks at Queue::stop: some 0.05 s, in which a user does not wait and a look costs nothing.
+// Steps between two looks at Queue::stop: some 0.05 s, which no user notices, and so rare that it costs
+// nothing.
 constexpr Index between_looks = 16384;
 
 // What runs machines of one structure with a layout and a law.
