@@ -1,4 +1,4 @@
-"""What `make` does with a `.venv` that is there already."""
+"""Environments in `.venv` that `make` finds: kept, mended, or made anew."""
 
 import shutil
 import subprocess
