@@ -9,8 +9,10 @@ COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gen
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 env: .venv/run
-.venv/run: requirements-run.lock requirements-build.lock requirements-zig.lock pyproject.toml # and this repository, editable
-	$(PYTHON) -m venv .venv
+.venv/bin/python .venv/bin/pip: ; $(PYTHON) building/environment.py # makes .venv, or mends the one that is there
+.venv/bin/pip: .venv/bin/python
+.venv/run: requirements-run.lock requirements-build.lock requirements-zig.lock pyproject.toml .venv/bin/pip # and this repository, editable
+	$(BIN)/python building/environment.py --check
 	$(LOCKED) requirements-run.lock -r requirements-build.lock
 	$(PYTHON) building/kernels.py --has-compiler || $(LOCKED) requirements-zig.lock
 	$(BIN)/python building/kernels.py
@@ -20,10 +22,9 @@ kernels: env # compiles the C++ sources that have changed
 	@$(BIN)/python building/kernels.py
 tools: .venv/tools
 .venv/tools: requirements.lock .venv/run
-	$(LOCKED) requirements.lock
-	touch $@
 .venv/cluster: requirements-cluster.lock .venv/tools # submission to Slurm
-	$(LOCKED) requirements-cluster.lock
+.venv/tools .venv/cluster:
+	$(LOCKED) $<
 	touch $@
 check: kernels
 	@$(BIN)/python -m facegear.system_check
@@ -39,10 +40,10 @@ lint: kernels tools
 	$(BIN)/python building/lint.py
 docs: tools
 	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
-ci: lint docs .venv/cluster
+ci: lint docs sanitize release .venv/cluster
 	FACEGEAR_SLURM=1 $(MAKE) test
 sanitize: tools # tests of the kernels while addresses and undefined behaviour are watched
-	$(BIN)/python building/sanitize.py -n 0 tests/unit/test_flank_and_small_kernels.py tests/unit/contact/test_contact_kernels.py
+	$(BIN)/python building/sanitize.py -n 0 tests/unit/test_flank_and_small_kernels.py tests/unit/contact/test_contact_kernels.py tests/unit/dynamics/test_motion_kernels.py tests/unit/test_kernels_fuzz.py
 release: tools # into dist/; the wheel is compiled by zig for an old glibc
 	$(LOCKED) requirements-zig.lock
 	PATH=$(CURDIR)/$(BIN):$$PATH .ci/release dist
@@ -66,5 +67,4 @@ lock: tools
 	$(COMPILE) --group zig -o requirements-zig.lock
 	$(COMPILE) pyproject.toml --extra workflow -c requirements.lock -o requirements-run.lock
 	$(COMPILE) pyproject.toml --extra cluster -c requirements.lock -o requirements-cluster.lock
-clean:
-	rm -rf results/*/ .snakemake
+clean: ; rm -rf results/*/ .snakemake
