@@ -11,9 +11,11 @@ from test_closed_form import config_of
 import facegear
 from facegear.errors import ConfigErrors
 from facegear.harmonics.series import Harmonics
+from facegear.load_sharing.drawn_paths import LEVELS, draws
+from facegear.load_sharing.groups import GroupKind
+from facegear.load_sharing.mapped_machine import MappedMachine, groups_of_kind
 from facegear.load_sharing.options import MapOptions
 from facegear.load_sharing.path_changes import floated, with_half_backlash, with_scaled_bearings
-from facegear.load_sharing.sharing_map import LEVELS, MappedMachine, draws, idler_groups
 from facegear.report.sharing_map import sharing_map_text
 from facegear.transmission.layout import Role, Side
 
@@ -66,7 +68,7 @@ def test_curves_of_a_hundred_random_machines_collapse_where_paths_part_too(sides
     """Mesh and bearing stiffness, torque and number of samples late differ; the drawn errors are the same."""
     random, spread = np.random.default_rng(1), {}
     base = floated(make_idlers(5)._machine(), sides)
-    group = idler_groups(base)[0]
+    group = groups_of_kind(base, GroupKind.IDLERS)[0]
     drawn = draws(group, MapOptions(1.0, 1.0, 100, 2, 3, (1.0,)))
     for _ in range(100):
         factors = 10.0 ** random.uniform(-1.0, 1.0, 3)
@@ -127,7 +129,7 @@ def test_each_advice_is_what_statics_of_the_changed_config_find(words):
 def test_a_drawn_path_is_late_as_an_error_of_its_upper_mesh_is():
     gearbox = make_split()
     mapped = MappedMachine(gearbox._machine())
-    group = idler_groups(mapped.machine)[0]
+    group = groups_of_kind(mapped.machine, GroupKind.IDLERS)[0]
     late = 1e-6 * np.array([[7.0, -3.0, 4.0]])
     errors = {f"idler {n}/upper": {"error_um": um} for n, um in zip((1, 3, 4), 1e6 * late[0], strict=True)}
     table = gearbox.with_values({"transmission.single_meshes": errors}).statics().table().set_index("mesh")
