@@ -143,7 +143,7 @@ def drawn_machines(gearbox: Gearbox, idlers: list[str], words: str) -> list[Gear
     -------
     list of Gearbox
         Three independent normal errors for every idler, under the condition that together they make a path as
-        late as the map draws it.
+        late on the flank that works as the map draws it.
     """
     section, map_section = gearbox.values["transmission"], gearbox.values["sharing_map"]
     mesh = map_section["mesh_deviation_um"] * (0.5 if words == MESHES else 1.0)
@@ -151,7 +151,9 @@ def drawn_machines(gearbox: Gearbox, idlers: list[str], words: str) -> list[Gear
     cosine = np.cos(np.radians(gearbox.values["tooth_pair"]["pressure_angle_deg"]))
     deviations = np.array([mesh, mesh, 2.0 * cosine * place])
     late = np.random.default_rng(map_section["seed"]).standard_normal((map_section["samples"], len(idlers)))
-    parts = conditioned_parts(late * np.linalg.norm(deviations), deviations)
+    flanks = gearbox.statics().table().set_index("mesh")["flank"]
+    working = [-1.0 if flanks[f"{name}/upper"] == "back" else 1.0 for name in idlers]
+    parts = np.array(working) * conditioned_parts(late * np.linalg.norm(deviations), deviations)
     made = []
     for upper, lower, aside in parts:
         meshes, pinions = dict(section["single_meshes"]), dict(section["single_pinions"])
@@ -273,6 +275,35 @@ MACHINES: dict[str, Callable[[], Gearbox]] = {
 """Machines of the table, by the name that stands there."""
 
 
+def advice_table(rows: pd.DataFrame) -> str:
+    """Return the table of the page on load sharing: the idlers, and the first input of each machine.
+
+    Parameters
+    ----------
+    rows : pd.DataFrame
+        The stored table.
+
+    Returns
+    -------
+    str
+        Markdown. Rows without any effect are left out.
+    """
+    first = rows[rows["kind"] == "inputs"].groupby("machine", sort=False)["group"].first()
+    is_shown = (rows["kind"] == "idlers") | (rows["group"] == rows["machine"].map(first))
+    shown = rows[is_shown & (rows["gain"] != 0.0)]
+    lines = [
+        "| machine | group | change | K_gamma | closed form | map | config |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in shown.itertuples():
+        closed = "-" if pd.isna(row.predicted_gain) else f"{row.predicted_gain:+.3f}"
+        lines.append(
+            f"| {row.machine} | {row.group} | {row.change} ({row.from_to}) | {row.k_gamma:.3f} | {closed} "
+            f"| {row.gain:+.5f} | {row.found_gain:+.5f} |"
+        )
+    return "\n".join(lines)
+
+
 def main() -> None:
     """Write the table."""
     tables = []
@@ -281,7 +312,7 @@ def main() -> None:
         tables.append(repeat_advice(machine).assign(machine=name))
     table = pd.concat(tables, ignore_index=True)
     table.insert(0, "machine", table.pop("machine"))
-    table.round(9).to_csv(TABLE, index=False)
+    table.round(7).to_csv(TABLE, index=False)
 
 
 if __name__ == "__main__":
