@@ -175,28 +175,24 @@ COMBINED = {
     "constant load": {"mesh_stiffness.mesh_law": "constant_load"},
     "push only": {"transmission.damping.open_flanks": "push_only"},
     "mesh deflection": {"transmission.damping.open_flanks": "mesh_deflection"},
-    "clearance": {"transmission.pinion.clearance_um": 2.0},
-    "pose": {"transmission.operating_pose": "static"},
-    "tilt": {
-        "transmission.face_gear.tilt": {"stiffness_n_m_per_rad": 1e8, "inertia_kg_m2": 0.3},
-    },
+    "tilt": {"transmission.face_gear.tilt": {"stiffness_n_m_per_rad": 1e8, "inertia_kg_m2": 0.3}},
 }
 """What may stand beside a periodic torque."""
 
 
 @pytest.mark.parametrize("name", list(COMBINED))
-def test_a_periodic_torque_shakes_each_kind_of_machine(name):
-    """Mesh forces change by about what the linear response about the load has."""
+def test_a_periodic_torque_shakes_each_kind_of_machine_as_its_linear_response(name):
+    """The mesh that moves most; varying stiffness makes the motion differ a little."""
     calm = facegear.example().with_values(COMBINED[name])
-    shaken = calm.with_values({"transmission.excitations": SHAKEN})
-    machine = shaken._machine()
-    speed = calm.values["dynamics"]["speed_rpm"]
+    machine = calm.with_values({"transmission.excitations": SHAKEN})._machine()
+    speed, meshes = calm.values["dynamics"]["speed_rpm"], len(machine.layout.meshes)
     linear = loaded_machine(machine).excited_motion(machine, machine.excitations[0], speed)
-    expected = np.abs(machine.linear.rows[: len(machine.layout.meshes)] @ linear).max()
-    moved = [build_model(each) for each in (calm._machine(), machine)]
-    waves = [model.system.load for model in moved]
-    assert expected > 0.0
-    difference = waves[1] - np.pad(waves[0], [(0, 0), (0, 0), (0, waves[1].shape[2] - waves[0].shape[2])])
-    assert np.abs(difference).max() > 0.0
-    answer = simulate(moved[1], speed)
-    assert np.isfinite(answer.coordinates).all()
+    expected = np.abs(machine.linear.rows[:meshes] @ linear).max()
+    moved = []
+    for model in (build_model(calm._machine()), build_model(machine)):
+        answer = simulate(model, speed)
+        assert (answer.motion, answer.period) == (Motion.PERIODIC, 1)
+        moved.append(model.displacements(answer) @ model.machine.linear.rows[:meshes].T)
+    change = moved[1] - moved[0]
+    found = np.abs(change - change.mean(axis=0)).max()
+    assert found == pytest.approx(expected, rel=0.05)
