@@ -55,11 +55,11 @@ def repeat_advice(gearbox: Gearbox, words: list[str] | None = None) -> pd.DataFr
     if words is not None:
         advice = advice[advice["change"].isin(words)]
     before = config_factors(gearbox, {}, "")
-    found = {
+    factors_after = {
         change: config_factors(gearbox, config_changes(gearbox, change), change)
         for change in advice["change"].unique()
     }
-    gains = [before[row.group] - found[row.change][row.group] for row in advice.itertuples()]
+    gains = [before[row.group] - factors_after[row.change][row.group] for row in advice.itertuples()]
     columns = ["group", "kind", "change", "from_to", "k_gamma", "predicted_gain", "gain"]
     return advice[columns].assign(found_gain=gains).reset_index(drop=True)
 
@@ -87,9 +87,9 @@ def config_changes(gearbox: Gearbox, words: str) -> dict[str, Any]:
         return {"transmission.single_gears": _floating_gears(section, words)}
     if words == "halve the backlash of all meshes":
         single = section["single_meshes"]
-        own = {name: mesh | _scaled(mesh, "backlash_um", factor) for name, mesh in single.items()}
+        meshes = {name: mesh | _scale_value(mesh, "backlash_um", factor) for name, mesh in single.items()}
         half = factor * section["backlash_um"]
-        return {"transmission.backlash_um": half, "transmission.single_meshes": own}
+        return {"transmission.backlash_um": half, "transmission.single_meshes": meshes}
     return {}
 
 
@@ -110,11 +110,11 @@ def config_factors(gearbox: Gearbox, changes: Mapping[str, Any], words: str) -> 
     dict of str to float
         By group, dimensionless: the value of an input without drawn errors, P95 over the sample for idlers.
     """
-    changed = gearbox.with_values(changes)
-    section = changed.values["transmission"]
+    new_gearbox = gearbox.with_values(changes)
+    section = new_gearbox.values["transmission"]
     names = {role: [p["name"] for p in section["pinions"] if p["role"] in role] for role in (INPUTS, IDLERS)}
     even = gearbox.hunting(positions=1).meshes().set_index("mesh")["even_share_n"].abs()
-    forces = changed.statics().table().set_index("mesh")["force_n"].abs()
+    forces = new_gearbox.statics().table().set_index("mesh")["force_n"].abs()
     factors = {
         name: max(forces[f"{name}/{side}"] / even[f"{name}/{side}"] for side in SIDES)
         for name in names[INPUTS]
@@ -122,7 +122,7 @@ def config_factors(gearbox: Gearbox, changes: Mapping[str, Any], words: str) -> 
     lower = [f"{name}/lower" for name in names[IDLERS]]
     sample = [
         float((machine.statics().table().set_index("mesh")["force_n"].abs()[lower] / even[lower]).max())
-        for machine in drawn_machines(changed, names[IDLERS], words)
+        for machine in drawn_machines(new_gearbox, names[IDLERS], words)
     ]
     return factors | {"idlers": float(np.percentile(sample, JUDGED_LEVEL))}
 
@@ -147,27 +147,27 @@ def drawn_machines(gearbox: Gearbox, idlers: list[str], words: str) -> list[Gear
     """
     section, map_section = gearbox.values["transmission"], gearbox.values["sharing_map"]
     mesh = map_section["mesh_deviation_um"] * (0.5 if words == MESHES else 1.0)
-    place = map_section["position_deviation_um"] * (0.5 if words == POSITIONS else 1.0)
+    position_deviation = map_section["position_deviation_um"] * (0.5 if words == POSITIONS else 1.0)
     cosine = np.cos(np.radians(gearbox.values["tooth_pair"]["pressure_angle_deg"]))
-    deviations = np.array([mesh, mesh, 2.0 * cosine * place])
+    deviations = np.array([mesh, mesh, 2.0 * cosine * position_deviation])
     late = np.random.default_rng(map_section["seed"]).standard_normal((map_section["samples"], len(idlers)))
     flanks = gearbox.statics().table().set_index("mesh")["flank"]
     working = [-1.0 if flanks[f"{name}/upper"] == "back" else 1.0 for name in idlers]
     parts = np.array(working) * conditioned_parts(late * np.linalg.norm(deviations), deviations)
-    made = []
+    machines = []
     for upper, lower, aside in parts:
         meshes, pinions = dict(section["single_meshes"]), dict(section["single_pinions"])
         for number, name in enumerate(idlers):
             for side, error in (("upper", upper[number]), ("lower", -lower[number])):
-                own = meshes.get(f"{name}/{side}", {})
-                meshes[f"{name}/{side}"] = own | {"error_um": own.get("error_um", 0.0) + error}
+                entry = meshes.get(f"{name}/{side}", {})
+                meshes[f"{name}/{side}"] = entry | {"error_um": entry.get("error_um", 0.0) + error}
             pinion = pinions.get(name, {})
             position = pinion.get("position_um", {"x": 0.0, "y": 0.0})
-            moved = position | {"x": position["x"] - aside[number] / (2.0 * cosine)}
-            pinions[name] = pinion | {"position_um": moved}
+            new_position = position | {"x": position["x"] - aside[number] / (2.0 * cosine)}
+            pinions[name] = pinion | {"position_um": new_position}
         changes = {"transmission.single_meshes": meshes, "transmission.single_pinions": pinions}
-        made.append(gearbox.with_values(changes))
-    return made
+        machines.append(gearbox.with_values(changes))
+    return machines
 
 
 def conditioned_parts(total: Array, deviations: Array) -> Array:
@@ -188,8 +188,8 @@ def conditioned_parts(total: Array, deviations: Array) -> Array:
     free = np.random.default_rng(1).standard_normal((len(total), len(deviations), total.shape[1]))
     free *= deviations[:, None]
     shares = deviations**2 / (deviations**2).sum()
-    missing = total - free.sum(axis=1)
-    return np.asarray(free + shares[:, None] * missing[:, None, :])
+    remainder = total - free.sum(axis=1)
+    return np.asarray(free + shares[:, None] * remainder[:, None, :])
 
 
 def _scaled_bearings(section: Mapping[str, Any], are_inputs: bool, factor: float) -> dict[str, Any]:
@@ -197,10 +197,12 @@ def _scaled_bearings(section: Mapping[str, Any], are_inputs: bool, factor: float
     single = dict(section["single_pinions"])
     for pinion in section["pinions"]:
         if (pinion["role"] == "input") == are_inputs:
-            own = single.get(pinion["name"], {})
-            stiffness = own.get("bearing_stiffness_n_per_m") or section["pinion"]["bearing_stiffness_n_per_m"]
+            entry = single.get(pinion["name"], {})
+            stiffness = (
+                entry.get("bearing_stiffness_n_per_m") or section["pinion"]["bearing_stiffness_n_per_m"]
+            )
             radial = {key: factor * value for key, value in stiffness.items() if key != "z"}
-            single[pinion["name"]] = own | {"bearing_stiffness_n_per_m": stiffness | radial}
+            single[pinion["name"]] = entry | {"bearing_stiffness_n_per_m": stiffness | radial}
     return single
 
 
@@ -209,13 +211,13 @@ def _floating_gears(section: Mapping[str, Any], words: str) -> dict[str, Any]:
     single = dict(section["single_gears"])
     for side in SIDES:
         if side in words or "both" in words:
-            own, key = single.get(side, {}), "bearing_stiffness_n_per_m"
-            along = (own.get(key) or section["face_gear"][key])["z"]
-            single[side] = own | {key: {"x": FREE, "y": FREE, "z": along}}
+            entry, key = single.get(side, {}), "bearing_stiffness_n_per_m"
+            along = (entry.get(key) or section["face_gear"][key])["z"]
+            single[side] = entry | {key: {"x": FREE, "y": FREE, "z": along}}
     return single
 
 
-def _scaled(values: Mapping[str, Any], key: str, factor: float) -> dict[str, float]:
+def _scale_value(values: Mapping[str, Any], key: str, factor: float) -> dict[str, float]:
     return {key: factor * values[key]} if values.get(key) is not None else {}
 
 
@@ -290,16 +292,16 @@ def advice_table(rows: pd.DataFrame) -> str:
     """
     first = rows[rows["kind"] == "inputs"].groupby("machine", sort=False)["group"].first()
     is_shown = (rows["kind"] == "idlers") | (rows["group"] == rows["machine"].map(first))
-    shown = rows[is_shown & (rows["gain"] != 0.0)]
+    shown_rows = rows[is_shown & (rows["gain"] != 0.0)]
     lines = [
         "| machine | group | change | K_gamma | closed form | map | config |",
         "|---|---|---|---|---|---|---|",
     ]
-    for row in shown.itertuples():
-        closed = "-" if pd.isna(row.predicted_gain) else f"{row.predicted_gain:+.3f}"
+    for row in shown_rows.itertuples():
+        closed_text = "-" if pd.isna(row.predicted_gain) else f"{row.predicted_gain:+.3f}"
         lines.append(
-            f"| {row.machine} | {row.group} | {row.change} ({row.from_to}) | {row.k_gamma:.3f} | {closed} "
-            f"| {row.gain:+.5f} | {row.found_gain:+.5f} |"
+            f"| {row.machine} | {row.group} | {row.change} ({row.from_to}) "
+            f"| {row.k_gamma:.3f} | {closed_text} | {row.gain:+.5f} | {row.found_gain:+.5f} |"
         )
     return "\n".join(lines)
 

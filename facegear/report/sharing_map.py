@@ -19,12 +19,12 @@ POINTS = (
 ADVICE = (
     "Each change of the machine by itself, at its nominal torque, and what it does to {group}: K_gamma is "
     "{now:.3f} before. found: by the statics of the changed machine; gain: what K_gamma falls by; predicted "
-    "gain: by the closed forms alone{judged}. worst, worst found: the largest of all groups before and after"
+    "gain: by the closed forms alone{note}. worst, worst found: the largest of all groups before and after"
 )
 """Caption of the first table of advice."""
-MORE_ADVICE = "Changes and {group}: K_gamma is {now:.3f} before{judged}"
+MORE_ADVICE = "Changes and {group}: K_gamma is {now:.3f} before{note}"
 """Caption of the tables of advice below it."""
-JUDGED = ". Idlers are judged by the 95th percentile over their drawn errors"
+PERCENTILE_NOTE = ". Idlers are judged by the 95th percentile over their drawn errors"
 CURVES = (
     "Curves of the idlers. all carry: fraction of the drawn machines in which every path carries, where the "
     "closed form may hold"
@@ -76,13 +76,13 @@ def advice_tables(advice: pd.DataFrame) -> list[Table]:
     list of Table
         One a group.
     """
-    listed: list[Table] = []
+    group_tables: list[Table] = []
     for group, rows in advice[advice["gain"] != 0.0].groupby("group", sort=False):
-        judged = JUDGED if rows["kind"].iloc[0] == "idlers" else ""
-        words = MORE_ADVICE if listed else ADVICE
-        caption = words.format(group=f"the {group}", now=rows["k_gamma"].iloc[0], judged=judged)
-        listed.append(Table(caption, rows.reset_index(drop=True), 4, main=MAIN_COLUMNS))
-    return listed
+        note = PERCENTILE_NOTE if rows["kind"].iloc[0] == "idlers" else ""
+        words = MORE_ADVICE if group_tables else ADVICE
+        caption = words.format(group=f"the {group}", now=rows["k_gamma"].iloc[0], note=note)
+        group_tables.append(Table(caption, rows.reset_index(drop=True), 4, main=MAIN_COLUMNS))
+    return group_tables
 
 
 def sharing_map_text(tables: Mapping[str, pd.DataFrame]) -> str:

@@ -177,7 +177,7 @@ COMBINED = {
     "mesh deflection": {"transmission.damping.open_flanks": "mesh_deflection"},
     "tilt": {"transmission.face_gear.tilt": {"stiffness_n_m_per_rad": 1e8, "inertia_kg_m2": 0.3}},
 }
-"""What may stand beside a periodic torque."""
+"""Changes of a config that may stand beside a periodic torque."""
 
 
 @pytest.mark.parametrize("name", list(COMBINED))
