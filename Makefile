@@ -5,7 +5,7 @@ BIN := .venv/bin
 LOCKED := $(BIN)/pip install --quiet --require-hashes -r
 PYTEST := $(BIN)/python -m pytest -n $(CORES) --dist loadgroup --max-worker-restart=0 # a crash ends the tests
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes
-.PHONY: all env tools kernels sanitize check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms starters mutation lock clean
+.PHONY: all env tools kernels sanitize check test random lint docs ci release audit notebooks benchmarks peers ratios verification platforms starters sharing_advice mutation lock clean
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 env: .venv/run
@@ -57,7 +57,7 @@ ratios: check tools # processor time of the dear jobs against an earlier commit:
 	$(BIN)/python -m validation.ratios.run $(POINTS) $(SINCE:%=--since %)
 verification: check tools # the table of what was checked against which reference
 	$(PYTEST) -m reference --references=validation/references.csv
-platforms starters: check tools # what moves on two threads and with lower levels of instructions; 20 machines of `facegear new`
+platforms starters sharing_advice: check tools # two threads and lower levels of instructions; 20 machines of `facegear new`; advice of the load-sharing map repeated by configs
 	$(BIN)/python -m validation.$@
 mutation: check tools # whether the tests notice mutants that survived before
 	$(BIN)/uv tool run --from cosmic-ray==8.7.0 python -m validation.mutation.run docs/measured/mutation.csv --survivors

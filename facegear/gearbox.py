@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from facegear.config.cases import changed_config, expand_cases
+from facegear.config.keys import keys_named
 from facegear.config.load import config_of, load_config, plain
 from facegear.config.model import Config, resolved
 from facegear.errors import ConfigError, FacegearError, chosen, extras_named, file_path
@@ -706,7 +707,8 @@ class Gearbox:
         if ending == ".fmu":
             from facegear.exchange.fmu import write_fmu
 
-            return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
+            with keys_named():
+                return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
         if ending == ".glb":
             return self._scene(path)
         if ending == ".csv":

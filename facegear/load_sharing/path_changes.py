@@ -89,6 +89,24 @@ def with_half_backlash(machine: Machine, half: float) -> Machine:
     return replace(machine, half_backlash=np.full(len(machine.layout.meshes), half))
 
 
+def with_scaled_backlash(machine: Machine, factor: float) -> Machine:
+    """Scale the backlash of every mesh, so that meshes that differ keep their proportion.
+
+    Parameters
+    ----------
+    machine : Machine
+        With backlash as it is.
+    factor : float
+        On the backlash, dimensionless.
+
+    Returns
+    -------
+    Machine
+        With this backlash.
+    """
+    return replace(machine, half_backlash=factor * machine.half_backlash)
+
+
 def _with_layout(machine: Machine, layout: Layout) -> Machine:
     """The machine with the same bodies on other bearings."""
     line, bodies = machine.drive_line, machine.bodies

@@ -9,7 +9,8 @@ from facegear.config.machines import MachineInputs
 from facegear.config.sharing_map import SharingMap, map_options
 from facegear.config.transmission import Transmission
 from facegear.load_sharing.groups import GroupKind
-from facegear.load_sharing.sharing_advice import advice, departures
+from facegear.load_sharing.ideal_machine import departures
+from facegear.load_sharing.sharing_advice import advice
 from facegear.load_sharing.sharing_map import idler_curves, input_curves, map_points
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine

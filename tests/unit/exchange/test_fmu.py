@@ -28,6 +28,7 @@ from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.exchange.fmu import IDENTIFIER, unique_words, write_fmu
 from facegear.mesh_law.law import beyond_edges
+from facegear.transmission.excitation import Excitation
 from facegear.transmission.flanks import mesh_contacts
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.machine import FlankTables, OpenFlanks
@@ -61,13 +62,24 @@ def machine(kind):
         return make_machine(layout, torque=100.0, imperfections=clearance)
     if kind == "coupled":
         return facegear.load("config/shafts.yaml", None)._machine()
+    if kind == "excited":
+        return replace(make_machine(layout), excitations=(Excitation(1, 46.0, 23, 400.0, 0.4),))
     flanks = OpenFlanks(kind) if kind in set(OpenFlanks) else OpenFlanks.CONTACT_ONLY
     built = make_machine(layout, open_flanks=flanks)
     friction = MeshFriction(RATIOS) if "friction" in kind else None
     return replace(built, friction=friction, tables=TABLES if "tables" in kind else built.tables)
 
 
-KINDS = ("printed", "contact_only", "push_only", "tables", "friction", "tables and friction", "clearance")
+KINDS = (
+    "printed",
+    "contact_only",
+    "push_only",
+    "tables",
+    "friction",
+    "tables and friction",
+    "clearance",
+    "excited",
+)
 
 
 @pytest.fixture(scope="module")
