@@ -83,10 +83,9 @@ def scale_colours(name: str, positions: Iterable[float]) -> list[str]:
 
 @cache
 def _scale_colour(name: str, position: float) -> str:
-    import matplotlib  # a figure is data: only what draws it, and scales of colours, need the library
-    from matplotlib.colors import to_hex
+    from matplotlib import colormaps, colors  # a figure is data: only its drawing and scales need the library
 
-    return str(to_hex(matplotlib.colormaps[name](position)))
+    return str(colors.to_hex(colormaps[name](position)))
 
 
 def shades(count: int, last: float = 0.85) -> list[str]:
