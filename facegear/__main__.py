@@ -203,7 +203,7 @@ def _with_cache(folder: Path) -> dict[str, str]:
 
     Snakemake ends with a traceback where it cannot make its own folder there.
     """
-    from platformdirs import user_cache_path
+    from platformdirs import user_cache_path  # a library of the extra `workflow`
 
     try:
         require_writable(user_cache_path("snakemake"))
@@ -283,26 +283,24 @@ def _limits(given: argparse.Namespace) -> int:
 
 def _compare(given: argparse.Namespace) -> int:
     """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
-    from facegear.compare.answers import opened
-    from facegear.compare.judge import compare
-    from facegear.compare.page import by_table, causes_table, stored_in_words, verdict, write_page
+    from facegear.compare import answers, judge, page  # these draw, and bring matplotlib
 
     if given.page:
         _say_if_new(given.page.parent)
         require_writable_file(given.page)
-    with opened(given.old) as old, opened(given.new) as new:
-        comparison = compare(old, new)
-        reasons = causes_table(comparison, old, new)
-        print(verdict(comparison))
+    with answers.opened(given.old) as old, answers.opened(given.new) as new:
+        comparison = judge.compare(old, new)
+        reasons = page.causes_table(comparison, old, new)
+        print(page.verdict(comparison))
         sides = {given.old: old, given.new: new}.items()
-        for sentence in filter(None, [stored_in_words(name, folder) for name, folder in sides]):
+        for sentence in filter(None, [page.stored_in_words(name, folder) for name, folder in sides]):
             print(sentence)
         if len(comparison.rows):
-            print(by_table(comparison).to_string(index=False, na_rep=""))
+            print(page.by_table(comparison).to_string(index=False, na_rep=""))
             for reason in reasons.itertuples(index=False):
                 print(f"{reason.cause}  [{reason.table}]")
         if given.page:
-            write_page(given.page, comparison, reasons, old, new)
+            page.write_page(given.page, comparison, reasons, old, new)
     return 0 if comparison.equal else 1
 
 
