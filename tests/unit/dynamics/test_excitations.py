@@ -175,6 +175,7 @@ COMBINED = {
     "constant load": {"mesh_stiffness.mesh_law": "constant_load"},
     "push only": {"transmission.damping.open_flanks": "push_only"},
     "mesh deflection": {"transmission.damping.open_flanks": "mesh_deflection"},
+    "pose": {"transmission.operating_pose": "static"},
     "tilt": {"transmission.face_gear.tilt": {"stiffness_n_m_per_rad": 1e8, "inertia_kg_m2": 0.3}},
 }
 """Changes of a config that may stand beside a periodic torque."""
