@@ -290,6 +290,27 @@ def test_bearings_that_a_user_gave_are_named_where_they_keep_the_torque_from_bei
     )
 
 
+def pair_of_19_and_97(torque_n_m, **others):
+    return make_known("own", 19, 97, 2.5, torque_n_m, 5000, pressure_angle_deg=20.0, coarse=True, **others)
+
+
+def test_teeth_that_pit_get_a_shaper_that_spreads_the_contact():
+    """A face that undercut ends beside the path of contact was red for pitting at its own torque."""
+    light, hard = (first_machine(pair_of_19_and_97(torque)).text for torque in (15, 60))
+    assert "teeth: 22 # chosen: three more than the pinion, which localises the contact" in light
+    assert "teeth: 20 # chosen: 1 tooth more than the pinion, which spreads the contact" in hard
+
+
+@pytest.mark.parametrize("others", [{}, {"idlers": 2}, {"shaper_teeth": 22}])
+def test_a_torque_that_is_too_large_is_named_with_one_that_is_not(others):
+    lines = "\n".join(first_machine(pair_of_19_and_97(300, **others)).expected)
+    (nearest,) = re.findall(r"leaves the rating without reserve .* nearest: at most ([\d.]+) N m", lines)
+    assert 20.0 < float(nearest) < 300.0
+    for part, is_named in ((0.97, False), (1.05, True)):
+        lines = "\n".join(first_machine(pair_of_19_and_97(part * float(nearest), **others)).expected)
+        assert ("leaves the rating without reserve" in lines) == is_named
+
+
 def test_too_few_teeth_are_refused_by_the_geometric_reason():
     with pytest.raises(FacegearError, match=r"the contact ratio is 0\.\d+ at most, below 1\.05"):
         choose_teeth(ToothWishes(6, 40, 3.0, 25.0))
