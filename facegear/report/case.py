@@ -89,6 +89,8 @@ DUTY_LOADS = (
 )
 BINS = {"0": "nominal", "-1": "all bins"}
 """Bins of a table of losses that are none of the duty cycle, in words."""
+SOURCE = "allowed_contact_temperature_source"
+"""Column of table `friction` whose text is the same at every torque."""
 LOSSES = (
     "The machine at its nominal load and in every bin of its duty cycle. power through meshes: of all meshes "
     "together, over the power in"
@@ -346,7 +348,9 @@ def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
 
 def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     shown = tables["friction"].dropna(axis="columns", how="all")
-    listed = [Table("One mesh at the nominal speed, by torque", shown)]
+    sources = shown.pop(SOURCE).dropna().unique() if SOURCE in shown else []
+    title = ". Allowed contact temperature: ".join(["One mesh at the nominal speed, by torque", *sources])
+    listed = [Table(title, shown)]
     if "machine_loss" in tables:
         whole, meshes = (
             bins_in_words(tables[name].dropna(axis="columns", how="all"))

@@ -49,6 +49,7 @@ def test_units_of_heat_motion_and_time_are_written_out():
     """A head said "loss w" and "contact temperature c"."""
     names = {
         "loss_w": "loss (W)",
+        "energy_lost_kwh": "energy lost (kWh)",
         "largest_flash_k": "largest flash (K)",
         "contact_temperature_c": "contact temperature (°C)",
         "largest_sliding_m_per_s": "largest sliding (m/s)",
