@@ -134,7 +134,7 @@ def _text(path: Path) -> str:
     except FileNotFoundError:
         raise CsvFault("no such file") from None
     except (OSError, ValueError) as error:
-        raise CsvFault(f"it cannot be read ({getattr(error, 'strerror', None) or error})") from None
+        raise CsvFault(f"it cannot be read ({plain_reason(error)})") from None
     if len(content) > LARGEST_FILE:
         raise CsvFault(f"it is longer than {LARGEST_FILE} bytes")
     try:

@@ -30,7 +30,7 @@ from facegear.variants.split_bearings import (
 )
 from facegear.variants.starting_teeth import MORE_SHAPER_TEETH, choose_teeth, chosen_keys
 from facegear.variants.starting_wishes import MachineWishes
-from facegear.variants.wish_limits import RADIAL
+from facegear.variants.wish_limits import RADIAL, TORQUE_MARGINS
 
 STEEL = 7850.0
 """Density of steel, kg/m3."""
@@ -46,8 +46,6 @@ LEFT_ABOVE_BORE = 0.8
 """Least thickness, in modules, between bore and root of a pinion."""
 GOLDEN_DEG = 137.508
 """Angle between the directions of the errors of one pinion and the next, so that no two are alike."""
-TORQUE_MARGINS = (0.7, 1.5)
-"""Smallest and largest torque of the contact analysis over those of the meshes at rest."""
 SPEEDS = (0.2, 1.5)
 """First and last speed of the sweep over the nominal one."""
 TORQUES = 4
