@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[1]
 INTERRUPTED = 130
 """Exit code of a command that was stopped by Ctrl-C, as shells have it."""
 STOPPED = {"new": "; no file was written", "report": "; the same command goes on from here"}
-"""What follows for the user after the line of a command that was stopped by Ctrl-C."""
+"""Rest of the line of a command that was stopped by Ctrl-C: what the user has or can do."""
 CONFIG = "config file (yaml)"
 
 

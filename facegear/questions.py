@@ -46,7 +46,7 @@ OPTIONS: dict[str, tuple[type[int] | type[float], str]] = {
 
 
 KINDS = {int: "a whole number", float: "a number"}
-"""What an answer must be."""
+"""Kind of number that an answer must be, in words."""
 
 
 def reader(kind: type[int] | type[float]) -> Callable[[str], float]:
@@ -55,12 +55,13 @@ def reader(kind: type[int] | type[float]) -> Callable[[str], float]:
     Parameters
     ----------
     kind : type
-        `int` or `float`.
+        `int` or `float`; the number has the unit of its argument.
 
     Returns
     -------
     callable
-        Raises ArgumentTypeError, with the word and what it must be, for a word that is no such number.
+        From a word to a number in the unit of its argument. Raises ArgumentTypeError, with the word and what
+        it must be, for a word that is no such number.
     """
 
     def read(word: str) -> float:

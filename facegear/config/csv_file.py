@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from facegear.config.base import RENAMED, suggestion
+from facegear.errors import plain_reason
 from facegear.number_format import count_noun
 
 LARGEST_FILE = 2_000_000

@@ -161,13 +161,13 @@ def _poor_safety(draft: Draft, mesh_torque: float, safeties: Safeties) -> str:
 
     part = exp(brentq(excess, log(LEAST_PART), 0.0))
     torque = draft.wishes.torque_n_m * part
-    kind, value, required = (
+    kind, value, least = (
         ("bending", safeties.bending, safeties.required_bending)
         if safeties.spare_bending < safeties.spare_pitting
         else ("pitting", safeties.pitting, safeties.required_pitting)
     )
     return (
-        f"a safety of {value:.3g} against {kind} leaves the rating without reserve ({required:g} required); "
+        f"a safety of {value:.3g} against {kind} leaves the rating without reserve ({least:g} required); "
         f"nearest: at most {format_number(torque, 3, group_digits=False)} N m an input, or a larger module"
     )
 

@@ -40,7 +40,9 @@ def first_machine(wishes: MachineWishes) -> FirstMachine:
             if best.spare[0] >= 1.0:
                 break
             with suppress(FacegearError):
-                best = max(best, _machine(Draft(wishes, more_shaper_teeth)), key=lambda found: found.spare)
+                best = max(
+                    best, _machine(Draft(wishes, more_shaper_teeth)), key=lambda machine: machine.spare
+                )
     return FirstMachine(
         best.draft.text(best.bearings, best.loads),
         tuple(estimate_lines(best.draft, best.bearings, best.split, best.loads[1])),
@@ -72,8 +74,8 @@ def _machine(draft: Draft) -> _Machine:
             wishes.idler_bearing_n_per_m,
             wishes.gear_bearing_n_per_m,
         )
-        chosen = choose_bearings(draft.closed_form(), bearing_wishes, draft.machine)
-        bearings, split = chosen.bearings, chosen.split
+        choice = choose_bearings(draft.closed_form(), bearing_wishes, draft.machine)
+        bearings, split = choice.bearings, choice.split
     else:
         bearings = draft.stiff_bearings()
         split = split_of(draft.machine(bearings))
