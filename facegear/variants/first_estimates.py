@@ -159,8 +159,10 @@ def _poor_safety(draft: Draft, mesh_torque: float, safeties: Safeties) -> str:
     def excess(logarithm: float) -> float:
         return log(estimate_safeties(draft, mesh_torque * exp(logarithm)).spare)
 
-    part = exp(brentq(excess, log(LEAST_PART), 0.0))
-    torque = draft.wishes.torque_n_m * part
+    nearest = "a larger module"
+    if excess(log(LEAST_PART)) > 0.0:
+        torque = draft.wishes.torque_n_m * exp(brentq(excess, log(LEAST_PART), 0.0))
+        nearest = f"at most {format_number(torque, 3, group_digits=False)} N m an input, or {nearest}"
     kind, value, least = (
         ("bending", safeties.bending, safeties.required_bending)
         if safeties.spare_bending < safeties.spare_pitting
@@ -168,7 +170,7 @@ def _poor_safety(draft: Draft, mesh_torque: float, safeties: Safeties) -> str:
     )
     return (
         f"a safety of {value:.3g} against {kind} leaves the rating without reserve ({least:g} required); "
-        f"nearest: at most {format_number(torque, 3, group_digits=False)} N m an input, or a larger module"
+        f"nearest: {nearest}"
     )
 
 
