@@ -216,8 +216,8 @@ def test_a_run_longer_than_the_states_that_are_kept_of_it_is_looked_at_again(asi
 
 
 @pytest.mark.parametrize("looks", [3, 12])
-def test_as_many_second_looks_are_taken_as_are_asked_for(monkeypatch, looks):
-    """Of a run that wanders; seven were the most, whatever was asked for."""
+def test_a_run_that_wanders_gets_as_many_looks_as_asked_for(monkeypatch, looks):
+    """Seven were the most for a run that wanders, whatever was asked for."""
     oscillator, starts = list(random_oscillators(343))[342], []
     integrator = Integrator(oscillator.system, oscillator.speed)
     first = settle(integrator, integrator.by_phase(oscillator.start), Settings())
