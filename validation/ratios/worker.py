@@ -23,7 +23,7 @@ STEP_TOLERANCE = 1e-14
 """Local error of a step over the length scale, so small that the choice of the steps moves no digit."""
 NEUTRAL = 1e-12
 """Part of the largest singular value of all springs up to which a direction is neutral: turns of all bodies
-have some 1e-17, the softest spring of the cases 1e-5.
+have some 1e-16, the softest spring of the cases more than 1e-2.
 """
 SECOND_LOOKS = 12
 """Other starts that a class must come out from again: so many, where a sweep takes three, that a motion which
@@ -135,7 +135,9 @@ def _neutral_part(system: Any, displacement: Any) -> Any:
     """
     import numpy as np
 
-    springs = np.concatenate([system.mesh_jacobian, np.diag(np.sqrt(system.omega_squared))])
+    springs = np.concatenate([system.mesh_jacobian, np.diag((system.omega_squared > 0.0).astype(float))])
+    # rows of one length: else rounding of the stiffest turns the neutral direction by 1e-11
+    springs = springs / np.maximum(np.linalg.norm(springs, axis=1, keepdims=True), NEUTRAL)
     _, stretch, directions = np.linalg.svd(springs)
     neutral = directions[np.pad(stretch, (0, len(directions) - len(stretch))) <= NEUTRAL * stretch[0]]
     return neutral.T @ (neutral @ displacement)
