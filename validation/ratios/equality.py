@@ -394,7 +394,9 @@ def _gap(old: Answers, new: Answers, name: str) -> np.ndarray:
 
 
 def _spread(old: Answers, rounding: Answers, name: str) -> float:
-    """Largest change of an array by other rounding; 0 where a table has other rows then."""
+    """Largest change by other rounding; 0 of whole numbers and where a table has other rows then."""
+    if old[name].dtype.kind == "i":
+        return 0.0
     gap = _gap(old, rounding, name)
     return float(gap.max(initial=0.0)) if np.isfinite(gap).all() else 0.0
 
