@@ -178,10 +178,9 @@ class Stage:
         return f"facegear.stages.{self.name}:{self.name}"
 
     @property
-    def modules(self) -> tuple[str, ...]:
-        """Modules whose code decides its files."""
-        named = [self.function, *(file.view for file in self.files.values() if file.view)]
-        return tuple(name.partition(":")[0] for name in named)
+    def functions(self) -> tuple[str, ...]:
+        """Functions whose code decides its files, as ``module:function``."""
+        return (self.function, *(file.view for file in self.files.values() if file.view))
 
     @property
     def manifest(self) -> str:
