@@ -38,42 +38,50 @@ def calls():
     """Code objects of the package that each stage called, by stage."""
     called = defaultdict(set)
 
-    def traced(name, function):
-        @functools.wraps(function)
-        def call(*args, **given):
-            codes = called[name]
+    def traced(name, function, *args, **given):
+        codes = called[name]
 
-            def note(frame, event, argument):
-                if event == "call":
-                    codes.add(frame.f_code)
+        def note(frame, event, argument):
+            if event == "call":
+                codes.add(frame.f_code)
 
-            before = sys.getprofile()
-            sys.setprofile(note)
-            try:
-                return function(*args, **given)
-            finally:
-                sys.setprofile(before)
-
-        return call
+        before = sys.getprofile()
+        sys.setprofile(note)
+        try:
+            return function(*args, **given)
+        finally:
+            sys.setprofile(before)
 
     def load_traced(reference):
         function = load(reference)
-        return traced(function.__name__, function) if reference in FUNCTIONS else function
+        if reference not in FUNCTIONS:
+            return function
+        return functools.wraps(function)(functools.partial(traced, function.__name__, function))
 
+    def with_machine(stage, arguments):
+        return traced(stage.name, make_machine, stage, arguments)
+
+    make_machine = run.with_machine
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "load", load_traced)
+        patch.setattr(run, "with_machine", with_machine)
         chain = facegear.load(ROOT / "config/quick.yaml", None)._chain
         for name in ASKED:
             chain.output(name)
-    package = str(ROOT / "facegear")
-    return {name: {code for code in codes if in_package(code, package)} for name, codes in called.items()}
+    return {name: {code for code in codes if is_counted(code)} for name, codes in called.items()}
 
 
 FUNCTIONS = {stage.function for stage in STAGES.values()}
 
 
-def in_package(code, package):
-    return code.co_filename.startswith(package) and not code.co_qualname.startswith("<")
+def is_counted(code):
+    """Whether code of the package is the stage's, not that of the frame which calls stages."""
+    path = Path(code.co_filename)
+    if not path.is_relative_to(ROOT / "facegear") or code.co_qualname.startswith("<"):
+        return False
+    return (
+        not path.is_relative_to(ROOT / "facegear/pipeline") and path != ROOT / "facegear/config/arguments.py"
+    )
 
 
 def named(code):
