@@ -1,6 +1,7 @@
 """Load sharing of the running machine while its runouts and pitch deviations turn."""
 
 from facegear.config.dynamics import Accuracy, settings
+from facegear.errors import ConfigError
 from facegear.load_sharing.following import running, running_mesh_table, running_table
 from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.stages.outcome import Outcome
@@ -21,6 +22,9 @@ def following(
 
     Raises NotConverged naming the position or the mesh phase.
     """
+    if not machine.layout.kinematics.flanks_apart:
+        allowed = "geometric where the running machine is followed"
+        raise ConfigError("transmission.mesh_kinematics", "printed", allowed)
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
     moving = running(machine, speed_rpm, part, FINER * positions, settings(accuracy))

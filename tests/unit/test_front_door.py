@@ -385,3 +385,10 @@ def test_stiffness_over_the_pinions_angle_is_the_series_over_one_pitch(gearbox):
     own = spectrum[1 : len(orders)]
     np.testing.assert_allclose(2 * own.real, orders["cos_n_per_m"][1:], atol=1e-6 * 4e8)
     np.testing.assert_allclose(-2 * own.imag, orders["sin_n_per_m"][1:], atol=1e-6 * 4e8)
+
+
+def test_the_running_machine_is_followed_on_geometric_meshes_alone():
+    printed = facegear.load("config/quick.yaml", results=None)
+    with pytest.raises(facegear.ConfigError, match="mesh_kinematics = .*geometric") as refused:
+        printed.following()
+    assert "\n" not in str(refused.value)
