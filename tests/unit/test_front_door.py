@@ -389,6 +389,6 @@ def test_stiffness_over_the_pinions_angle_is_the_series_over_one_pitch(gearbox):
 
 def test_the_running_machine_is_followed_on_geometric_meshes_alone():
     printed = facegear.load("config/quick.yaml", results=None)
-    with pytest.raises(facegear.ConfigError, match="mesh_kinematics = .*geometric") as refused:
+    with pytest.raises(facegear.ConfigError, match=r"mesh_kinematics = .*geometric") as refused:
         printed.following()
     assert "\n" not in str(refused.value)
