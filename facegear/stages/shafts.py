@@ -6,6 +6,7 @@ import pandas as pd
 from facegear.arrays import Arrays
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.shafts import stepped_shaft
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.stages.outcome import Outcome
@@ -39,7 +40,7 @@ def shafts(
     resting = at_rest(machine)
     equilibrium = mean_equilibrium(resting)
     sections = {i: transmission.shaft_of(pinion) for i, pinion in enumerate(transmission.pinions)}
-    stepped = {i: section.shaft() for i, section in sections.items() if section is not None}
+    stepped = {i: stepped_shaft(section) for i, section in sections.items() if section is not None}
     content = {
         "seats": seat_table(resting, line, equilibrium),
         "stiffness": stiffness_table(line),
