@@ -20,17 +20,24 @@ from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 ROOT = Path(__file__).parents[1]
 INTERRUPTED = 130
 """Exit code of a command that was stopped by Ctrl-C, as shells have it."""
+STOPPED = {"new": "; no file was written", "report": "; the same command goes on from here"}
+"""What follows for the user after the line of a command that was stopped by Ctrl-C."""
 CONFIG = "config file (yaml)"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; a mistake of the user's ends it with one line each and exit code 1.
 
-    So does a file or folder that the system refuses.
+    So does a file or folder that the system refuses. Ctrl-C ends it with one line and exit code INTERRUPTED.
     """
     given = parser().parse_args(arguments)
     try:
         return given.command(given)
+    except KeyboardInterrupt:
+        # The terminal shows ^C behind what stands there, such as a question.
+        start = "\n" if sys.stderr.isatty() else ""
+        print(f"{start}{given.name}: stopped{STOPPED.get(given.name, '')}", file=sys.stderr)
+        return INTERRUPTED
     except FacegearError as error:
         print(error, file=sys.stderr)
     except OSError as error:
@@ -45,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser("facegear", description="Spur pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
-    commands = top.add_subparsers(required=True, metavar="command")
+    commands = top.add_subparsers(required=True, metavar="command", dest="name")
     new = commands.add_parser("new", help="write a config to start from, asking for what is not given")
     new.add_argument("config", type=Path, help="file to write, such as own.yaml")
     for name, (kind, default, text) in QUESTIONS.items():
@@ -229,12 +236,7 @@ def _report(given: argparse.Namespace) -> int:
         failures.extend([stage] * summary.startswith("not computed: "))
         _printed(stage, summary)
 
-    try:
-        page = gearbox.report(path, print_stage)
-    except KeyboardInterrupt:
-        print("report: stopped; the same command goes on from here", file=sys.stderr)
-        return INTERRUPTED
-    print(page)
+    print(gearbox.report(path, print_stage))
     return 1 if failures else 0
 
 
