@@ -20,11 +20,7 @@ RQ_PER_RA = 1.25
 SUPPLY_FACTORS = {"jet": 1.2, "dip": 1.0, "submerged": 0.2}
 """X_S of ISO/TS 6336-20."""
 
-GEAR_TESTS: dict[str, Callable[[float], friction.FrictionModel]] = {
-    "schlenk": friction.Schlenk,
-    "iso_6336_20": friction.Iso633620,
-    "iso_6336_22": friction.Iso633622,
-}
+GEAR_TESTS = ("schlenk", "iso_6336_20", "iso_6336_22")
 """Models with the lubricant factor X_L."""
 
 
@@ -67,7 +63,7 @@ class FrictionSection(Section):
         for key, models in (
             ("coefficient", ("constant",)),
             ("constants", ("doleschel",)),
-            ("lubricant_factor", tuple(GEAR_TESTS)),
+            ("lubricant_factor", GEAR_TESTS),
         ):
             value, asked = getattr(self, key), self.model in models
             if asked and value is None and key != "lubricant_factor":
@@ -238,11 +234,19 @@ def _bulk(section: LubricationSection) -> GivenBulk | Cooling | BorrowedBulk:
     return BorrowedBulk(SUPPLY_FACTORS[section.supply])
 
 
+MODELS: dict[str, Callable[[float], friction.FrictionModel]] = {
+    "schlenk": friction.Schlenk,
+    "iso_6336_20": friction.Iso633620,
+    "iso_6336_22": friction.Iso633622,
+}
+"""Models with the lubricant factor X_L by their names, those of GEAR_TESTS."""
+
+
 def _model(section: FrictionSection, oil_factor: float) -> friction.FrictionModel:
     if section.coefficient is not None:
         return friction.Constant(section.coefficient)
     if section.constants is not None:
         return friction.Doleschel(**section.constants.model_dump())
-    if section.model in GEAR_TESTS:
-        return GEAR_TESTS[section.model](section.lubricant_factor or oil_factor)
+    if section.model in MODELS:
+        return MODELS[section.model](section.lubricant_factor or oil_factor)
     return friction.Xu() if section.model == "xu" else friction.BenedictKelley()

@@ -10,7 +10,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.config.machine_errors import error_lags, half_backlash, imperfections
 from facegear.config.machine_layout import ToothNumbers, layout, single_parts
-from facegear.config.shafts import OUTPUT, TurningMassSection
+from facegear.config.shafts import OUTPUT, TurningMassSection, stepped_shaft, torsional_spring
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import error_series
 from facegear.harmonics.series import Harmonics
@@ -135,7 +135,7 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:
-            seats[number] = Seat(condensed(shaft.shaft()), shaft.tilt_inertia_kg_m2)
+            seats[number] = Seat(condensed(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
         if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
             masses[number] = _turning_masses(chain)
     if chain := section.torsion.get(OUTPUT):
@@ -145,5 +145,6 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
 
 def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:
     return tuple(
-        TurningMass(part.name, part.spring(), part.inertia_kg_m2, part.damping_ratio) for part in chain
+        TurningMass(part.name, torsional_spring(part), part.inertia_kg_m2, part.damping_ratio)
+        for part in chain
     )

@@ -20,6 +20,7 @@ from facegear.config.bodies import (
     TiltSection,
 )
 from facegear.config.changes import TEETH
+from facegear.config.shafts import stepped_shaft
 from facegear.config.transmission import PinionPlace, Transmission
 from facegear.shafts.condensed import condensed
 from facegear.transmission.kinematics import KINEMATICS
@@ -112,7 +113,7 @@ def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
     own = section.single_pinions.get(pinion.name)
     if (shaft := section.shaft_of(pinion)) is None:
         return _body(section.pinion, own)
-    compliance = condensed(shaft.shaft()).compliance
+    compliance = condensed(stepped_shaft(shaft)).compliance
     (x, xy), (_, y) = np.linalg.inv(compliance[:2, :2]).tolist()
     mass, inertia = _inertias(section.pinion, own)
     return Body(mass, inertia, (x, y, 1.0 / float(compliance[2, 2])), xy)

@@ -37,12 +37,6 @@ class Limits(Section):
             refuse("life", self.life, "points of rising cycles (from 1 on) and falling factors above 0")
         return self
 
-    @property
-    def curve(self) -> Life:
-        """The life factors as a curve."""
-        cycles, factors = zip(*self.life, strict=True)
-        return Life(cycles, factors)
-
 
 class MeanStress(Section):
     """Mean stress ratio M = constant - slope Y_S."""
@@ -88,12 +82,12 @@ def limits_of(card: Card) -> MaterialCard:
         poisson_ratio=card.poisson_ratio,
         pitting=None
         if pitting is None
-        else PittingLimits(1e6 * pitting.limit_mpa, pitting.curve, pitting.weibull_shape),
+        else PittingLimits(1e6 * pitting.limit_mpa, _life(pitting), pitting.weibull_shape),
         bending=None
         if bending is None
         else BendingLimits(
             limit=1e6 * bending.limit_mpa,
-            life=bending.curve,
+            life=_life(bending),
             weibull_shape=bending.weibull_shape,
             slip_layer=None if bending.slip_layer_mm is None else 1e-3 * bending.slip_layer_mm,
             mean_stress=None
@@ -101,3 +95,9 @@ def limits_of(card: Card) -> MaterialCard:
             else (bending.mean_stress.constant, bending.mean_stress.slope),
         ),
     )
+
+
+def _life(limits: Limits) -> Life:
+    """Life factors over cycles."""
+    cycles, factors = zip(*limits.life, strict=True)
+    return Life(cycles, factors)

@@ -8,8 +8,8 @@ from pydantic import Field, model_validator
 from facegear.arrays import Array
 from facegear.config.base import Section, refuse, require_all
 from facegear.config.material import MaterialSection
-from facegear.errors import InvalidInput
-from facegear.shafts.beam import MOTIONS, Elasticity, Segment
+from facegear.rigid_body import MOTIONS, is_held
+from facegear.shafts.beam import Elasticity, Segment
 from facegear.shafts.condensed import Bearing, Shaft
 
 SOFTEST_BEARING, STIFFEST_BEARING = 1e6, 1e14
@@ -34,10 +34,6 @@ class SegmentSection(Section):
         if self.bore_mm >= self.diameter_mm:
             refuse("bore_mm", self.bore_mm, f"below diameter_mm = {self.diameter_mm:g}")
         return self
-
-    def segment(self) -> Segment:
-        """In m."""
-        return Segment(1e-3 * self.length_mm, 1e-3 * self.diameter_mm, 1e-3 * self.bore_mm)
 
 
 class ShaftBearing(Section):
@@ -145,19 +141,11 @@ class ShaftSection(Section):
         stations = [bearing.at_mm for bearing in self.bearings]
         if max(self.pinion_mm, *stations) > self.length_mm:
             return
-        try:
-            self.shaft().require_held()
-        except InvalidInput as error:
-            refuse("bearings", f"at {', '.join(f'{at:g}' for at in stations)} mm", error.allowed)
-
-    def shaft(self) -> Shaft:
-        """In SI units."""
-        return Shaft(
-            tuple(segment.segment() for segment in self.segments),
-            elasticity(self.material),
-            tuple(Bearing(1e-3 * bearing.at_mm, bearing.stiffness()) for bearing in self.bearings),
-            1e-3 * self.pinion_mm,
-        )
+        distances = [1e-3 * (at - self.pinion_mm) for at in stations]
+        stiffnesses = [bearing.stiffness() for bearing in self.bearings]
+        if not is_held(distances, stiffnesses, 1e-3 * self.length_mm):
+            condition = "such that they hold it along its axis and against tilting"
+            refuse("bearings", f"at {', '.join(f'{at:g}' for at in stations)} mm", condition)
 
 
 class TurningMassSection(Section):
@@ -187,14 +175,50 @@ class TurningMassSection(Section):
             refuse("name", self.name, f"none of {', '.join(RESERVED)}, which name motions of the gear itself")
         return self
 
-    def spring(self) -> float:
-        """N m/rad."""
-        if self.stiffness_n_m_per_rad is not None:
-            return self.stiffness_n_m_per_rad
-        material = elasticity(self.material)
-        return 1.0 / sum(1.0 / part.segment().torsional_stiffness(material) for part in self.segments)
+
+def stepped_shaft(section: ShaftSection) -> Shaft:
+    """Return the shaft of a section with its bearings, in SI units.
+
+    Parameters
+    ----------
+    section : ShaftSection
+        The section, validated.
+
+    Returns
+    -------
+    Shaft
+        Its segments, elasticity, bearings and place of the pinion.
+    """
+    return Shaft(
+        tuple(_segment(part) for part in section.segments),
+        _elasticity(section.material),
+        tuple(Bearing(1e-3 * bearing.at_mm, bearing.stiffness()) for bearing in section.bearings),
+        1e-3 * section.pinion_mm,
+    )
 
 
-def elasticity(material: MaterialSection) -> Elasticity:
-    """In SI units."""
+def torsional_spring(section: TurningMassSection) -> float:
+    """Return the stiffness of the spring before a turning mass.
+
+    Parameters
+    ----------
+    section : TurningMassSection
+        The section, validated.
+
+    Returns
+    -------
+    float
+        Given, or of the shaft that its segments make, N m/rad.
+    """
+    if section.stiffness_n_m_per_rad is not None:
+        return section.stiffness_n_m_per_rad
+    material = _elasticity(section.material)
+    return 1.0 / sum(1.0 / _segment(part).torsional_stiffness(material) for part in section.segments)
+
+
+def _segment(section: SegmentSection) -> Segment:
+    return Segment(1e-3 * section.length_mm, 1e-3 * section.diameter_mm, 1e-3 * section.bore_mm)
+
+
+def _elasticity(material: MaterialSection) -> Elasticity:
     return Elasticity(1e9 * material.young_modulus_gpa, material.poisson_ratio)

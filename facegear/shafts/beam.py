@@ -12,9 +12,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.errors import InvalidInput
-
-MOTIONS = 5
-"""Motions of a point: x, y, z, tilt_x, tilt_y."""
+from facegear.rigid_body import MOTIONS, carry_motion
 
 
 @dataclass(frozen=True)
@@ -75,15 +73,6 @@ def section_flexibility(segment: Segment, material: Elasticity) -> Array:
     return 1.0 / np.array([shear, shear, material.young * segment.area, bending, bending])
 
 
-def carried(distance: float) -> Array:
-    """Motion (5, 5) of a point at a distance (m) along z from another, by that of the other, of a rigid
-    shaft; its transpose carries a load back.
-    """
-    matrix = np.eye(MOTIONS)
-    matrix[0, 4], matrix[1, 3] = distance, -distance
-    return matrix
-
-
 def clamped_compliance(segments: Sequence[Segment], material: Elasticity, at: Array) -> Array:
     """Motion at each of n distances (m) by a load at each, of a shaft clamped at its beginning, (n, n, 5, 5).
 
@@ -99,7 +88,9 @@ def clamped_compliance(segments: Sequence[Segment], material: Elasticity, at: Ar
             end = min(begin + segment.length, reached, loaded)
             if end > begin:
                 for section, weight in ((begin, 1.0), (0.5 * (begin + end), 4.0), (end, 1.0)):
-                    strained = flexibility[:, None] * carried(loaded - section).T
-                    compliance[i, j] += weight / 6.0 * (end - begin) * carried(reached - section) @ strained
+                    strained = flexibility[:, None] * carry_motion(loaded - section).T
+                    compliance[i, j] += (
+                        weight / 6.0 * (end - begin) * carry_motion(reached - section) @ strained
+                    )
         begin += segment.length
     return compliance

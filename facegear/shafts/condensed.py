@@ -8,10 +8,9 @@ import numpy as np
 from facegear.arrays import AnyArray, Array
 from facegear.errors import InvalidInput
 from facegear.number_format import count_noun
-from facegear.shafts.beam import MOTIONS, Elasticity, Segment, carried, clamped_compliance
+from facegear.rigid_body import MOTIONS, carry_motion, is_held
+from facegear.shafts.beam import Elasticity, Segment, clamped_compliance
 
-HELD = 1e-9
-"""Stiffness of the softest rigid motion over the stiffest's below which bearings do not hold a shaft."""
 ROUNDED = 1e-12
 """Part of a shaft's length by which rounding may put a bearing or the pinion beyond its end."""
 
@@ -49,18 +48,6 @@ class Shaft:
     def length(self) -> float:
         """From end to end, m."""
         return sum(segment.length for segment in self.segments)
-
-    def require_held(self) -> None:
-        """Raise InvalidInput where the bearings leave a motion of the rigid shaft free."""
-        held = np.zeros((MOTIONS, MOTIONS))
-        scale = np.array([1.0, 1.0, 1.0, self.length, self.length])
-        for bearing in self.bearings:
-            moved = carried(bearing.position - self.pinion)
-            held += moved.T @ bearing.stiffness @ moved
-        softest, *_, stiffest = np.linalg.eigvalsh(held / np.outer(scale, scale))
-        if softest <= HELD * stiffest:
-            allowed = "such that they hold it along its axis and against tilting"
-            raise InvalidInput("bearings of a shaft", count_noun(len(self.bearings), "bearing"), allowed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +88,10 @@ def condensed(shaft: Shaft) -> CondensedShaft:
     The shaft is clamped at its beginning and moved as a rigid one besides: the motions of its bearings and
     the rigid motion follow from what they give way and from the balance of all loads.
     """
-    shaft.require_held()
+    distances = [bearing.position - shaft.pinion for bearing in shaft.bearings]
+    if not is_held(distances, [bearing.stiffness for bearing in shaft.bearings], shaft.length):
+        condition = "such that they hold it along its axis and against tilting"
+        raise InvalidInput("bearings of a shaft", count_noun(len(shaft.bearings), "bearing"), condition)
     reactions, drifted = _balanced(shaft)
     return CondensedShaft(_symmetric(_moved(shaft, shaft.pinion, reactions, drifted)), reactions)
 
@@ -118,7 +108,7 @@ def _balanced(shaft: Shaft) -> tuple[Array, Array]:
     compliance = clamped_compliance(shaft.segments, shaft.material, at)
     count = len(shaft.bearings)
     springs = np.array([bearing.stiffness for bearing in shaft.bearings])
-    rigid = np.array([carried(position) for position in at])
+    rigid = np.array([carry_motion(position) for position in at])
     bearings = slice(0, MOTIONS * count)
     size = MOTIONS * (count + 1)
     system, load = np.zeros((size, size)), np.zeros((size, MOTIONS))
@@ -137,7 +127,7 @@ def _moved(shaft: Shaft, position: float, reactions: Array, drifted: Array) -> A
     at = np.array([position, *_loaded(shaft)])
     clamped = clamped_compliance(shaft.segments, shaft.material, at)[0, 1:]
     bent = clamped[0] - np.einsum("jkl,jlm->km", clamped[1:], reactions)
-    return np.asarray(carried(position) @ drifted + bent)
+    return np.asarray(carry_motion(position) @ drifted + bent)
 
 
 def _loaded(shaft: Shaft) -> Array:

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.config.machines import MachineInputs
+from facegear.config.shafts import stepped_shaft
 from facegear.errors import ConfigError
 from facegear.stages.outcome import Outcome
 from facegear.ties import first_largest_row
@@ -31,7 +32,7 @@ def shafts(
     resting, section = at_rest(machine), inputs.transmission
     equilibrium = mean_equilibrium(resting)
     shaft_sections = {i: section.shaft_of(pinion) for i, pinion in enumerate(section.pinions)}
-    stepped = {i: shaft.shaft() for i, shaft in shaft_sections.items() if shaft is not None}
+    stepped = {i: stepped_shaft(shaft) for i, shaft in shaft_sections.items() if shaft is not None}
     content = {
         "seats": seat_table(resting, line, equilibrium),
         "stiffness": stiffness_table(line),

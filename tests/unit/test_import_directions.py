@@ -10,7 +10,7 @@ import pytest
 pytestmark = pytest.mark.xdist_group("import_directions")  # a module is parsed once a process
 PACKAGE = Path(__file__).parents[2] / "facegear"
 FOUNDATION = {
-    *("arrays", "blas_threads", "by_content", "errors", "progress", "io", "number_format"),
+    *("arrays", "blas_threads", "by_content", "errors", "progress", "io", "number_format", "rigid_body"),
     *("_kernels", "ties"),
 }
 MAY_IMPORT = {
@@ -20,6 +20,7 @@ MAY_IMPORT = {
     "errors": set(),
     "number_format": set(),
     "progress": set(),
+    "rigid_body": {"arrays"},
     "ties": set(),
     "io": {"errors"},
     "provenance": {"errors", "io"},

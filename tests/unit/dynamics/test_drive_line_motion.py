@@ -17,7 +17,7 @@ from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.track import track
 from facegear.harmonics.series import Harmonics, stacked_values
-from facegear.shafts.beam import carried
+from facegear.rigid_body import carry_motion
 from facegear.transmission.drive_line import TurningMass
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import OpenFlanks
@@ -114,7 +114,7 @@ def test_bearings_of_a_shaft_carry_what_springs_and_dampers_of_its_pinion_do(run
     for pinion in line.tilting:
         own = exact[:, line.motions(pinion)]
         at_pinion = sum(
-            loads[:, 2 * pinion + number] @ carried(position - 0.05)
+            loads[:, 2 * pinion + number] @ carry_motion(position - 0.05)
             for number, position in enumerate((0.0, 0.12))
         )
         np.testing.assert_allclose(at_pinion, own, atol=1e-6 * np.abs(exact).max())

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 from facegear.errors import InvalidInput
-from facegear.shafts.beam import Elasticity, Segment, carried
+from facegear.rigid_body import carry_motion
+from facegear.shafts.beam import Elasticity, Segment
 from facegear.shafts.condensed import Bearing, Shaft, condensed, deflections
 
 STEEL = Elasticity(206e9, 0.3)
@@ -148,7 +149,7 @@ def test_forces_and_moments_of_all_bearings_balance_the_pinions_load(load, pinio
     bearings = (Bearing(positions[0], matrix), bearing(positions[1], 2e8))
     found = condensed(Shaft(segments, STEEL, bearings, pinion)).bearing_loads(np.array(load))
     # A load at a distance along z is one at the pinion: virtual work with the rigid motions of the shaft.
-    total = sum(carried(at - pinion).T @ own for at, own in zip(positions, found, strict=True))
+    total = sum(carry_motion(at - pinion).T @ own for at, own in zip(positions, found, strict=True))
     np.testing.assert_allclose(total, load, atol=1e-8 * (1.0 + np.abs(load).max()))
 
 
