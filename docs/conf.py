@@ -38,7 +38,7 @@ html_css_files = ["tables.css"]
 
 def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
     """Put the stored references, mutants and platforms into the page that shows them."""
-    if name == "verification":
+    if name == "reference/verification":
         import pandas as pd
 
         from validation.mutation.modules import mutation_tables, rows

@@ -1,6 +1,6 @@
 """All config keys in one table, for the docs.
 
-Made by `python -m facegear.config.reference > docs/config.md`.
+Made by `python -m facegear.config.reference > docs/reference/config.md`.
 """
 
 import json
@@ -12,7 +12,7 @@ from facegear.config.model import Config
 NUMBERS = ("minimum", "maximum")
 """Words of a JSON schema for the bounds of a number."""
 HEAD = """# All keys of a config
-Made from the models that check a config, by `python -m facegear.config.reference > docs/config.md`.
+Made from the models that check a config, by `python -m facegear.config.reference > docs/reference/config.md`.
 Required keys are required where their section is given; `[]` stands for each item of a list, `<name>` for a
 name of your own. A file's name counts from the folder of the config that holds it.
 """

@@ -6,7 +6,7 @@ meshes. Each computed value is that of the machine's own statics.
 
 References
 ----------
-Singh 2010 for the curves of idlers; docs/theory.md for the loop through inputs and idlers.
+Singh 2010 for the curves of idlers; docs/explanation/theory.md for the loop through inputs and idlers.
 """
 
 from collections.abc import Sequence
@@ -456,7 +456,7 @@ def input_curves(machine: Machine, options: MapOptions, largest: float) -> pd.Da
 
 
 def loop_factor(mapped: MappedMachine, group: LoadGroup) -> float:
-    """Return K_gamma of an input by the loop formula of docs/theory.md.
+    """Return K_gamma of an input by the loop formula of docs/explanation/theory.md.
 
     Parameters
     ----------

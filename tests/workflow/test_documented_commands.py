@@ -15,7 +15,12 @@ import facegear.__main__ as command_line
 from facegear.compare.answers import stored
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "results" / "README.md"]
+DOCS = (ROOT / "docs" / part for part in (".", "tutorials", "how_to", "explanation", "reference"))
+PAGES = [
+    ROOT / "README.md",
+    *(page for part in DOCS for page in sorted(part.glob("*.md"))),
+    ROOT / "results" / "README.md",
+]
 COMMANDS = sorted(
     {
         line.split("#")[0].strip()

@@ -109,7 +109,7 @@ def test_a_row_of_an_unknown_kind_is_refused():
 
 
 def test_the_page_opens_with_the_shares_and_says_what_was_never_measured():
-    page = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8").splitlines()
+    page = (ROOT / "docs" / "reference" / "verification.md").read_text(encoding="utf-8").splitlines()
     assert page[2].startswith("## What was never checked against the real world")
     opening = page[3 : page.index("## How it is checked")]
     assert "{shares}" in opening
