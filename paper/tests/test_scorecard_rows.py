@@ -209,7 +209,7 @@ def test_the_pages_count_the_claims_that_are_judged():
     root = CLAIMS.parents[2]
     (rows,) = re.findall(r"scorecard \|.*\| (\d+) rows", (root / "README.md").read_text())
     (dynamic,) = re.findall(
-        r"Of the (\d+) rows that hang on these inputs two are",
+        r"Of the (\d+) rows that depend on these inputs two are",
         (root / "docs" / "explanation" / "validation.md").read_text(),
     )
     assert int(rows) == len(claims)
