@@ -29,10 +29,10 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "stages": listing,
 }
 """Text of every generated block, by its name in the pages."""
-GENERATED = re.compile(r"(?ms)^<!-- generated: ([\w ]+) -->\n(.*?)^<!-- end -->$")
-STORED = re.compile(r"(?ms)^<!-- stored: (\S+) -->\n(.*?)^<!-- end -->$")
+GENERATED_BLOCK = re.compile(r"(?ms)^<!-- generated: ([\w ]+) -->\n(.*?)^<!-- end -->$")
+STORED_TABLE = re.compile(r"(?ms)^<!-- stored: (\S+) -->\n(.*?)^<!-- end -->$")
 """A table whose rows a test compares with the stored csv that is named."""
-CODE = re.compile(r"(?ms)^ *```.*?^ *```$")
+CODE_BLOCK = re.compile(r"(?ms)^ *```.*?^ *```$")
 WHOLE = ("reference/config.md",)
 """Pages that are generated as a whole, each by its own command."""
 MOST_WORDS = 45_000
@@ -69,10 +69,10 @@ def renew_blocks(text: str) -> str:
         For a block with a name that is none of BLOCKS.
     """
 
-    def block(found: re.Match[str]) -> str:
-        return f"<!-- generated: {found[1]} -->\n\n{BLOCKS[found[1]]().strip()}\n\n<!-- end -->"
+    def block(match: re.Match[str]) -> str:
+        return f"<!-- generated: {match[1]} -->\n\n{BLOCKS[match[1]]().strip()}\n\n<!-- end -->"
 
-    return GENERATED.sub(block, text)
+    return GENERATED_BLOCK.sub(block, text)
 
 
 def count_words(text: str) -> int:
@@ -91,8 +91,8 @@ def count_words(text: str) -> int:
     int
         Number of words.
     """
-    for left_out in (GENERATED, STORED, CODE):
-        text = left_out.sub("", text)
+    for pattern in (GENERATED_BLOCK, STORED_TABLE, CODE_BLOCK):
+        text = pattern.sub("", text)
     return sum(re.search(r"[^\W_]", word) is not None for word in text.split())
 
 

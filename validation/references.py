@@ -144,7 +144,7 @@ def shares_table(rows: pd.DataFrame) -> str:
     return "\n".join([*lines, f"| all | {total} | 100.0 % |"])
 
 
-def _checks(rows: pd.DataFrame) -> pd.Series:
+def _capabilities(rows: pd.DataFrame) -> pd.Series:
     """Names of the capabilities that each row checks, a list each."""
     return rows["capability"].str.split()
 
@@ -162,10 +162,10 @@ def counts_table(rows: pd.DataFrame) -> str:
     str
         A table as Markdown, one row a stage or method; a reference that checks several counts for each.
     """
-    several = _checks(rows)
+    capabilities = _capabilities(rows)
     lines = ["| capability | " + " | ".join(Kind) + " |", "|---" * (len(Kind) + 1) + "|"]
-    for name in [*STAGES, *sorted({name for names in several for name in names} - set(STAGES))]:
-        by_kind = rows[[name in names for names in several]]["kind"].value_counts()
+    for name in [*STAGES, *sorted({name for names in capabilities for name in names} - set(STAGES))]:
+        by_kind = rows[[name in names for names in capabilities]]["kind"].value_counts()
         lines.append(f"| {name} | " + " | ".join(str(by_kind.get(kind, "-")) for kind in Kind) + " |")
     return "\n".join(lines)
 
@@ -184,13 +184,13 @@ def comparison_tables(rows: pd.DataFrame) -> str:
         Headings and tables as Markdown; a row that checks several capabilities stands below the first.
     """
     titles = {name: stage.title for name, stage in STAGES.items()}
-    first = _checks(rows).str[0]
+    first = _capabilities(rows).str[0]
     lines: list[str] = []
     for name in [*titles, *sorted(set(first) - set(titles))]:
-        checked = rows[first == name]
-        if len(checked):
+        references = rows[first == name]
+        if len(references):
             title = titles.get(name, METHOD_TITLES.get(name, name))
-            lines += ["", f"## {title} (`{name}`)", "", *_rows(checked)]
+            lines += ["", f"## {title} (`{name}`)", "", *_rows(references)]
     return "\n".join(lines)
 
 

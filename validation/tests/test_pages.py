@@ -5,12 +5,12 @@ import re
 import pytest
 
 from validation.pages import (
-    CODE,
+    CODE_BLOCK,
     DOCS,
-    GENERATED,
+    GENERATED_BLOCK,
     MOST_WORDS,
     ROOT,
-    STORED,
+    STORED_TABLE,
     WHOLE,
     count_words,
     pages,
@@ -31,7 +31,7 @@ def name(page):
 def prose(page):
     """Lines of a page without code, generated blocks and tables."""
     text = page.read_text(encoding="utf-8")
-    for left_out in (GENERATED, STORED, CODE):
+    for left_out in (GENERATED_BLOCK, STORED_TABLE, CODE_BLOCK):
         text = left_out.sub("", text)
     return [line for line in text.splitlines() if not line.lstrip().startswith("|")]
 
@@ -79,6 +79,6 @@ def test_words_leave_out_code_and_tables_of_stored_results():
 def test_a_stored_block_is_a_table_beside_its_csv(page):
     text = page.read_text(encoding="utf-8")
     assert text.count("<!-- stored: ") + text.count("<!-- generated: ") == text.count("<!-- end -->")
-    for file, block in STORED.findall(text):
+    for file, block in STORED_TABLE.findall(text):
         assert (ROOT / file).suffix == ".csv" and (ROOT / file).is_file()
         assert all(line.startswith("|") for line in block.strip().splitlines())
