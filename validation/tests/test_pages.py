@@ -82,3 +82,14 @@ def test_a_stored_block_is_a_table_beside_its_csv(page):
     for file, block in STORED_TABLE.findall(text):
         assert (ROOT / file).suffix == ".csv" and (ROOT / file).is_file()
         assert all(line.startswith("|") for line in block.strip().splitlines())
+
+
+def test_the_map_of_packages_names_each_package_and_module_once():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    block = re.search(r"(?s)<!-- map of packages -->\n(.*?)<!-- end -->", text)[1]
+    named = [one for line in block.splitlines()[2:] for one in re.findall(r"`([\w.]+)`", line.split("|")[1])]
+    library = [path for path in (ROOT / "facegear").iterdir() if not path.name.startswith("__pycache__")]
+    packages = {path.name for path in library if any(path.glob("*.py"))}
+    modules = {path.stem for path in library if path.suffix == ".py" and path.stem != "__init__"}
+    assert len(named) == len(set(named))
+    assert {one.removesuffix(".py") for one in named} == packages | modules
