@@ -1,7 +1,7 @@
 """Load sharing of equal paths: the closed form of epicyclic gears and its public numbers.
 
-Reference: A. Singh, Load sharing behavior in epicyclic gears, Mechanism and Machine Theory 45 (2010); numbers
-for a machine of this kind as the project's page on the sharing map prints them. They cannot see unequal
+Reference: the formula of Singh 2010, and what follows from it for a machine of this kind. Percentiles and the
+enumeration were made for this project beside it, and are no numbers of the paper. They cannot see unequal
 meshes, and nothing of dynamics.
 """
 
@@ -117,8 +117,8 @@ def test_shares_of_idlers_are_those_of_planets_around_a_floating_sun(planets):
 
 
 @against(
-    "external source",
-    "Singh 2010, enumeration of all contact sets at X_e = 0.8",
+    "second implementation",
+    "formula of Singh 2010, enumeration of all contact sets at X_e = 0.8",
     capability="sharing_map",
     module="facegear.transmission.block_statics",
 )
@@ -130,8 +130,8 @@ def test_shares_past_the_loss_of_contact_are_the_enumerated_ones(upper):
 
 
 @against(
-    "external source",
-    "Singh 2010, percentiles of 4e6 samples",
+    "second implementation",
+    "formula of Singh 2010, percentiles of 4e6 samples drawn for this project",
     capability="sharing_map",
     module="facegear.load_sharing.closed_form",
 )
