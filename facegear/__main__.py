@@ -10,18 +10,19 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NoReturn
 
 from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.number_format import count_noun
-from facegear.questions import OPTIONS, QUESTIONS, answered, flag
+from facegear.questions import OPTIONS, QUESTIONS, answered, flag, reader
 
 ROOT = Path(__file__).parents[1]
 INTERRUPTED = 130
 """Exit code of a command that was stopped by Ctrl-C, as shells have it."""
 STOPPED = {"new": "; no file was written", "report": "; the same command goes on from here"}
-"""What follows for the user after the line of a command that was stopped by Ctrl-C."""
+"""Rest of the line of a command that was stopped by Ctrl-C: what the user has or can do."""
 CONFIG = "config file (yaml)"
 
 
@@ -49,17 +50,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 1
 
 
+class Parser(argparse.ArgumentParser):
+    """Parser that says a mistake in one line, without the usage of all options."""
+
+    def error(self, message: str) -> NoReturn:
+        """End the program with exit code 2.
+
+        Parameters
+        ----------
+        message : str
+            The mistake.
+        """
+        self.exit(
+            2, f"{self.prog}: {message.removeprefix('argument ')}; {self.prog} --help lists all options\n"
+        )
+
+
 def parser() -> argparse.ArgumentParser:
-    top = argparse.ArgumentParser("facegear", description="Spur pinion and face gear transmissions.")
+    top = Parser("facegear", description="Spur pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
     commands = top.add_subparsers(required=True, metavar="command", dest="name")
     new = commands.add_parser("new", help="write a config to start from, asking for what is not given")
     new.add_argument("config", type=Path, help="file to write, such as own.yaml")
     for name, (kind, default, text) in QUESTIONS.items():
-        new.add_argument(flag(name), type=kind, help=text + ("" if default is None else f" ({default})"))
+        new.add_argument(
+            flag(name), type=reader(kind), help=text + ("" if default is None else f" ({default})")
+        )
     chosen = new.add_argument_group("values that are chosen unless they are given")
     for name, (kind, text) in OPTIONS.items():
-        chosen.add_argument(flag(name), type=kind, help=text)
+        chosen.add_argument(flag(name), type=reader(kind), help=text)
     new.add_argument(
         "--from", dest="rexs", type=Path, metavar="REXS", help="REXS file whose equal pinions are taken over"
     )
@@ -98,7 +117,9 @@ def parser() -> argparse.ArgumentParser:
     for name, default in LIMITS.items():
         kind = int if "teeth" in name else float
         text = "required" if default is None else f"({default:g})"
-        limits.add_argument(flag(name), type=kind, required=default is None, default=default, help=text)
+        limits.add_argument(
+            flag(name), type=reader(kind), required=default is None, default=default, help=text
+        )
     limits.set_defaults(command=_limits)
     compare = commands.add_parser("compare", help="what moved between two folders of results, and why")
     compare.add_argument("old", help="a folder of results, or a stored answer such as current/quick")

@@ -93,6 +93,22 @@ def extras_named() -> Iterator[None]:
         raise MissingExtra(library, EXTRAS[library]) from error
 
 
+def plain_reason(error: Exception) -> str:
+    """Return why a file cannot be read, without the system's number and the path.
+
+    Parameters
+    ----------
+    error : Exception
+        Error of the system or of a reader.
+
+    Returns
+    -------
+    str
+        Such as `no such file or directory`.
+    """
+    return error.strerror.lower() if isinstance(error, OSError) and error.strerror else str(error)
+
+
 def file_path(value: object, argument: str = "path") -> Path:
     """Return a path from the argument of a user.
 

@@ -1,7 +1,8 @@
 """What `facegear new` asks for."""
 
 import sys
-from collections.abc import Mapping
+from argparse import ArgumentTypeError
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from facegear.errors import ConfigError, FacegearError
@@ -44,6 +45,34 @@ OPTIONS: dict[str, tuple[type[int] | type[float], str]] = {
 """Values that `new` chooses unless they are given: kind of number, and what it is."""
 
 
+KINDS = {int: "a whole number", float: "a number"}
+"""Kind of number that an answer must be, in words."""
+
+
+def reader(kind: type[int] | type[float]) -> Callable[[str], float]:
+    """Return a function that reads a number from a word of the command line.
+
+    Parameters
+    ----------
+    kind : type
+        `int` or `float`; the number has the unit of its argument.
+
+    Returns
+    -------
+    callable
+        From a word to a number in the unit of its argument. Raises ArgumentTypeError, with the word and what
+        it must be, for a word that is no such number.
+    """
+
+    def read(word: str) -> float:
+        try:
+            return kind(word)
+        except ValueError:
+            raise ArgumentTypeError(f"{word!r}: must be {KINDS[kind]}") from None
+
+    return read
+
+
 def flag(name: str) -> str:
     """The option of an argument."""
     return f"--{name.replace('_', '-')}"
@@ -77,7 +106,7 @@ def asked(name: str) -> float:
     try:
         return kind(answer)
     except ValueError:
-        raise ConfigError(name, answer, "a whole number" if kind is int else "a number") from None
+        raise ConfigError(name, answer, KINDS[kind]) from None
 
 
 def _or_default(name: str, given: Mapping[str, Any]) -> Any:

@@ -30,6 +30,7 @@ from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors, NotConverged
+from facegear.geometry.design import PairDesign
 from facegear.number_format import count_noun
 
 MAX_POINTS = 200
@@ -80,12 +81,28 @@ def check_strain(pair: ToothPair, contact: Contact) -> None:
 
     Raises ConfigError.
     """
-    design = pair_design(pair)
-    width = design.face_gear.outer_radius - design.face_gear.inner_radius
-    modulus = min(material.young_modulus for material in materials(pair))
-    largest = STRAIN * modulus * design.module * width * design.pinion_pitch_radius
+    largest = tooth_limit(pair_design(pair), min(material.young_modulus for material in materials(pair)))
     if contact.torques_n_m[-1] > largest:
         raise ConfigError("contact.torques_n_m", contact.torques_n_m[-1], f"at most {largest:.4g}: {BROKEN}")
+
+
+def tooth_limit(design: PairDesign, modulus: float) -> float:
+    """Return the torque at which a tooth leaves what a linear elastic model can say.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    modulus : float
+        Young's modulus, Pa.
+
+    Returns
+    -------
+    float
+        Torque on the pinion, N m.
+    """
+    width = design.face_gear.outer_radius - design.face_gear.inner_radius
+    return STRAIN * modulus * design.module * width * design.pinion_pitch_radius
 
 
 def check_machine_strain(pair: ToothPair, section: Transmission) -> None:

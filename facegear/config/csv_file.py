@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from facegear.config.base import RENAMED, suggestion
+from facegear.errors import plain_reason
 from facegear.number_format import count_noun
 
 LARGEST_FILE = 2_000_000
@@ -134,7 +135,7 @@ def _text(path: Path) -> str:
     except FileNotFoundError:
         raise CsvFault("no such file") from None
     except (OSError, ValueError) as error:
-        raise CsvFault(f"it cannot be read ({getattr(error, 'strerror', None) or error})") from None
+        raise CsvFault(f"it cannot be read ({plain_reason(error)})") from None
     if len(content) > LARGEST_FILE:
         raise CsvFault(f"it is longer than {LARGEST_FILE} bytes")
     try:

@@ -18,7 +18,7 @@ from ruamel.yaml.events import (
     SequenceStartEvent,
 )
 
-from facegear.errors import ConfigErrors
+from facegear.errors import ConfigErrors, plain_reason
 
 LARGEST_FILE = 500_000
 """Bytes of a config file that are read at most."""
@@ -92,7 +92,7 @@ def _text(path: Path) -> str:
     except FileNotFoundError:
         raise ConfigErrors(str(path), ["no such config file"]) from None
     except (OSError, ValueError) as error:
-        raise ConfigErrors(str(path), [f"cannot be read ({error})"]) from None
+        raise ConfigErrors(str(path), [f"cannot be read ({plain_reason(error)})"]) from None
     if len(content) > LARGEST_FILE:
         raise ConfigErrors(str(path), [f"longer than {LARGEST_FILE} bytes, the most that a config may have"])
     try:

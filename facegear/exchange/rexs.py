@@ -9,7 +9,7 @@ from math import isfinite, nan
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
-from facegear.errors import FacegearError
+from facegear.errors import FacegearError, plain_reason
 from facegear.io.atomic import atomic_path
 
 VERSION = "2.0"
@@ -146,7 +146,7 @@ def read_rexs(path: str | Path) -> Unit:
     try:
         root = Xml.parse(path).getroot()
     except (OSError, ValueError, LookupError, Xml.ParseError) as error:
-        raise FacegearError(f"{path}: not a readable REXS file ({error})") from None
+        raise FacegearError(f"{path}: not a readable REXS file ({plain_reason(error)})") from None
     if root.tag != "model":
         raise FacegearError(f"{path}: a REXS file begins with model, not {root.tag}")
     try:
@@ -161,7 +161,7 @@ def _refuse_other_forms(path: Path) -> None:
         with path.open("rb") as file:
             start = file.read(64).lstrip(b"\xef\xbb\xbf \t\r\n")
     except OSError as error:
-        raise FacegearError(f"{path}: not a readable REXS file ({error})") from None
+        raise FacegearError(f"{path}: not a readable REXS file ({plain_reason(error)})") from None
     for first, form in ((b"PK", "zipped (.rexsz)"), (b"{", "JSON (.rexsj)")):
         if start.startswith(first):
             raise FacegearError(f"{path}: this is the {form} form of REXS; save it as XML (.rexs)")

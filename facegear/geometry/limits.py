@@ -71,10 +71,10 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
         reason = "the shaper's tip leaves no fillet further out; a larger shaper.tip_rounding_modules does"
         candidates.append((last, reason))
     outer, outer_reason = min(candidates)
-    found = FaceRange(inner, outer, inner_reason, outer_reason)
+    face = FaceRange(inner, outer, inner_reason, outer_reason)
     if outer - inner < 0.5 * design.module:
-        raise _no_face(design, f"less than half a module of face is left {found}")
-    return found
+        raise _no_face(design, f"less than half a module of face is left {face}")
+    return face
 
 
 def _no_face(design: PairDesign, reason: str) -> GeometryError:

@@ -9,7 +9,7 @@ from zipfile import BadZipFile
 
 import pandas as pd
 
-from facegear.errors import FacegearError, file_path
+from facegear.errors import FacegearError, file_path, plain_reason
 from facegear.io.atomic import atomic_path
 from facegear.io.tables import NAMES
 
@@ -42,7 +42,7 @@ def read(path: str | Path) -> dict[str, pd.DataFrame]:
         with pd.ExcelFile(path, engine="openpyxl") as book:
             return {str(name): _sheet(book, str(name)) for name in book.sheet_names}
     except (OSError, ValueError, KeyError, BadZipFile) as error:
-        raise FacegearError(f"{path}: not a readable workbook ({error})") from None
+        raise FacegearError(f"{path}: not a readable workbook ({plain_reason(error)})") from None
 
 
 def _sheet(book: pd.ExcelFile, name: str) -> pd.DataFrame:

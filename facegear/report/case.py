@@ -87,6 +87,14 @@ DUTY_LOADS = (
     "factor (K_v): the largest force over that mean; followed: computed through the hunting cycle while "
     "runouts turn"
 )
+BINS = {"0": "nominal", "-1": "all bins"}
+"""Bins of a table of losses that are none of the duty cycle, in words."""
+SOURCE = "allowed_contact_temperature_source"
+"""Column of table `friction` whose text is the same at every torque."""
+LOSSES = (
+    "The machine at its nominal load and in every bin of its duty cycle. power through meshes: of all meshes "
+    "together, over the power in"
+)
 EVERY_LOAD = "Loads of every flank in every bin"
 DYNAMIC = (
     "Largest root stress of every mesh at the nominal speed. mean: with the mean force of the mesh; running: "
@@ -340,12 +348,16 @@ def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
 
 def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     shown = tables["friction"].dropna(axis="columns", how="all")
-    listed = [Table("One mesh at the nominal speed, by torque", shown)]
+    sources = shown.pop(SOURCE).dropna().unique() if SOURCE in shown else []
+    title = ". Allowed contact temperature: ".join(["One mesh at the nominal speed, by torque", *sources])
+    listed = [Table(title, shown)]
     if "machine_loss" in tables:
-        whole = tables["machine_loss"].dropna(axis="columns", how="all")
-        meshes = tables["mesh_losses"].dropna(axis="columns", how="all")
+        whole, meshes = (
+            bins_in_words(tables[name].dropna(axis="columns", how="all"))
+            for name in ("machine_loss", "mesh_losses")
+        )
         listed = [
-            Table("The machine; bin 0 is the nominal load, bin -1 the whole duty cycle", whole),
+            Table(LOSSES, whole),
             *listed,
             Table("Every loaded flank", meshes, is_folded=True),
             Table("Heat of every body", tables["body_heat"], is_folded=True),
@@ -362,6 +374,22 @@ def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
             is_folded=True,
         ),
     ]
+
+
+def bins_in_words(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return rows of losses with words for the nominal load and the whole duty cycle among the bins.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Table with the column `bin`: a bin of the duty cycle, 0 or -1.
+
+    Returns
+    -------
+    DataFrame
+        The table with text in this column.
+    """
+    return rows.assign(bin=rows["bin"].astype(int).astype(str).replace(BINS))
 
 
 def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:

@@ -17,6 +17,7 @@ UNITS = {
     "um": "µm",
     "mm": "mm",
     "kw": "kW",
+    "kwh": "kWh",
     "kg_m2": "kg m2",
     "kg": "kg",
     "urad": "µrad",

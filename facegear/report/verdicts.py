@@ -182,13 +182,18 @@ def _oil_verdict(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], 
         return Verdict(OIL[failure], GREY, f"Not judged: the oil's card does not give {missing_data}.")
     row = first_largest_row(losses.assign(spare=-losses[column]), "spare")
     at = f"in bin {row['bin']} of the duty cycle" if row["bin"] > 0 else "at the nominal load"
-    margin = f", {format_number(row['scuffing_margin_k'])} K to the limit" if failure == "scuffing" else ""
+    margin = f", {_margin(row['scuffing_margin_k'])}" if failure == "scuffing" else ""
     safety = f"{row[column]:.2f}"
     reason = f"{row['mesh']}, {row['flank']} flank, {at}: safety {safety} of {SAFE:g}{margin}."
     red = row[column] < SAFE
     marks = () if row["within_torques_solved"] else (BEYOND,)
     status = f"safety of {row['mesh']} against {failure} is {safety} of {SAFE:g}" if red else ""
     return Verdict(OIL[failure], RED if red else GREEN, _sentence(reason), marks, status)
+
+
+def _margin(kelvin: float) -> str:
+    """Return the distance (K) of a temperature from its limit in words; negative beyond the limit."""
+    return f"{format_number(abs(kelvin))} K {'below' if kelvin >= 0.0 else 'above'} the limit"
 
 
 def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Verdict:

@@ -77,8 +77,11 @@ def grouped_warnings(
 
 
 def _of_note(note: str) -> ResultWarning:
-    key, _, _ = note.partition(":")
+    key, _, words = note.partition(": ")
     section = key.split(".")[0].split(" ")[0]
+    if key == section:
+        # The subject already says what a section without a key says.
+        note = words[:1].upper() + words[1:]
     return ResultWarning(SECTIONS.get(section, "Machine"), GIVEN_INPUT, _line(note))
 
 

@@ -1,7 +1,8 @@
 """Quick estimates of what a machine to start from will do."""
 
 from collections.abc import Iterator
-from math import pi, sqrt, tan
+from dataclasses import dataclass
+from math import exp, log, pi, sqrt, tan
 
 import numpy as np
 from scipy.optimize import brentq
@@ -11,6 +12,7 @@ from facegear.config.strength import Strength, rating_request
 from facegear.geometry.analysis import path_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.number_format import count_noun, format_number
+from facegear.strength.factors import contact_ratio_factor
 from facegear.strength.rating import hertz_stress, permissible_bending, pinion_form, standard_bending
 from facegear.transmission.loaded_modes import vibrating_machine
 from facegear.variants.split_bearings import (
@@ -24,6 +26,10 @@ from facegear.variants.wish_limits import RADIAL
 
 RESONANCES = 3
 """Number of resonances that are printed."""
+RESERVES = {"bending": 1.75, "pitting": 1.25}
+"""Estimated safety over that of the report which is allowed for: largest of docs/measured/starters.csv."""
+LEAST_PART = 1e-4
+"""Smallest part of the torque that is searched for a safe one."""
 
 
 def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: float) -> Iterator[str]:
@@ -63,12 +69,14 @@ def estimate_lines(draft: Draft, bearings: Bearings, split: Split, mesh_torque: 
         )
         if split.excess > 1.0:
             yield _poor_split(draft, bearings)
-    bending, pitting = _safeties(draft, mesh_torque)
+    safeties = estimate_safeties(draft, mesh_torque)
     yield (
-        f"safety of the pinion against bending {bending:.3g}, against pitting {pitting:.3g} at "
-        f"{_text(mesh_torque)} N m a mesh (standard for cylindrical gears, crowning of the flanks, "
-        "endurance limit)"
+        f"safety of the pinion against bending {safeties.bending:.3g}, against pitting "
+        f"{safeties.pitting:.3g} at {_text(mesh_torque)} N m a mesh (standard for cylindrical gears, "
+        "crowning of the flanks, endurance limit)"
     )
+    if safeties.spare < 1.0:
+        yield _poor_safety(draft, mesh_torque, safeties)
     yield _resonances(draft, bearings)
 
 
@@ -91,16 +99,79 @@ def _poor_split(draft: Draft, bearings: Bearings) -> str:
     )
 
 
-def _safeties(draft: Draft, mesh_torque: float) -> tuple[float, float]:
+@dataclass(frozen=True)
+class Safeties:
+    """Estimated safety of the pinion against bending and pitting, and what is required of both."""
+
+    bending: float
+    pitting: float
+    required_bending: float
+    required_pitting: float
+
+    @property
+    def spare(self) -> float:
+        """Smaller one of both safeties over its reserve and what is required; below 1 it may be red."""
+        return min(self.spare_bending, self.spare_pitting)
+
+    @property
+    def spare_bending(self) -> float:
+        """Safety against bending over its reserve and what is required."""
+        return self.bending / (RESERVES["bending"] * self.required_bending)
+
+    @property
+    def spare_pitting(self) -> float:
+        """Safety against pitting over its reserve and what is required."""
+        return self.pitting / (RESERVES["pitting"] * self.required_pitting)
+
+
+def estimate_safeties(draft: Draft, mesh_torque: float) -> Safeties:
+    """Estimate the safety of the pinion by the standard for cylindrical gears.
+
+    The standard's contact ratio factor is left out: it is for a load that several pairs carry evenly along
+    the face, and flanks with crowning carry the largest pressure while one pair is in contact.
+
+    Parameters
+    ----------
+    draft : Draft
+        The machine.
+    mesh_torque : float
+        Torque on the pinion, N m.
+
+    Returns
+    -------
+    Safeties
+        For the endurance limit, dimensionless.
+    """
     design, ratio = draft.teeth.design, draft.teeth.analysis.contact_ratio
-    values = draft.values_of_config["strength"]
-    request = rating_request(parse(Strength, values), design)
+    request = rating_request(parse(Strength, draft.values_of_config["strength"]), design)
     form = pinion_form(design, ratio)
     permissible = permissible_bending(design, request.bodies["pinion"], form.notch_parameter, 0.0)
     pitting, _ = request.bodies["pinion"].limits()
-    stress = hertz_stress(design, ratio, request)["pinion"](mesh_torque)
+    stress = hertz_stress(design, ratio, request)["pinion"](mesh_torque) / contact_ratio_factor(ratio)
     stress *= sqrt(load_concentration(design, mesh_torque))
-    return permissible / standard_bending(design, form)(mesh_torque), pitting.limit / stress
+    bending = permissible / standard_bending(design, form)(mesh_torque)
+    return Safeties(bending, pitting.limit / stress, request.min_bending, request.min_pitting)
+
+
+def _poor_safety(draft: Draft, mesh_torque: float, safeties: Safeties) -> str:
+    """Name the torque at which the rating would be as required."""
+
+    def excess(logarithm: float) -> float:
+        return log(estimate_safeties(draft, mesh_torque * exp(logarithm)).spare)
+
+    nearest = "a larger module"
+    if excess(log(LEAST_PART)) > 0.0:
+        torque = draft.wishes.torque_n_m * exp(brentq(excess, log(LEAST_PART), 0.0))
+        nearest = f"at most {format_number(torque, 3, group_digits=False)} N m an input, or {nearest}"
+    kind, value, least = (
+        ("bending", safeties.bending, safeties.required_bending)
+        if safeties.spare_bending < safeties.spare_pitting
+        else ("pitting", safeties.pitting, safeties.required_pitting)
+    )
+    return (
+        f"a safety of {value:.3g} against {kind} leaves the rating without reserve ({least:g} required); "
+        f"nearest: {nearest}"
+    )
 
 
 def load_concentration(design: PairDesign, mesh_torque: float) -> float:

@@ -21,15 +21,16 @@ from facegear.errors import FacegearError
 from facegear.geometry.design import Material
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.closed_form import SplitMachine
+from facegear.number_format import count_noun
 from facegear.transmission.machine import Machine
 from facegear.variants.split_bearings import (
     STIFF,
     Bearings,
     rounded,
 )
-from facegear.variants.starting_teeth import choose_teeth, chosen_keys
+from facegear.variants.starting_teeth import MORE_SHAPER_TEETH, choose_teeth, chosen_keys
 from facegear.variants.starting_wishes import MachineWishes
-from facegear.variants.wish_limits import RADIAL
+from facegear.variants.wish_limits import RADIAL, TORQUE_MARGINS
 
 STEEL = 7850.0
 """Density of steel, kg/m3."""
@@ -45,8 +46,6 @@ LEFT_ABOVE_BORE = 0.8
 """Least thickness, in modules, between bore and root of a pinion."""
 GOLDEN_DEG = 137.508
 """Angle between the directions of the errors of one pinion and the next, so that no two are alike."""
-TORQUE_MARGINS = (0.7, 1.5)
-"""Smallest and largest torque of the contact analysis over those of the meshes at rest."""
 SPEEDS = (0.2, 1.5)
 """First and last speed of the sweep over the nominal one."""
 TORQUES = 4
@@ -62,9 +61,10 @@ MATERIAL = Material(206e9, 0.3)
 class Draft:
     """The numbers of a machine whose bearings are still open."""
 
-    def __init__(self, wishes: MachineWishes) -> None:
+    def __init__(self, wishes: MachineWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH[0]) -> None:
         self.wishes = wishes
-        self.teeth = choose_teeth(wishes.teeth)
+        self.more_shaper_teeth = more_shaper_teeth
+        self.teeth = choose_teeth(wishes.teeth, more_shaper_teeth)
         design, module = self.teeth.design, wishes.module_mm
         root = 1e3 * design.pinion_root_radius
         self.values = chosen_keys(self.teeth)
@@ -271,6 +271,12 @@ class Draft:
             )
         return "".join(lines)
 
+    def _shaper_reason(self) -> str:
+        if self.more_shaper_teeth == MORE_SHAPER_TEETH[0]:
+            return "three more than the pinion, which localises the contact"
+        count = count_noun(self.more_shaper_teeth, "tooth", "teeth")
+        return f"{count} more than the pinion, which spreads the contact: pitting allows no more"
+
     def _reasons(self) -> dict[str, str]:
         """Reason of each value, or that it was given."""
         low, high = (1e3 * radius for radius in self.teeth.allowed)
@@ -288,7 +294,7 @@ class Draft:
             "outer_radius_mm": face,
             "gear_addendum_modules": "chosen: tips that clear the pinion's fillet",
             "rim_thickness_mm": "chosen: 3.2 modules",
-            "shaper_teeth": "chosen: three more than the pinion, which localises the contact",
+            "shaper_teeth": f"chosen: {self._shaper_reason()}",
             "shaper_addendum_modules": "chosen: root clearance of 0.25 modules",
             "shaper_tip_rounding_modules": "chosen: a fillet without a corner, which can be rated",
             "mesh_damping_n_s_per_m": f"chosen: {100 * DAMPING_RATIO:g} % of the critical damping of a mesh",

@@ -26,8 +26,8 @@ SHAPER_CLEARANCE = 0.25
 """Addendum of the shaper beyond that of the pinion, in modules."""
 SHAPER_ROUNDING = 0.1
 """Tip rounding of the shaper, in modules: without one the gear's fillet has a corner and cannot be rated."""
-MORE_SHAPER_TEETH = 3
-"""Teeth of the shaper beyond those of the pinion: localises the contact."""
+MORE_SHAPER_TEETH = (3, 2, 1)
+"""Teeth of the shaper beyond the pinion's, as preferred: more localise the contact, fewer spread it."""
 SHIFT_STEP = 0.01
 """A profile shift is rounded up to a multiple of this many modules."""
 THINNING = 0.04
@@ -73,11 +73,23 @@ class _Refusals:
 
 
 @lru_cache(maxsize=64)
-def choose_teeth(wishes: ToothWishes) -> ChosenTeeth:
+def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH[0]) -> ChosenTeeth:
     """Return the highest teeth without undercut and interference that meet all wishes.
 
     Candidates are tried from standard height downwards. Of each height, teeth with the gear's tips lowered
     and with deeper pinion roots follow. The profile shift is the smallest one without undercut.
+
+    Parameters
+    ----------
+    wishes : ToothWishes
+        What a user gave.
+    more_shaper_teeth : int
+        Teeth of the shaper beyond those of the pinion, where the shaper is no wish.
+
+    Returns
+    -------
+    ChosenTeeth
+        The teeth, with their analysis.
 
     Raises
     ------
@@ -88,7 +100,7 @@ def choose_teeth(wishes: ToothWishes) -> ChosenTeeth:
     _require_numbers(wishes)
     refusals = _Refusals()
     tried = 0
-    for candidate in _candidates(wishes):
+    for candidate in _candidates(wishes, more_shaper_teeth):
         try:
             design, allowed = _placed(candidate, wishes)
         except GeometryError as error:
@@ -143,7 +155,7 @@ def _require_numbers(wishes: ToothWishes) -> None:
         raise ConfigError("pressure_angle_deg", wishes.pressure_angle_deg, "from 10 to 40")
 
 
-def _candidates(wishes: ToothWishes) -> Iterator[PairDesign]:
+def _candidates(wishes: ToothWishes, more_shaper_teeth: int) -> Iterator[PairDesign]:
     """Teeth without a face yet, the highest first."""
     module = 1e-3 * wishes.module_mm
     thinning = THINNING * module if wishes.thinning_um is None else 1e-6 * wishes.thinning_um
@@ -173,7 +185,7 @@ def _candidates(wishes: ToothWishes) -> Iterator[PairDesign]:
             rim_thickness=3.0 * module,
         )
         shaper = Shaper(
-            wishes.shaper_teeth or wishes.pinion_teeth + MORE_SHAPER_TEETH,
+            wishes.shaper_teeth or wishes.pinion_teeth + more_shaper_teeth,
             module * _given_or(wishes.shaper_addendum_modules, height + SHAPER_CLEARANCE),
             module * _given_or(wishes.shaper_tip_rounding_modules, SHAPER_ROUNDING),
         )

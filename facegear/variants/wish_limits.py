@@ -4,6 +4,7 @@ from math import atan, degrees, floor, pi
 
 from facegear.config.base import Section
 from facegear.config.bodies import BearingStiffness, GearBody, PinionBody
+from facegear.config.checks import BROKEN, STEEL, tooth_limit
 from facegear.config.tooth_pair import FaceGearSection, PinionSection, ShaperSection
 from facegear.config.transmission import MAX_PINIONS, DampingSection
 from facegear.errors import ConfigError
@@ -12,6 +13,8 @@ from facegear.variants.starting_wishes import MachineWishes
 
 BOUNDS = {"torque_n_m": (1e-5, 1e6), "speed_rpm": (1.0, 1e5), "pinions": (1, MAX_PINIONS)}
 """Smallest and largest values; the config has loads and speeds beyond them."""
+TORQUE_MARGINS = (0.7, 1.5)
+"""Smallest and largest torque of the contact analysis over those of the meshes at rest."""
 LEAST_SPRING = 1.0
 """Smallest radial stiffness, N/m, of a bearing: one without stiffness holds no body."""
 SPRING = (BearingStiffness, "x")
@@ -78,7 +81,7 @@ def require_wishes(wishes: MachineWishes) -> None:
 
 
 def require_room(wishes: MachineWishes, design: PairDesign) -> None:
-    """Check that the pinions fit round the gear, and the bore into the pinion.
+    """Check that the pinions fit round the gear, the bore into the pinion, and the torque to the teeth.
 
     Parameters
     ----------
@@ -90,8 +93,11 @@ def require_room(wishes: MachineWishes, design: PairDesign) -> None:
     Raises
     ------
     ConfigError
-        With the largest number that fits.
+        With the largest number that fits, or the largest torque.
     """
+    largest = tooth_limit(design, STEEL) / TORQUE_MARGINS[1]
+    if wishes.torque_n_m > largest:
+        raise ConfigError("torque_n_m", wishes.torque_n_m, f"at most {largest:.4g} for these teeth: {BROKEN}")
     bore, root = wishes.pinion_bore_radius_mm, 1e3 * design.pinion_root_radius
     if bore is not None and bore >= root:
         raise ConfigError("pinion_bore_radius_mm", bore, f"less than the root radius, {root:.4g}")

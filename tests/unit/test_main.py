@@ -42,6 +42,25 @@ def test_a_mistake_on_the_command_line_ends_in_one_line(capsys, arguments, line)
     assert message.startswith(line) and message.count("\n") == 1
 
 
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("new", "own.yaml", "--pinion-teeth", "abc"), "--pinion-teeth: 'abc': must be a whole number"),
+        (("new", "own.yaml", "--module-mm", "2,5"), "--module-mm: '2,5': must be a number"),
+        (("limits", "--module-mm", "2", "--pinion-teeth", "9.5"), "--pinion-teeth: '9.5': must be a whole"),
+        (("new", "own.yaml", "--pinon-teeth", "9"), "unrecognized arguments: --pinon-teeth 9"),
+        (("neww",), "command: invalid choice: 'neww'"),
+        (("check",), "the following arguments are required: config"),
+    ],
+)
+def test_a_word_that_cannot_be_read_is_one_line_without_the_usage(words, line, capsys):
+    """The usage of all options stood before it, thirty lines."""
+    with pytest.raises(SystemExit) as stop:
+        main(words)
+    message = capsys.readouterr().err
+    assert stop.value.code == 2 and line in message and message.count("\n") == 1
+
+
 BASE = {
     "pinion_teeth": 25,
     "face_gear_teeth": 160,

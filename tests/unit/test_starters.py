@@ -1,7 +1,10 @@
 """Starter machines are the same in every run, and the cheapest of them comes to its report."""
 
+import re
+
 import pytest
 
+from facegear.__main__ import main
 from facegear.checking import check_config
 from facegear.config.load import load_config
 from facegear.config.yaml_file import read_yaml
@@ -30,6 +33,36 @@ def test_a_starter_machine_comes_to_its_report_with_nothing_missing(number):
         )
         assert row["k_gamma_inputs"] <= 1.3 and row["k_gamma_idlers_least"] >= 0.7
         assert row["k_gamma_idlers_largest"] <= 1.3
+
+
+WALKED = {
+    "pair": ("19", "97", "2.5", "60", "--pressure-angle-deg", "20"),
+    "split": ("22", "101", "3.5", "300", "--pinions", "2", "--idlers", "2"),
+}
+"""Teeth, module and torque of the machines of docs/tutorials/first_machine.md that were walked by hand."""
+ASKED = ("--pinion-teeth", "--face-gear-teeth", "--module-mm", "--torque-n-m")
+
+
+@pytest.mark.parametrize("case", WALKED)
+def test_new_check_and_report_lead_to_a_page_without_a_red_rating(case, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    numbers, wishes = WALKED[case][: len(ASKED)], WALKED[case][len(ASKED) :]
+    given = [word for pair in zip(ASKED, numbers, strict=True) for word in pair]
+    assert main(["new", "own.yaml", *given, *wishes, "--speed-rpm", "5000", "--coarse"]) == 0
+    assert "leaves the rating without reserve" not in capsys.readouterr().out
+    assert main(["check", "own.yaml"]) == 0
+    assert "own.yaml: no mistakes; 1 case: own" in capsys.readouterr().out
+    assert main(["report", "own.yaml"]) == 0
+    assert capsys.readouterr().out == "own.html\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["own.html", "own.yaml"]
+    verdicts = (tmp_path / "own.html").read_text().partition('class="verdicts"')[2].partition("</table>")[0]
+    rows = re.findall(r"(?s)<tr.*?</tr>", verdicts)
+    assert {
+        subject: "green" in row
+        for row in rows
+        for subject in ("Teeth", "Bending", "Pitting")
+        if f">{subject}<" in row
+    } == dict.fromkeys(("Teeth", "Bending", "Pitting"), True)
 
 
 @pytest.mark.parametrize("known", [*draw_machines()][::6], ids=lambda known: known.case)

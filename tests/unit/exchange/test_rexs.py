@@ -105,6 +105,13 @@ def test_a_file_that_cannot_be_read_is_named_in_one_line(tmp_path, text, line):
     assert "\n" not in str(caught.value)
 
 
+def test_a_file_that_is_not_there_is_said_without_a_number_of_the_system(tmp_path):
+    with pytest.raises(
+        FacegearError, match=r"none\.rexs: not a readable REXS file \(no such file or directory\)$"
+    ):
+        read_rexs(tmp_path / "none.rexs")
+
+
 TWO_SHAFTS = (
     '<model><relations><relation id="1" type="assembly"><ref id="1" role="assembly"/>'
     '<ref id="2" role="part"/></relation></relations><components><component id="1" type="shaft" name="s">'

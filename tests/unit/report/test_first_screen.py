@@ -174,12 +174,12 @@ def test_lubrication_names_the_mesh_nearest_to_scuffing(example):
     )
     found = judged(example[0], {"mesh_losses": losses})
     assert found["Scuffing"].colour == "red" and found["Micropitting"].colour == "grey"
-    assert (
-        "Engine/upper, drive flank, at the nominal load: safety 0.20 of 1, -90 K" in found["Scuffing"].reason
-    )
+    hottest = "Engine/upper, drive flank, at the nominal load: safety 0.20 of 1, 90 K above the limit."
+    assert found["Scuffing"].reason == hottest
     assert found["Scuffing"].caveats == ("beyond torques solved",)
     of_duty = judged(example[0], {"mesh_losses": losses[1:]})["Scuffing"]
     assert of_duty.colour == "green" and "bin 1 of the duty cycle" in of_duty.reason
+    assert of_duty.reason.endswith("40 K below the limit.")
 
 
 def test_warnings_are_grouped_by_subject_one_line_a_kind_most_serious_first(example):
@@ -208,6 +208,14 @@ def test_warnings_are_grouped_by_subject_one_line_a_kind_most_serious_first(exam
     assert len(lines) == 4
     quiet = {**example[1], **contact()}
     assert [subject for subject, _ in grouped_warnings(example[0], quiet, PAIR)] == ["Stiffness"]
+
+
+def test_a_note_of_a_whole_section_is_a_sentence_and_one_of_a_key_names_it(example):
+    """`transmission: runouts ...` stood below the heading Machine."""
+    notes = ["transmission: runouts are left out", "mesh_stiffness.scale = 2: not 1"]
+    found = dict(grouped_warnings(example[0], {}, None, notes))
+    assert found["Machine"] == ["Runouts are left out."]
+    assert found["Stiffness"][-1] == "mesh_stiffness.scale = 2: not 1."
 
 
 def sweep_table(periodic, **open_shares):

@@ -5,7 +5,7 @@ import re
 
 import pandas as pd
 
-from facegear.report.case import mode_rows, with_study_titles
+from facegear.report.case import bins_in_words, mode_rows, with_study_titles
 from facegear.report.page import Chapter, Picture, render
 from facegear.report.table import Table
 
@@ -49,6 +49,7 @@ def test_units_of_heat_motion_and_time_are_written_out():
     """A head said "loss w" and "contact temperature c"."""
     names = {
         "loss_w": "loss (W)",
+        "energy_lost_kwh": "energy lost (kWh)",
         "largest_flash_k": "largest flash (K)",
         "contact_temperature_c": "contact temperature (°C)",
         "largest_sliding_m_per_s": "largest sliding (m/s)",
@@ -65,6 +66,15 @@ def test_a_study_has_its_title_in_tables_and_not_its_name():
     table = pd.DataFrame({"study": ["nominal", "gear_bearings"], "mean": [1.0, 2.0]})
     titled = with_study_titles({"summary": table}, [{"name": "gear_bearings", "title": "Effect of bearings"}])
     assert titled["summary"]["study"].to_list() == ["nominal", "Effect of bearings"]
+
+
+def test_bins_that_are_none_of_the_duty_cycle_are_words():
+    """The whole duty cycle was bin -1."""
+    assert bins_in_words(pd.DataFrame({"bin": [0.0, 1.0, -1.0]}))["bin"].to_list() == [
+        "nominal",
+        "1",
+        "all bins",
+    ]
 
 
 def test_equal_modes_are_one_row_that_says_how_many():

@@ -258,6 +258,7 @@ def test_a_machine_without_load_is_refused_in_one_line():
             {"pinions": 30},
             r"pinions = 30: must be at most 16 round this gear, each of .* 21\.29 deg",
         ),
+        ({"torque_n_m": 1e6}, r"torque_n_m = 1000000\.0: must be at most .* for these teeth: beyond it the"),
         ({"idlers": 20}, "pinions and idlers = 21: must be at most 16 round this gear"),
         (
             {"pinion_bore_radius_mm": 45.0},
@@ -270,7 +271,7 @@ def test_a_machine_without_load_is_refused_in_one_line():
 def test_a_wish_that_no_machine_can_meet_is_refused_with_what_can(wishes, line):
     """A bearing of 0 was replaced in silence, a wide bore ended in a traceback."""
     with pytest.raises(ConfigError, match=f"^{line}"):
-        first_machine(make_known("own", 23, 143, 3.75, 600, 7500, **wishes))
+        first_machine(replace(make_known("own", 23, 143, 3.75, 600, 7500), **wishes))
 
 
 def test_a_single_idler_has_no_load_sharing_of_its_own():
@@ -288,6 +289,27 @@ def test_bearings_that_a_user_gave_are_named_where_they_keep_the_torque_from_bei
     assert "nearest: bearings as chosen without idler_bearing_n_per_m" in "".join(
         first_machine(known).expected
     )
+
+
+def pair_of_19_and_97(torque_n_m, **others):
+    return make_known("own", 19, 97, 2.5, torque_n_m, 5000, pressure_angle_deg=20.0, coarse=True, **others)
+
+
+def test_teeth_that_pit_get_a_shaper_that_spreads_the_contact():
+    """A face that undercut ends beside the path of contact was red for pitting at its own torque."""
+    light, hard = (first_machine(pair_of_19_and_97(torque)).text for torque in (15, 60))
+    assert "teeth: 22 # chosen: three more than the pinion, which localises the contact" in light
+    assert "teeth: 20 # chosen: 1 tooth more than the pinion, which spreads the contact" in hard
+
+
+@pytest.mark.parametrize("others", [{}, {"idlers": 2}, {"shaper_teeth": 22}])
+def test_a_torque_that_is_too_large_is_named_with_one_that_is_not(others):
+    lines = "\n".join(first_machine(pair_of_19_and_97(300, **others)).expected)
+    (nearest,) = re.findall(r"leaves the rating without reserve .* nearest: at most ([\d.]+) N m", lines)
+    assert 20.0 < float(nearest) < 300.0
+    for part, is_named in ((0.97, False), (1.05, True)):
+        lines = "\n".join(first_machine(pair_of_19_and_97(part * float(nearest), **others)).expected)
+        assert ("leaves the rating without reserve" in lines) == is_named
 
 
 def test_too_few_teeth_are_refused_by_the_geometric_reason():
