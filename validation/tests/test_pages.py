@@ -84,6 +84,21 @@ def test_a_stored_block_is_a_table_beside_its_csv(page):
         assert all(line.startswith("|") for line in block.strip().splitlines())
 
 
+def anchors(page):
+    """Slugs of the headings of a page, as GitHub and Sphinx make them."""
+    headings = re.findall(r"(?m)^#+ (.+)$", CODE_BLOCK.sub("", page.read_text(encoding="utf-8")))
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize(
+    "page", [*pages(), ROOT / "README.md", ROOT / "CONTRIBUTING.md"], ids=lambda page: page.stem
+)
+def test_links_to_headings_hold(page):
+    links = re.findall(r"\]\(((?!http)[^)#\s]*)#([^)\s]+)\)", page.read_text(encoding="utf-8"))
+    for file, anchor in links:
+        assert anchor in anchors(page.parent / file if file else page), f"{file}#{anchor}"
+
+
 def test_the_map_of_packages_names_each_package_and_module_once():
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     block = re.search(r"(?s)<!-- map of packages -->\n(.*?)<!-- end -->", text)[1]
