@@ -84,6 +84,13 @@ def test_a_stored_block_is_a_table_beside_its_csv(page):
         assert all(line.startswith("|") for line in block.strip().splitlines())
 
 
+def test_the_index_names_every_page_once_in_its_table_and_in_its_tree():
+    text = (DOCS / "index.md").read_text(encoding="utf-8")
+    listed = [name(page).removesuffix(".md") for page in pages() if page.name != "index.md"]
+    assert sorted(re.findall(r"\]\(([\w/]+)\.md\) \|", text)) == listed
+    assert sorted(re.findall(r"(?m)^(\w+/\w+)$", text)) == sorted([*listed, "api/modules"])
+
+
 def anchors(page):
     """Slugs of the headings of a page, as GitHub and Sphinx make them."""
     headings = re.findall(r"(?m)^#+ (.+)$", CODE_BLOCK.sub("", page.read_text(encoding="utf-8")))
