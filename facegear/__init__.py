@@ -37,8 +37,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    # Everything behind the door is imported when it is first asked for. The module's name is text, as the
-    # fingerprints of the stages follow imports: this file belongs to each of them, what lies behind does not.
+    # Everything behind the door is imported when it is first asked for. The module's name is text, as every
+    # stage loads this file, while no fingerprint of a stage holds what lies behind.
     if name in __all__:
         return getattr(import_module("facegear.gearbox"), name)
     raise AttributeError(f"module 'facegear' has no attribute {name!r}")

@@ -10,6 +10,7 @@ import faulthandler
 import json
 import random
 import resource
+import signal
 import sys
 from collections import defaultdict
 from collections.abc import Callable
@@ -26,6 +27,10 @@ CALLS_KEPT = 12
 """Calls of one kernel that are kept; more of them are much alike."""
 SLOWEST = 120
 """Seconds after which a call is taken as one that never ends; a kernel of these tests takes milliseconds."""
+STOPPED_AFTER = 2.0
+"""Processor time of a call, s, after which a signal ends it as Ctrl-C does. Motion from wild starts takes
+millions of steps, a minute under the sanitizers.
+The other kernels look at no signal, and take milliseconds."""
 MEMORY = 8 << 30
 """Bytes of address space: a wrong size ends in an exception before it takes the machine's memory."""
 COUNTS = ("periods",)
@@ -252,24 +257,34 @@ def fuzz(calls: dict[str, list[Call]], number: int, seed: int, log: Path) -> dic
     Returns
     -------
     dict
-        By full name how many calls were recorded, answered and raised.
+        By full name how many calls were recorded, answered, raised and stopped.
     """
+    signal.signal(signal.SIGPROF, _stop)
     counts: dict[str, dict[str, int]] = {}
     for full, (owner, name) in sorted(kernels().items()):
-        counts[full] = {"recorded": len(calls.get(full, ())), "answered": 0, "raised": 0}
+        counts[full] = {"recorded": len(calls.get(full, ())), "answered": 0, "raised": 0, "stopped": 0}
         chance = random.Random(f"{seed} {full}")
         for _ in range(number if calls.get(full) else 0):
             (positional, keywords), descriptions = change_call(chance.choice(calls[full]), chance)
             log.write_text(f"{full} with {descriptions}\n")
             faulthandler.dump_traceback_later(SLOWEST, exit=True)
             try:
+                signal.setitimer(signal.ITIMER_PROF, STOPPED_AFTER)
                 getattr(owner, name)(*positional, **keywords)
+                signal.setitimer(signal.ITIMER_PROF, 0.0)
+            except TimeoutError:
+                counts[full]["stopped"] += 1
             except Exception:
                 counts[full]["raised"] += 1
             else:
                 counts[full]["answered"] += 1
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
             faulthandler.cancel_dump_traceback_later()
     return counts
+
+
+def _stop(number: int, frame: object) -> None:
+    raise TimeoutError
 
 
 def main(arguments: list[str]) -> int:

@@ -1,6 +1,6 @@
 """A stage or its figures from files: read what it takes, call it, write what it gives.
 
-This module names no stage: the fingerprint of a rule holds it and the modules of that rule's stage alone.
+This module names no stage: the fingerprint of a rule holds it and what that rule's stage reaches alone.
 """
 
 from collections.abc import Mapping, Sequence

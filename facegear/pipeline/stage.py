@@ -185,11 +185,10 @@ class Stage:
         return f"facegear.stages.{self.name}:{self.name}"
 
     @property
-    def modules(self) -> tuple[str, ...]:
-        """Modules whose code decides its files."""
-        named = [self.function, *(file.view for file in self.files.values() if file.view)]
-        named += [MACHINE_INPUTS] if self.machine else []
-        return tuple(name.partition(":")[0] for name in named)
+    def functions(self) -> tuple[str, ...]:
+        """Functions and classes whose code decides its files, as ``module:name``."""
+        views = [file.view for file in self.files.values() if file.view]
+        return (self.function, *views, *([MACHINE_INPUTS] if self.machine else []))
 
     @property
     def manifest(self) -> str:

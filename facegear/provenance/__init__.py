@@ -1,1 +1,1 @@
-"""What made an output: versions, config slice, module fingerprint, machine, time, seed."""
+"""What made an output: versions, config slice, fingerprint of the code, machine, time, seed."""

@@ -1,188 +1,126 @@
-"""Fingerprint of exactly the modules a stage imports, found from the imports themselves.
+"""Fingerprint of the code that a stage can reach, function by function.
 
-Snakemake does not see changes of an imported package; a rule that carries this fingerprint as a parameter
-reruns when, and only when, code that it can reach has changed. Comments, docstrings and layout do not count.
+Snakemake does not see changes of an imported package. A rule that carries this fingerprint as a parameter
+reruns when code that it can reach has changed. A function reaches the closure of the names that it uses:
+
+- A function counts with its code, its decorators and default values. A class counts whole, with its bases
+  and methods. A constant counts with the statement that makes it: a table of functions counts with them.
+- A module counts whole where it is used as a value (`getattr(module, name)`, an argument), where a name is
+  not found in it, and where another module imports everything of it. So does a module whose own code reaches
+  names that it does not spell (`globals`, `import_module` of a variable, `sys.modules`, an unknown name).
+- Of every module that is imported on the way, those statements count that may do more than bind their names:
+  calls of ours, decorators of ours, whatever is no definition.
+- Templates count with the modules of their package, compiled kernels by the text of all their sources.
+- Comments, docstrings and layout do not count. Annotations count for fields of classes, for functions with
+  decorators that may read them, and for the arguments of a function that a row of the table names, which
+  `facegear.config.arguments` reads.
+
+Why this suffices: let a stage call a function of ours. It was called by its name, as a value, or through an
+object. By its name, it is in the closure of its caller. As a value, some code named it where the value was
+made. Through an object, the object's class was named where the object was made, and a class counts whole.
+This holds even if a function returns the object and the caller never names the class: the function that makes
+the object is called, too, and names it. Objects that no called function makes are arguments of the stage:
+plain values, tables and arrays from files, or sections of the config, whose classes the annotations name. A
+library that calls us back was handed a function as a value, or an object. Code that an import runs is in the
+statements that count of each imported module. By induction over the calls, each called function is in the
+closure. The conditions are that no class of ours is made by a metaclass or found through `__subclasses__`,
+that nothing is unpickled, and that annotations are read in one place alone. A test looks for all of them.
 """
 
-import ast
-import hashlib
-import json
-import os
-import sys
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Sequence
 from pathlib import Path
 
-from facegear.errors import FacegearError
-from facegear.io.atomic import atomic_path
+from facegear.provenance.closure import Closure
 
-PACKAGES = ("facegear", "paper", "validation")
-"""The library and, in a checkout, what stands beside it."""
-BESIDE = ("*.j2", "src/**/*.cpp", "src/**/*.hpp")
-"""Files that count with the package that they lie in: templates, and sources of compiled kernels."""
+_closures: dict[str, Closure] = {}
+"""By folder of the packages: the closure of their files as they were when it was last asked."""
 
 
-@dataclass(frozen=True)
-class _Source:
-    """What counts of a file: hash of its code without docstrings, and what it imports of our packages.
+def fingerprint(script: str | Path, root: str | Path, functions: Sequence[str] = ()) -> str:
+    """Compute the hash of a script and of all code of the packages that it reaches.
 
-    Of `from package.module import name` that is `package.module.name` too, be it a module or not.
+    Where the script calls functions that it does not import by name, their own fingerprint follows behind a
+    dot, so that results can be known without the script. A module that the script imports by its name as text
+    is none of its code.
+
+    Parameters
+    ----------
+    script : str or Path
+        The script.
+    root : str or Path
+        Folder of the packages.
+    functions : sequence of str
+        Functions that the script calls, as ``module:name``.
+
+    Returns
+    -------
+    str
+        The hash, with that of the functions behind a dot where there are any.
     """
-
-    code: str
-    names: tuple[str, ...]
-
-
-KEPT = 3000
-"""Source files that `remember` keeps: those of some versions, a kilobyte each."""
-_known: dict[str, _Source] = {}
-"""By the hash of a file's text: what `recall` read, and all that was parsed since; used last stands last."""
-_recalled: set[str] = set()
-"""Keys of `_known` that `recall` read."""
+    closure = _closure(root)
+    code = closure.digest(closure.search(closure.add_script(Path(script))))
+    return f"{code}.{stage_fingerprint(functions, root)}" if functions else code
 
 
-def recall(file: Path) -> None:
-    """Take from `file` what counts of source files, as `remember` left it; the others are parsed.
+def stage_fingerprint(functions: Sequence[str], root: str | Path) -> str:
+    """Compute the hash of functions and of all code of the packages that they reach.
 
-    Clones share such a file, as their sources are known by their text. One that cannot be read, or that
-    another version wrote, is passed over.
+    Parameters
+    ----------
+    functions : sequence of str
+        Functions as ``module:name``; a module alone counts whole.
+    root : str or Path
+        Folder of the packages.
+
+    Returns
+    -------
+    str
+        The hash.
     """
-    with suppress(OSError, ValueError, KeyError, TypeError):
-        stored = json.loads(file.read_text(encoding="utf-8"))
-        if stored["version"] == _version():
-            _known.update(
-                {key: _Source(code, tuple(names)) for key, (code, names) in stored["files"].items()}
-            )
-            _recalled.update(_known)
+    closure = _closure(root)
+    return closure.digest(closure.search(closure.find_functions(functions)))
 
 
-def remember(file: Path) -> None:
-    """Leave in `file` what counts of the source files used last for the next process, if any was parsed here.
+def reached_functions(functions: Sequence[str], root: str | Path) -> set[str]:
+    """Find the functions, classes and constants that count for some functions.
 
-    Where nothing can be written the next process parses again.
+    Parameters
+    ----------
+    functions : sequence of str
+        Functions as ``module:name``; a module alone counts whole.
+    root : str or Path
+        Folder of the packages.
+
+    Returns
+    -------
+    set of str
+        Their names as ``module:name``.
     """
-    if _known.keys() - _recalled:
-        files = {key: (source.code, source.names) for key, source in [*_known.items()][-KEPT:]}
-        with suppress(OSError, FacegearError), atomic_path(file) as partial:
-            partial.write_text(json.dumps({"version": _version(), "files": files}), encoding="utf-8")
+    closure = _closure(root)
+    return closure.names(closure.search(closure.find_functions(functions)))
 
 
-def _version() -> str:
-    return f"{sys.version_info[:2]} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}"
+def loaded_modules(functions: Sequence[str], root: str | Path) -> set[str]:
+    """Find the modules that are imported where some functions are called.
 
+    Parameters
+    ----------
+    functions : sequence of str
+        Functions as ``module:name``; a module alone counts whole.
+    root : str or Path
+        Folder of the packages.
 
-def fingerprint(script: str | Path, root: str | Path, modules: Sequence[str] = ()) -> str:
-    """Hash of a script's own code and of all package modules below `root` that it reaches by imports.
-
-    Templates and the C++ sources of kernels (BESIDE) count with the package they lie in. Where the script
-    calls `modules` that it does not import itself, their own fingerprint follows after a dot, so that results
-    can be known without the script.
+    Returns
+    -------
+    set of str
+        Dotted names.
     """
-    root, script = Path(root), Path(script)
-    own = _hash(_source(script).code, reached_modules(script, root), root)
-    return f"{own}.{stage_fingerprint(modules, root)}" if modules else own
+    closure = _closure(root)
+    return closure.modules(closure.search(closure.find_functions(functions)))
 
 
-def stage_fingerprint(modules: Sequence[str], root: str | Path) -> str:
-    """Hash of modules of the package (by their dotted names) and of all that they reach by imports."""
-    root = Path(root)
-    reached = {name for module in modules for name in reached_modules(_file(module, root), root)}
-    return _hash("", reached, root, *modules)
-
-
-def _hash(code: str, modules: Iterable[str], root: Path, *more: str) -> str:
-    digest = hashlib.sha256(code.encode())
-    for module in sorted({*modules, *more}):
-        file = _file(module, root)
-        digest.update(module.encode() + b"\0" + _source(file).code.encode())
-        if file.name == "__init__.py":
-            for pattern in BESIDE:
-                for beside in sorted(file.parent.glob(pattern)):
-                    status = os.stat(beside)
-                    digest.update(_text_hash(str(beside), status.st_size, status.st_mtime_ns))
-    return digest.hexdigest()[:16]
-
-
-def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
-    """Names of the package's modules that a script imports, directly or through others, sorted."""
-    root = Path(root)
-    reached: set[str] = set()
-    todo = list(_source(Path(script)).names)
-    while todo:
-        module = todo.pop()
-        if module not in reached and _exists(module, root):
-            reached.add(module)
-            todo.extend(_source(_file(module, root)).names)
-    return tuple(sorted(reached))
-
-
-@cache
-def _text_hash(path: str, size: int, mtime_ns: int) -> bytes:
-    return hashlib.sha256(Path(path).read_bytes()).digest()
-
-
-def _source(path: Path) -> _Source:
-    status = os.stat(path)
-    return _looked_up(str(path), status.st_size, status.st_mtime_ns)
-
-
-@cache
-def _looked_up(path: str, size: int, mtime_ns: int) -> _Source:
-    """Texts, as they are compared faster than paths: a start of the workflow asks ten thousand times."""
-    text = Path(path).read_bytes()
-    key = hashlib.sha256(text).hexdigest()[:32]
-    _known[key] = source = _known.pop(key, None) or _parsed(text)
-    return source
-
-
-def _parsed(text: bytes) -> _Source:
-    tree = ast.parse(text)
-    modules: set[str] = set()
-    for node in _executed(tree):
-        if isinstance(node, ast.Import | ast.ImportFrom):
-            for name in _names(node):
-                if name.split(".")[0] in PACKAGES:
-                    modules.update(name.rsplit(".", depth)[0] for depth in range(name.count(".") + 1))
-        elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            body = node.body
-            if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
-                node.body = body[1:] or ([] if isinstance(node, ast.Module) else [ast.Pass()])
-    return _Source(hashlib.sha256(ast.unparse(tree).encode()).hexdigest(), tuple(sorted(modules)))
-
-
-def _executed(node: ast.AST) -> Iterator[ast.AST]:
-    """A node and all statements inside it, but those that only a type checker reads."""
-    if not (isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"):
-        yield node
-        for part in ("body", "orelse", "finalbody", "handlers", "cases"):
-            for inner in getattr(node, part, ()):
-                yield from _executed(inner)
-
-
-def _names(node: ast.Import | ast.ImportFrom) -> list[str]:
-    if isinstance(node, ast.Import):
-        return [alias.name for alias in node.names]
-    if node.module is None or node.level:
-        return []
-    return [node.module] + [f"{node.module}.{alias.name}" for alias in node.names]
-
-
-def _exists(module: str, root: Path) -> bool:
-    return _known_file(module, str(root))[1]
-
-
-def _file(module: str, root: Path) -> Path:
-    return _known_file(module, str(root))[0]
-
-
-@cache
-def _known_file(module: str, root: str) -> tuple[Path, bool]:
-    """The file of a module, and whether there is one."""
-    base = Path(root, *module.split("."))
-    alone = base.with_suffix(".py")
-    if alone.is_file():
-        return alone, True
-    package = base / "__init__.py"
-    return package, package.is_file()
+def _closure(root: str | Path) -> Closure:
+    key = str(root)
+    if key not in _closures or not _closures[key].is_current:
+        _closures[key] = Closure(key)
+    return _closures[key]

@@ -120,7 +120,7 @@ class PartialResults:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _subfolder(self, stages: list[str], key: str) -> Path:
-        codes = [stage_fingerprint(STAGES[stage].modules, ROOT) for stage in stages]
+        codes = [stage_fingerprint(STAGES[stage].functions, ROOT) for stage in stages]
         digest = hashlib.sha256("\n".join([key, *codes]).encode()).hexdigest()
         return self.folder / f"{stages[0]}_{digest[:16]}"
 

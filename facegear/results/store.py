@@ -118,7 +118,7 @@ class Store:
         return current_manifest(
             path,
             lambda rule: stage_needs(rule, values) if rule in STAGES else None,
-            lambda rule: stage_fingerprint(STAGES[rule].modules, ROOT),
+            lambda rule: stage_fingerprint(STAGES[rule].functions, ROOT),
         )
 
 

@@ -12,7 +12,8 @@ from functools import cache
 from pathlib import Path
 
 from facegear.pipeline.table import STAGES
-from facegear.provenance.fingerprint import fingerprint, recall, remember, stage_fingerprint
+from facegear.provenance.fingerprint import fingerprint, stage_fingerprint
+from facegear.provenance.sources import recall, remember
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "facegear", "paper", "validation", "config")
@@ -113,8 +114,8 @@ def parse_sources() -> None:
     for script in SCRIPTS:
         fingerprint(script, ROOT)
     for stage in STAGES.values():
-        drawn = (stage.figures.draw.partition(":")[0],) if stage.figures else ()
-        stage_fingerprint((*stage.modules, *drawn), ROOT)
+        drawn = (stage.figures.draw,) if stage.figures else ()
+        stage_fingerprint((*stage.functions, *drawn), ROOT)
     remember(SOURCES)
 
 

@@ -1,5 +1,6 @@
 """What is computed again, and what is not, after an edit of code or config."""
 
+import ast
 import json
 import os
 import re
@@ -40,7 +41,7 @@ def test_a_first_run_parses_the_sources_of_the_rules_that_it_needs_alone(tmp_pat
     sources = copy_sources(tmp_path)
     Project(tmp_path / "run", sources).run("results/paper/modal/frequencies.csv")
     parsed = json.loads((sources / ".snakemake" / "sources.json").read_text())["files"]
-    names = {name for _, imported in parsed.values() for name in imported}
+    names = {module for _, imports in parsed.values() for _, module, _ in imports}
     assert "facegear.transmission.modes" in names
     assert "facegear.contact.bodies.factor" not in names
 
@@ -65,10 +66,16 @@ def edited(tmp_path_factory, quick):
     return planned
 
 
-def appended(edited, name):
-    """Rules that would run after a new function at the end of a module."""
-    last = (ROOT / name).read_text()[-40:]
-    return edited(name, last, f"{last}\n\ndef added() -> int:\n    return 1\n")
+def with_statement(edited, reference):
+    """Rules that would run after another statement in a function, `module:function`."""
+    module, _, name = reference.partition(":")
+    path = f"{module.replace('.', '/')}.py"
+    text = (ROOT / path).read_text()
+    function = next(node for node in ast.parse(text).body if getattr(node, "name", "") == name)
+    first = function.body[1 if ast.get_docstring(function) else 0]
+    lines = text.splitlines(keepends=True)
+    before, after = "".join(lines[: first.lineno - 1]), "".join(lines[first.lineno - 1 :])
+    return edited(path, text, f"{before}    edited = 1\n{after}")
 
 
 def test_copy_of_the_sources_has_nothing_to_do(edited):
@@ -76,31 +83,41 @@ def test_copy_of_the_sources_has_nothing_to_do(edited):
 
 
 @pytest.mark.parametrize(
-    ("module", "reruns", "spares"),
+    ("function", "reruns", "spares"),
     [
-        ("facegear/geometry/limits.py", {"geometry"}, {"modal"}),
-        ("facegear/contact/bodies/factor.py", {"compliance", "contact"}, {"geometry", "mesh", "modal"}),
+        ("facegear.geometry.limits:radius_limits", {"geometry"}, {"modal"}),
         (
-            "facegear/transmission/modes.py",
+            "facegear.contact.bodies.factor:solve_sparse",
+            {"compliance", "contact"},
+            {"geometry", "mesh", "modal"},
+        ),
+        (
+            "facegear.transmission.modes:modes_of",
             {"modal"},
             {"geometry", "mesh", "compliance", "contact", "stiffness"},
         ),
         (
-            "facegear/load_sharing/coefficients.py",
+            "facegear.load_sharing.coefficients:sharing_coefficient",
             {"load_sharing"},
             {"contact", "stiffness", "dynamics_response", "modal"},
         ),
         (
-            "facegear/plots/modal.py",
+            "facegear.plots.modal:figures",
             {"modes_figures"},
             {"modal", "contact", "dynamics_response", "load_sharing"},
         ),
     ],
 )
-def test_editing_a_module_reruns_its_stages_and_those_after_it(edited, module, reruns, spares):
-    planned = appended(edited, module)
+def test_editing_a_function_reruns_its_stages_and_those_after_it(edited, function, reruns, spares):
+    planned = with_statement(edited, function)
     assert reruns <= planned
     assert not spares & planned
+
+
+def test_a_function_that_nothing_calls_reruns_nothing(edited):
+    name = "facegear/transmission/modes.py"
+    last = (ROOT / name).read_text()[-40:]
+    assert edited(name, last, f"{last}\n\ndef added() -> int:\n    return 1\n") == set()
 
 
 @pytest.mark.parametrize("module", ["facegear/contact/bodies/factor.py", "facegear/geometry/design.py"])

@@ -9,7 +9,7 @@ import argparse
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import MappingProxyType
@@ -44,6 +44,24 @@ STEP_TOLERANCE = 1e-12
 """Local error of the steps of all motions, over the length scale."""
 SPREAD = "spread"
 """Folder of the answers of the earlier commit where NumPy and OpenBLAS round otherwise."""
+MOVES_FOLDER = "moved"
+"""Folder of folders of the answers of the earlier commit to contact, the gear moved by less than a coordinate
+can be rounded.
+"""
+SHIFT_UM = 1e-11
+"""Size of these moves: 1e-17 m, less than the last place of a coordinate of 0.1 m. They are 5e-13 of the
+approach under load and alike for all points, but every ray from pinion to gear is rounded anew.
+"""
+MOVES: Mapping[str, Mapping[str, float]] = {
+    f"{key}_{sign:+d}": {f"tooth_pair.assembly.{key}_um": sign * SHIFT_UM}
+    for key in ("offset", "axial_shift")
+    for sign in (1, -1)
+}
+"""Changes of the config that move the gear, by the folder of their answers."""
+TWO_CODES = 2.0
+"""Times its spread by moves that a number of contact may change: both codes round a gap, each in its own way,
+and the largest of four draws is not the largest that there can be.
+"""
 NOT_COMPARED = ("own_displacement", "own_velocity", "residual", "own_residual")
 """States in reduced coordinates, which may come in another order, and what is left of solved equations."""
 ROOTS = ("own_modal",)
@@ -79,6 +97,26 @@ class Case:
     changes: Mapping[str, Any] = field(default_factory=dict)
     direction: str = ""
     oscillators: int = OSCILLATORS
+
+    @property
+    def is_contact(self) -> bool:
+        """Whether teeth in contact are asked for."""
+        return self.calls[:1] == ("contact",)
+
+    def with_changes(self, changes: Mapping[str, Any]) -> "Case":
+        """Return the case of a config that is changed further.
+
+        Parameters
+        ----------
+        changes : mapping
+            Values by dotted keys.
+
+        Returns
+        -------
+        Case
+            The same calls.
+        """
+        return replace(self, changes={**self.changes, **changes})
 
     @property
     def is_motion(self) -> bool:
@@ -203,6 +241,25 @@ def answer(
             print(f"{path}: {seconds:.1f} CPU s", file=sys.stderr, flush=True)
 
 
+def answer_spread(earlier: Tree, before: Path, cases: Mapping[str, Case]) -> None:
+    """Compute what the earlier commit answers where its numbers are rounded otherwise.
+
+    Parameters
+    ----------
+    earlier : Tree
+        Code of the earlier commit.
+    before : Path
+        Folder of its answers; those of `SPREAD` and `MOVES_FOLDER` are written below it.
+    cases : mapping
+        Cases by name.
+    """
+    answer(earlier, before / SPREAD, cases, OTHER_ROUNDING)
+    in_contact = {name: case for name, case in cases.items() if case.is_contact}
+    for move, changes in MOVES.items() if in_contact else ():
+        cases_of_move = {name: case.with_changes(changes) for name, case in in_contact.items()}
+        answer(earlier, before / MOVES_FOLDER / move, cases_of_move)
+
+
 def compare(before: Path, now: Path, cases: Mapping[str, Case] = CASES) -> pd.DataFrame:
     """Compare the stored answers of two trees.
 
@@ -217,12 +274,15 @@ def compare(before: Path, now: Path, cases: Mapping[str, Case] = CASES) -> pd.Da
     -------
     DataFrame
         COLUMNS, a row for each answer of each case: numbers that are compared, their largest change, that of
-        the earlier commit between two ways of rounding (`spread`), and how many are `above`: they change by
-        more than the limit and by more than their column's spread. The same of labels.
+        the earlier commit between ways of rounding (`spread`), and how many are `above`: they change by more
+        than the limit and by more than their column's spread, of contact by TWO_CODES times that. The same of
+        labels.
     """
     rows: list[tuple[object, ...]] = []
     for name in cases:
-        sides = [read_answers(folder / f"{name}.npz") for folder in (before, now, before / SPREAD)]
+        moves = MOVES if cases[name].is_contact else ()
+        otherwise = [before / SPREAD, *(before / MOVES_FOLDER / move for move in moves)]
+        sides = [read_answers(folder / f"{name}.npz") for folder in (before, now, *otherwise)]
         if CLASS_OF_SPEED in sides[0]:
             rows.append((name, "sweep", *_sweep_row(sides)))
             continue
@@ -233,6 +293,13 @@ def compare(before: Path, now: Path, cases: Mapping[str, Case] = CASES) -> pd.Da
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
+def _files_before(before: Path, cases: Mapping[str, Case]) -> Iterator[Path]:
+    """Files of all answers of the earlier commit."""
+    for name, case in cases.items():
+        moves = [before / MOVES_FOLDER / move for move in MOVES] if case.is_contact else []
+        yield from (folder / f"{name}.npz" for folder in (before, before / SPREAD, *moves))
+
+
 def _beginning(sides: Sequence[Answers], start: str) -> list[Answers]:
     return [{name: side[name] for name in side if name.startswith(start)} for side in sides]
 
@@ -240,12 +307,13 @@ def _beginning(sides: Sequence[Answers], start: str) -> list[Answers]:
 def _numbers_row(sides: Sequence[Answers], limit: float) -> tuple[object, ...]:
     """Columns from `numbers` on: those of regular motions and of what does not move."""
     gaps, spreads, above = [np.zeros(1)], [np.zeros(1)], 0
-    for old, new, rounding in _by_quantity(sides):
+    for old, new, *otherwise in _by_quantity(sides):
         for name in _numbers(old):
             gaps.append(_gap(old, new, name))
-            spreads.append(_gap(old, rounding, name))
-            above += int((gaps[-1] > max(limit, spreads[-1].max(initial=0.0))).sum())
-    labels, labels_changed, labels_spread = _labels(sides)
+            spreads.append(np.array([_spread(old, rounding, name) for rounding in otherwise]))
+            threshold = max(limit, spreads[-1][0], TWO_CODES * spreads[-1][1:].max(initial=0.0))
+            above += int((gaps[-1] > threshold).sum())
+    labels, labels_changed, labels_spread = _labels(sides[:3])
     count = sum(gap.size for gap in gaps[1:])
     largest = [float(np.concatenate(part).max()) for part in (gaps, spreads)]
     holds = above == 0 and labels_changed <= labels_spread
@@ -325,6 +393,14 @@ def _gap(old: Answers, new: Answers, name: str) -> np.ndarray:
     return relative_change(old, new, name, texts)
 
 
+def _spread(old: Answers, rounding: Answers, name: str) -> float:
+    """Largest change by other rounding; 0 of whole numbers and where a table has other rows then."""
+    if old[name].dtype.kind == "i":
+        return 0.0
+    gap = _gap(old, rounding, name)
+    return float(gap.max(initial=0.0)) if np.isfinite(gap).all() else 0.0
+
+
 def _labels(sides: Sequence[Answers]) -> tuple[int, int, int]:
     """How many texts there are, and how many of them changed now, and between two ways of rounding."""
     old = sides[0]
@@ -371,12 +447,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     tree = present() if root is None else Tree(root, root, root / ".venv" / "bin" / "python")
     with TemporaryDirectory() as scratch:
         before, now = options.before or Path(scratch, "before"), options.now or Path(scratch, "now")
-        if any(
-            not (folder / f"{name}.npz").exists() for folder in (before, before / SPREAD) for name in cases
-        ):
+        if any(not path.exists() for path in _files_before(before, cases)):
             with checked_out(options.since) as earlier:
                 answer(earlier, before, cases)
-                answer(earlier, before / SPREAD, cases, OTHER_ROUNDING)
+                answer_spread(earlier, before, cases)
         answer(tree, now, cases)
         table = compare(before, now, cases)
     print(table.to_string(index=False, float_format="{:.2g}".format))

@@ -21,6 +21,10 @@ from typing import Any
 
 STEP_TOLERANCE = 1e-14
 """Local error of a step over the length scale, so small that the choice of the steps moves no digit."""
+NEUTRAL = 1e-12
+"""Part of the largest singular value of all springs up to which a direction is neutral: turns of all bodies
+have some 1e-16, the softest spring of the cases more than 1e-2.
+"""
 SECOND_LOOKS = 12
 """Other starts that a class must come out from again: so many, where a sweep takes three, that a motion which
 one start in four comes to is hardly ever overlooked.
@@ -88,7 +92,8 @@ def _answer(gearbox: Any, name: str, request: dict[str, Any]) -> Any:
 def _mesh_period(gearbox: Any) -> dict[str, Any]:
     """State, disturbances, samples and contact after one mesh period, from rest and from two starts aside.
 
-    All are displacements of the bodies, as reduced coordinates may come in another order.
+    All are displacements of the bodies, as reduced coordinates may come in another order. The static
+    equilibrium that the motions start from is taken without its neutral part.
     """
     import numpy as np
 
@@ -109,6 +114,7 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
         return state * (size * model.system.scale / np.abs(state @ model.system.mesh_jacobian.T).max())
 
     start, ends = integrator.by_phase(static_start(model)), {}
+    start[0] -= _neutral_part(model.system, start[0])
     for size in (0.0, 0.3, 1.0):
         tangents = np.array([aside(1.0) for _ in range(2)])
         run = integrator.run(start + aside(size), 1, tangents, samples=16)
@@ -119,6 +125,22 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
             "fractions": run.fractions[:, : integrator.contacts],
         }
     return ends
+
+
+def _neutral_part(system: Any, displacement: Any) -> Any:
+    """Part of a displacement (n,) that no spring feels, such as a turn of all bodies together.
+
+    Statics leaves it where the search happens to end: any is an equilibrium, and rounding over the softest
+    tie of the search decides it to 1e-11 m.
+    """
+    import numpy as np
+
+    springs = np.concatenate([system.mesh_jacobian, np.diag((system.omega_squared > 0.0).astype(float))])
+    # rows of one length: else rounding of the stiffest turns the neutral direction by 1e-11
+    springs = springs / np.maximum(np.linalg.norm(springs, axis=1, keepdims=True), NEUTRAL)
+    _, stretch, directions = np.linalg.svd(springs)
+    neutral = directions[np.pad(stretch, (0, len(directions) - len(stretch))) <= NEUTRAL * stretch[0]]
+    return neutral.T @ (neutral @ displacement)
 
 
 def _oscillators(count: int, sources: str) -> dict[str, Any]:

@@ -21,8 +21,9 @@ from facegear.pipeline.needs import require_section, resolved_needs, shared_sour
 from facegear.pipeline.rows.shared import MACHINE
 from facegear.pipeline.stage import FIGURES, Case, From
 from facegear.pipeline.table import STAGES
-from facegear.provenance.fingerprint import fingerprint, recall, remember
+from facegear.provenance.fingerprint import fingerprint
 from facegear.provenance.rebuild import rebuild_command
+from facegear.provenance.sources import recall, remember
 from paper.reproduction import read_reproduction
 
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"

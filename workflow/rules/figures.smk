@@ -25,7 +25,7 @@ for chapter, stages in CHAPTERS.items():
         params:
             stages=[stage.name for stage in stages],
             needs=drawn_needs(stages),
-            code=code("workflow/scripts/figures.py", *drawing_modules(stages)),
+            code=code("workflow/scripts/figures.py", *drawing_functions(stages)),
         message:
             f"Figures of chapter {chapter}: {{wildcards}}"
         script:

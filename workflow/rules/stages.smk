@@ -26,7 +26,7 @@ for stage in STAGES.values():
         params:
             stage=stage.name,
             needs=needed(stage.needs, stage.name),
-            code=code(STAGE_SCRIPT, *stage.modules),
+            code=code(STAGE_SCRIPT, *stage.functions),
         message:
             f"{stage.title}: {{wildcards}}"
         script:
@@ -57,7 +57,7 @@ for stage, number, cases in STUDIED:
             stage=stage.name,
             cases=cases,
             needs=needs_of_cases(stage, cases),
-            code=code(STAGE_SCRIPT, *stage.modules),
+            code=code(STAGE_SCRIPT, *stage.functions),
         message:
             f"{stage.title}: {', '.join(cases)}"
         script:

@@ -39,19 +39,20 @@ def disagreeing(
     """Where another start (2, n) settles if that takes the class of the first back; None if the class holds.
 
     A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another
-    periodic motion is looked at `second_looks` times, and on, up to MAX_LOOKS times, until the periods for
-    which the runs have wandered show that hardly a start would fail to close. Two irregular motions are one
-    class, which is looked at once. `states` (periods, 2, n): of the first motion at the end of its periods.
+    periodic motion is looked at `second_looks` times, and on, up to MAX_LOOKS times if that is more, until
+    the periods for which the runs have wandered show that hardly a start would fail to close. Two irregular
+    motions are one class, which is looked at once. `states` (periods, 2, n): of the first motion at the end
+    of its periods.
     before: periods for which it had wandered when it was given up for the first time.
     """
     if not settings.second_looks or motion is Motion.NOT_SETTLED:
         return None
-    if first.period and not before and int(_large(integrator, first, first.period).sum()) <= WANDERED:
+    wandered = before + wandering(integrator, first, first.period)
+    if first.period and not wandered:
         return None
     known = KnownOrbit(first.orbit, states) if first.orbit else None
     starts = other_starts(integrator, start, settings.aside, first)
-    wandered = before + wandering(integrator, first, first.period)
-    for looks in range(1, MAX_LOOKS + 1):
+    for looks in range(1, max(MAX_LOOKS, settings.second_looks) + 1):
         other = yield from settling(integrator, next(starts), settings, known=known)
         if other.period != first.period:
             return other
@@ -87,10 +88,16 @@ def other_starts(integrator: Integrator, start: Array, aside: float, first: Sett
 
 
 def wandering(integrator: Integrator, settled: Settled, period: int) -> int:
-    """Periods of a run before the last change over a period that is not small; 0 if there are but few."""
+    """Count the periods of a run before the last change over a period that is not small.
+
+    They are 0 if there are but few. Of a run so long that its first states are not kept any more, nobody can
+    say that it went straight to its orbit: it counts as wandering until its record begins.
+    """
     large = _large(integrator, settled, period)
-    quiet = int(large[::-1].argmax())
-    return max(settled.periods_run - quiet, 0) if large.sum() > WANDERED else 0
+    if large.sum() > WANDERED:
+        quiet = int(large[::-1].argmax())
+        return max(settled.periods_run - quiet, 0)
+    return max(settled.periods_run - len(settled.ends), 0)
 
 
 def _large(integrator: Integrator, settled: Settled, period: int) -> Mask:

@@ -13,8 +13,10 @@ from facegear.config.dynamics import SECOND_LOOKS
 from facegear.config.load import load_config
 from facegear.config.machines import MachineInputs
 from facegear.config.model import resolved
+from facegear.dynamics.courses import alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.steady_state import second_look
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.orbits import change
 from facegear.dynamics.steady_state.second_look import CHANCE, never_closing, other_starts
@@ -201,6 +203,38 @@ def test_starts_that_differ_by_rounding_are_never_given_two_classes_of_motion(nu
     assert doubted and all(each.motion is Motion.NOT_SETTLED for each in doubted)
     assert all(first != second for first, second in (each.looks for each in doubted))
     assert all(" from one start and " in response_summary(each) for each in doubted)
+
+
+@pytest.mark.parametrize("aside", [0.0, 1e-12, -1e-12])
+def test_a_run_longer_than_the_states_that_are_kept_of_it_is_looked_at_again(aside):
+    """It wanders for 400 of 876 periods, and comes to periods 1, 3, 5 and 7 from starts 1e-12 aside."""
+    oscillator = list(random_oscillators(276))[275]
+    start = replace(oscillator, displacement=oscillator.displacement + aside)
+    found = steady_state(start.system, start.speed, Settings(second_looks=SECOND_LOOKS), start.start)
+    assert found.motion is Motion.NOT_SETTLED
+    assert found.looks is not None and found.looks[0] != found.looks[1]
+
+
+@pytest.mark.parametrize("looks", [3, 12])
+def test_a_run_that_wanders_gets_as_many_looks_as_asked_for(monkeypatch, looks):
+    """Seven were the most for a run that wanders, whatever was asked for."""
+    oscillator, starts = list(random_oscillators(343))[342], []
+    integrator = Integrator(oscillator.system, oscillator.speed)
+    first = settle(integrator, integrator.by_phase(oscillator.start), Settings())
+    assert second_look.wandering(integrator, first, first.period) > 0
+
+    def settle_again(integrator, start, settings, known):
+        starts.append(start)
+        return first
+        yield
+
+    monkeypatch.setattr(second_look, "settling", settle_again)
+    settings = Settings(second_looks=looks)
+    course = second_look.disagreeing(
+        integrator, first.state, settings, first, Motion.PERIODIC, first.ends, before=0
+    )
+    assert alone(course) is None
+    assert len(starts) == looks
 
 
 def test_a_motion_that_every_start_is_drawn_to_needs_no_second_look():

@@ -64,6 +64,7 @@ MACHINES = {
         15_000.0,
     ),
     "bearing clearance": (two_flanks(imperfections=CLEARANCE, torque=100.0), 4500.0),
+    "bearing clearance on tables": (two_flanks(imperfections=CLEARANCE, tables=TABLES, torque=100.0), 4500.0),
     "friction": (two_flanks(friction=MeshFriction(RATIOS)), 7500.0),
     "friction on tables": (two_flanks(friction=MeshFriction(RATIOS), tables=TABLES), 7500.0),
     "gears that bend": (bending_gears(torque=100.0), 6100.0),

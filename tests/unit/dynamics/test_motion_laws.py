@@ -1,9 +1,13 @@
-"""Every law of the kernels has what CONTRIBUTING.md says under "Add a mesh law"."""
+"""Laws and contact states of the kernels are added as CONTRIBUTING.md says."""
 
 import importlib
 import re
+import shutil
+import subprocess
+import sysconfig
 from pathlib import Path
 
+import nanobind
 import pytest
 from test_machines_side_by_side import OSCILLATORS
 
@@ -30,10 +34,86 @@ def test_a_law_has_its_header_its_runners_its_python_file_and_an_oscillator(law)
     assert own and all(type(each.kernel_law) is getattr(motion, f"{law}Law") for each in own)
 
 
-def test_the_recipe_names_files_that_are_there():
+def recipe(heading):
+    """Return the section of CONTRIBUTING.md under a heading."""
     text = (ROOT / "CONTRIBUTING.md").read_text()
-    recipe = text[text.index("## Add a mesh law") :]
-    recipe = recipe[: recipe.index("\n## ", 1)]
-    for path in re.findall(r"`((?:facegear|tests)/[\w/]+\.\w+)`", recipe):
+    section = text[text.index(f"## {heading}\n") :]
+    return section[: section.index("\n## ", 1)]
+
+
+@pytest.mark.parametrize("heading", ["Add a mesh law", "Add a contact state"])
+def test_the_recipe_names_files_that_are_there(heading):
+    paths = re.findall(r"`((?:facegear|tests)/[\w/]+\.\w+)`", recipe(heading))
+    assert len(paths) >= 3
+    for path in paths:
         assert (ROOT / path).exists(), path
     assert LAWS == ["Linear", "LoadDependent", "Power"]
+
+
+def test_the_steps_to_a_contact_state_name_what_stands_in_their_files():
+    """Each name of a step in code letters stands in one of the step's files."""
+    steps = re.findall(r"^\d+\. (.*)", recipe("Add a contact state"), re.M)
+    assert len(steps) == 6
+    for step in steps:
+        files = re.findall(r"`((?:facegear|tests)/[\w/]+\.\w+)`", step)
+        if "switches" in step or "advance" in step or "system.hpp" in step:
+            files.append("facegear/_kernels/src/motion/parting.hpp")
+        text = "".join((ROOT / file).read_text() for file in files)
+        names = re.findall(r"`(\w+)`", step)
+        assert names and all(re.search(rf"\b{name}\b", text) for name in names), step
+
+
+@pytest.fixture(scope="module")
+def with_twin(tmp_path_factory):
+    """Return copied sources to which a law was added by the first three steps: the power law, as a twin."""
+    sources = tmp_path_factory.mktemp("law") / "src"
+    shutil.copytree(SOURCES, sources)
+
+    def rename(text):
+        return text.replace("PowerLaw", "TwinLaw").replace("power_law", "twin_law").replace("/power", "/twin")
+
+    law = sources / "motion" / "laws"
+    (law / "twin.hpp").write_text(rename((law / "power.hpp").read_text()))
+    listed = (law / "all.hpp").read_text()
+    listed = listed.replace("#include", '#include "motion/laws/twin.hpp"\n#include', 1)
+    (law / "all.hpp").write_text(
+        listed.replace("const PowerLaw>>", "const PowerLaw>, std::shared_ptr<const TwinLaw>>")
+    )
+    bindings = sources / "bindings"
+    runners = (bindings / "motion_power.cpp").read_text()
+    (bindings / "motion_twin.cpp").write_text(rename(runners))
+    bound = (bindings / "motion.cpp").read_text()
+    function = re.search(r"^std::shared_ptr<const motion::PowerLaw> power_law.*?^}\n", bound, re.M | re.S)[0]
+    class_ = re.search(r"^    nb::class_<motion::PowerLaw>.*;\n", bound, re.M)[0]
+    maker = re.search(r'^    module.def\("power_law".*;\n', bound, re.M)[0]
+    for part in (function, class_, maker):
+        bound = bound.replace(part, part + rename(part))
+    (bindings / "motion.cpp").write_text(bound)
+    return sources
+
+
+@pytest.mark.skipif(shutil.which("c++") is None, reason="the recipe's law is compiled by a C++ compiler")
+@pytest.mark.parametrize("file", ["motion.cpp", "motion_twin.cpp"])
+def test_a_law_that_follows_the_recipe_compiles_and_changes_no_other_file(with_twin, file):
+    places = [with_twin, nanobind.include_dir(), sysconfig.get_path("include")]
+    command = ["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-psabi"]
+    include = [word for place in places for word in ("-isystem" if place != with_twin else "-I", str(place))]
+    done = subprocess.run(
+        [*command, *include, str(with_twin / "bindings" / file)], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr[:2000]
+    changed = {
+        str(path.relative_to(with_twin)) for path in with_twin.rglob("*.?pp") if differs(path, with_twin)
+    }
+    assert changed == {
+        "motion/laws/twin.hpp",
+        "motion/laws/all.hpp",
+        "bindings/motion.cpp",
+        "bindings/motion_twin.cpp",
+    }
+
+
+def differs(path, sources):
+    """Return whether a file is not that of the repository."""
+    original = SOURCES / path.relative_to(sources)
+    return not original.exists() or original.read_bytes() != path.read_bytes()

@@ -98,7 +98,11 @@ def compiled(folder, exported, speed=SPEED):
     path = write_fmu(folder / "machine.fmu", exported, speed)
     with ZipFile(path) as archive:
         archive.extractall(folder / "fmu")
-    options = {"CMAKE_CXX_FLAGS:STRING": STRICT, "CMAKE_CXX_EXTENSIONS:BOOL": "OFF"}
+    options = {
+        "CMAKE_CXX_FLAGS:STRING": STRICT,
+        "CMAKE_CXX_EXTENSIONS:BOOL": "OFF",
+        "CMAKE_TRY_COMPILE_TARGET_TYPE:STRING": "STATIC_LIBRARY",  # to link a program takes zig long
+    }
     build_platform_binary(folder / "fmu", configuration=None, cmake_options=options)
     return folder / "fmu"
 

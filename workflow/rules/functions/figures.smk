@@ -39,9 +39,9 @@ def shown(name, chapter):
     return report(file, caption=text, category=category, labels={"figure": name})
 
 
-def drawing_modules(stages):
-    """Modules that draw the figures of some stages."""
-    return sorted({stage.figures.draw.partition(":")[0] for stage in stages})
+def drawing_functions(stages):
+    """Functions that draw the figures of some stages."""
+    return sorted({stage.figures.draw for stage in stages})
 
 
 def most_memory(stages):

@@ -25,16 +25,16 @@ def hold_folder():
 
 
 @cache
-def code_of(script, modules):
-    """Fingerprint of a script and of the modules that it calls, found once a run and for rules with jobs alone."""
-    return fingerprint(ROOT / script, ROOT, modules)
+def code_of(script, functions):
+    """Fingerprint of a script and of functions that it calls, found once a run and for rules with jobs alone."""
+    return fingerprint(ROOT / script, ROOT, functions)
 
 
-def code(script, *modules):
+def code(script, *functions):
     """Function of the wildcards giving the fingerprint of a script, by its path from the repository's folder.
 
     As a parameter it makes jobs run again where code that they reach has changed.
 
-    - modules: those that the script calls without importing them by name
+    - functions: `module:function` of those that the script calls without importing them by name
     """
-    return lambda wildcards: code_of(script, modules)
+    return lambda wildcards: code_of(script, functions)

@@ -84,18 +84,19 @@ class LoadDependentLaw::Motion {
     // Three products with one series side by side; the newest coefficients, which need each other, come last.
     V force(Table<L> deflection, Index i, Index block) {
         if (!touching_[block]) return V::splat(0.0);
-        const Index stride = zeroth_.stride();
+        // Deflections have a row for every ring, too, which the law's own tables have not.
+        const Index stride = zeroth_.stride(), deflection_stride = deflection.stride();
         const double* third = third_.begin(block);
         const double* bend = bend_.begin(block);
         const double* rise = rise_.begin(block);
-        const double* d = deflection.begin(block) + i * stride;
+        const double* d = deflection.begin(block) + i * deflection_stride;
         V by_third = second_.at(i, block), by_bend = first_.at(i, block), by_rise = zeroth_.at(i, block);
         for (Index j = 0; j < i; ++j) {
             const V own = V::load(d);
             by_third = V::load(third) * own + by_third;
             by_bend = V::load(bend) * own + by_bend;
             by_rise = V::load(rise) * own + by_rise;
-            third += stride, bend += stride, rise += stride, d -= stride;
+            third += stride, bend += stride, rise += stride, d -= deflection_stride;
         }
         const V start = V::load(d), bent = V::load(third) * start + by_third, risen = bent * start + by_bend;
         bend_.put(i, block, bent);
