@@ -4,8 +4,6 @@ import importlib.metadata
 import sys
 from pathlib import Path
 
-from sphinx.application import Sphinx
-
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
@@ -34,30 +32,3 @@ html_theme = "alabaster"
 html_theme_options = {"page_width": "1100px", "sidebar_width": "240px"}
 html_static_path = ["static"]
 html_css_files = ["tables.css"]
-
-
-def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
-    """Put stored tables into the pages that show them."""
-    if name == "verification":
-        import pandas as pd
-
-        from validation.mutation.modules import mutation_tables, rows
-        from validation.platforms import MEASURED, OUTCOMES, outcomes_table, platforms_table
-        from validation.references import read, shares_table, verification_table
-
-        source[0] = source[0].replace("{mutants}", mutation_tables(rows()))
-        source[0] = source[0].replace("{platforms}", platforms_table(pd.read_csv(MEASURED)))
-        source[0] = source[0].replace("{platform_tests}", outcomes_table(pd.read_csv(OUTCOMES)))
-        source[0] = source[0].replace("{shares}", shares_table(read()))
-        source[0] = source[0].replace("{references}", verification_table(read()))
-    if name == "load_sharing":
-        import pandas as pd
-
-        from validation.sharing_advice import TABLE, advice_table
-
-        source[0] = source[0].replace("{sharing_advice}", advice_table(pd.read_csv(TABLE)))
-
-
-def setup(app: Sphinx) -> None:
-    """What Sphinx calls before it reads a page."""
-    app.connect("source-read", _with_references)

@@ -430,7 +430,8 @@ class Gearbox:
 
         These are all motions that branches join to the first one, to those of the sweep or to those of the
         random starts, up to the longest period, with their images under the machine's symmetries. A motion
-        that no branch leads to is missing if no start has found it; docs/branches.md lists all bounds.
+        that no branch leads to is missing if no start has found it; docs/explanation/branches.md lists all
+        bounds.
 
         Speeds, the longest period followed through doublings and the number of random `starts` as in section
         `branches` of the config unless given, its defaults where there is no such section. Raises

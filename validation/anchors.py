@@ -1,7 +1,7 @@
 """Public measurements and published numbers beside ours: `python -m validation.anchors`.
 
 Runs the configs of config/anchors, takes the comparisons with published spur gears from the table of
-references, and writes the scorecard to docs/measured/anchors.csv, which docs/anchors.md shows.
+references, and writes the scorecard to docs/measured/anchors.csv, which docs/reference/anchors.md shows.
 """
 
 from collections.abc import Iterator

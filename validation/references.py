@@ -1,7 +1,7 @@
 """References that tests compare with, as a table: what was checked, against what, and how well.
 
-Tests record the rows (`tests/helpers/references.py`), `make verification` stores them, and the page
-"Verification" of the documentation shows them.
+Tests record the rows (`tests/helpers/references.py`), `make verification` stores them, and the pages
+"Verification" and "Comparisons" of the documentation show them (`validation/pages.py`).
 """
 
 import ast
@@ -144,34 +144,63 @@ def shares_table(rows: pd.DataFrame) -> str:
     return "\n".join([*lines, f"| all | {total} | 100.0 % |"])
 
 
-def verification_table(rows: pd.DataFrame) -> str:
-    """All references as Markdown: how many of each kind a stage has, then one table a stage.
+def _capabilities(rows: pd.DataFrame) -> pd.Series:
+    """Names of the capabilities that each row checks, a list each."""
+    return rows["capability"].str.split()
 
-    A row that checks several stages stands below the first.
+
+def counts_table(rows: pd.DataFrame) -> str:
+    """Write how many references of each kind check a capability.
+
+    Parameters
+    ----------
+    rows : pd.DataFrame
+        Stored references, COLUMNS.
+
+    Returns
+    -------
+    str
+        A table as Markdown, one row a stage or method; a reference that checks several counts for each.
+    """
+    capabilities = _capabilities(rows)
+    lines = ["| capability | " + " | ".join(Kind) + " |", "|---" * (len(Kind) + 1) + "|"]
+    for name in [*STAGES, *sorted({name for names in capabilities for name in names} - set(STAGES))]:
+        by_kind = rows[[name in names for names in capabilities]]["kind"].value_counts()
+        lines.append(f"| {name} | " + " | ".join(str(by_kind.get(kind, "-")) for kind in Kind) + " |")
+    return "\n".join(lines)
+
+
+def comparison_tables(rows: pd.DataFrame) -> str:
+    """Write every comparison, one table a capability.
+
+    Parameters
+    ----------
+    rows : pd.DataFrame
+        Stored references, COLUMNS.
+
+    Returns
+    -------
+    str
+        Headings and tables as Markdown; a row that checks several capabilities stands below the first.
     """
     titles = {name: stage.title for name, stage in STAGES.items()}
-    several = rows["capability"].str.split()
-    names = [*titles, *sorted({name for names in several for name in names} - set(titles))]
-    counts = ["| capability | " + " | ".join(Kind) + " |", "|---" * (len(Kind) + 1) + "|"]
-    parts = []
-    for name in names:
-        checked = rows[[name in names for names in several]]
-        by_kind = checked["kind"].value_counts()
-        counts.append(f"| {name} | " + " | ".join(str(by_kind.get(kind, "-")) for kind in Kind) + " |")
-        own = rows[[name == names[0] for names in several]]
-        if len(own):
-            parts += ["", f"## {titles.get(name, METHOD_TITLES.get(name, name))} (`{name}`)", "", *_rows(own)]
-    return "\n".join([*counts, *parts, ""])
+    first = _capabilities(rows).str[0]
+    lines: list[str] = []
+    for name in [*titles, *sorted(set(first) - set(titles))]:
+        references = rows[first == name]
+        if len(references):
+            title = titles.get(name, METHOD_TITLES.get(name, name))
+            lines += ["", f"## {title} (`{name}`)", "", *_rows(references)]
+    return "\n".join(lines)
 
 
 def _rows(rows: pd.DataFrame) -> Iterator[str]:
-    yield "| quantity | kind: source | expected | computed | error | tolerance | module and test | made |"
-    yield "|---|---|---|---|---|---|---|---|"
+    yield "| quantity | kind: source | expected | computed | error | tolerance | module and test |"
+    yield "|---|---|---|---|---|---|---|"
     for row in rows.sort_values(["module", "test", "quantity"]).itertuples():
         sign = "at least " if row.relation == NO_LESS else ""
         module, test = row.module.removeprefix("facegear."), row.test.partition("::")[2].removeprefix("test_")
         yield (
             f"| {row.quantity} | {row.kind}: {row.source} | {sign}{row.expected:.6g} | {row.computed:.6g} "
-            f"| {row.error:.1e} | {row.tolerance:.1e} | `{module}`: {test.replace('_', ' ')} "
-            f"| {row.date} {row.commit} |"
+            f"| {row.error:.1e} | {row.tolerance:.1e} | `{module}`: {test.replace('_', ' ')} |"
         )

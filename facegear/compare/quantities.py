@@ -90,21 +90,21 @@ class Table:
 ROUNDED = 1e-9
 """Linear algebra and convex problems that are solved to rounding."""
 CONTACT = {"k_": 3e-3, "ste": 1e-2, "pressure": 1e-2, "path": 1e-4}
-"""docs/contact.md: the default mesh against one that is finer in every direction."""
+"""docs/explanation/contact.md: the default mesh against one that is finer in every direction."""
 RESIDUALS = {"kkt_residual": 1e-12, "torque_residual": 1e-10}
 """Relative residuals up to which a contact counts as solved."""
 MOTION = {"value": 8.6e-4, "energy_fraction": 1.8e-3, "resonance_rpm": ROUNDED, "order": ROUNDED}
-"""docs/dynamics.md: periodic motions against a tolerance of 1e-10 and 4096 samples; energies are squares."""
+"""docs/explanation/dynamics.md: periodic motions against 1e-10 and 4096 samples; energies are squares."""
 MOTION_RESIDUAL = {"residual": 1e-7}
 """Change over a period, over the scale, up to which a motion counts as periodic at the nominal speed."""
 MULTIPLIERS = 1e-5
-"""docs/dynamics.md: of the nominal motion, whose tolerance is finer than that of a sweep."""
+"""docs/explanation/dynamics.md: of the nominal motion, whose tolerance is finer than that of a sweep."""
 JUMPS = {**MOTION, "deflection": 8.6e-4, "leading_multiplier": 5e-3}
-"""docs/dynamics.md, jumps: at the same speed, against a tolerance of 1e-9."""
+"""docs/explanation/dynamics.md, jumps: at the same speed, against a tolerance of 1e-9."""
 OVER_BRACKET = {"deflection": 3e-2, "leading_multiplier": 0.15}
-"""docs/dynamics.md, jumps: how much a motion changes over the width of a bracket next to its fold."""
+"""docs/explanation/dynamics.md, jumps: change of a motion over the width of a bracket next to its fold."""
 FORCES = {"fraction": 6e-4, "mean_n": 6e-4, "largest_n": 2e-3}
-"""docs/load_sharing.md: means and largest values of periodic motions."""
+"""docs/explanation/load_sharing.md: means and largest values of periodic motions."""
 SHARING = {
     "mean": 6e-4,
     "starts": 6e-4,
@@ -114,7 +114,7 @@ SHARING = {
     "coefficient": 2e-3,
     "lost": 2e-3,
 }
-"""docs/load_sharing.md."""
+"""docs/explanation/load_sharing.md."""
 
 TABLES: Mapping[str, Table] = {
     "machine/ratings.csv": Table(("quantity",), "quantity", {"value": ROUNDED}),

@@ -33,7 +33,9 @@ class GridSection(Section):
     tooth: int | None = Field(
         None, ge=1, le=2000, description="from 1 in the order in which they come into mesh; null: all others"
     )
-    flank: Side = Field(description="as docs/geometry.md has them: the pinion's right drives the gear's left")
+    flank: Side = Field(
+        description="as docs/explanation/geometry.md has them: the pinion's right drives the gear's left"
+    )
     face_mm: tuple[Annotated[float, Field(ge=-1e5, le=1e5)], ...] = Field(
         min_length=2, max_length=1000, description="pinion: from the middle of its face; face gear: radius"
     )

@@ -32,7 +32,7 @@ class Roughness(Section):
 
 
 class DoleschelConstants(Section):
-    """Constants of a twin disc test of the oil; the formula is in docs/friction.md."""
+    """Constants of a twin disc test of the oil; the formula is in docs/explanation/friction.md."""
 
     solid: float = Field(ge=1e-6, le=1, description="mu_F at 1000 MPa and a sum velocity of 1 m/s")
     solid_pressure: float = Field(ge=-2, le=2, description="exponent of pressure in mu_F")
@@ -48,7 +48,7 @@ class FrictionSection(Section):
 
     model: Literal[
         "constant", "schlenk", "iso_6336_20", "iso_6336_22", "benedict_kelley", "xu", "doleschel"
-    ] = Field("schlenk", description="formula of the coefficient, as docs/friction.md has it")
+    ] = Field("schlenk", description="formula of the coefficient, as docs/explanation/friction.md has it")
     coefficient: float | None = Field(None, ge=0, le=1, description="of the model constant")
     lubricant_factor: float | None = Field(
         None, ge=0.01, le=2, description="X_L of schlenk, iso_6336_20 and iso_6336_22; null: that of the oil"

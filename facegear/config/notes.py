@@ -12,11 +12,13 @@ from facegear.geometry.design import BACKLASH_DIFFERS_UM
 
 PRINTED = (
     "transmission.mesh_kinematics = printed: equation (13) of the source paper to the letter, to compare "
-    "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's (docs/theory.md)"
+    "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's "
+    "(docs/explanation/theory.md)"
 )
 SLOW = (
     "transmission: runouts and cumulative pitch deviations enter the hunting cycle, at rest and running, and "
-    "the vibration at the orders of turns; steady states and sweeps leave them out (docs/theory.md)"
+    "the vibration at the orders of turns; steady states and sweeps leave them out "
+    "(docs/explanation/theory.md)"
 )
 EXTERNAL = (
     "transmission: external forces on {} act at rest and in motion, the same at every speed and torque of a "
@@ -28,17 +30,17 @@ UNREPEATED = (
 )
 WITHOUT_FRICTION = (
     "lubrication.friction.effect = excitation: {} leave out how friction disturbs the motion; loss, "
-    "temperature and film of samples are those of the forces without it (docs/friction.md)"
+    "temperature and film of samples are those of the forces without it (docs/explanation/friction.md)"
 )
 
 AS_ASSEMBLED = (
     "transmission.operating_pose = static: friction, loss, temperature and film take the contact of teeth as "
-    "assembled (docs/poses.md)"
+    "assembled (docs/explanation/poses.md)"
 )
 SINGLE_TEETH = (
     "{}: deviations of single teeth enter the hunting cycle, at rest and running, duty loads, and the "
     "vibration at the orders of turns (dynamics/shaft_orders.csv); steady states, sweeps, branches, samples "
-    "and designs take the mean flank (docs/measured_flanks.md)"
+    "and designs take the mean flank (docs/how_to/measured_flanks.md)"
 )
 
 

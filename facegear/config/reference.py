@@ -1,6 +1,6 @@
 """All config keys in one table, for the docs.
 
-Made by `python -m facegear.config.reference > docs/config.md`.
+Made by `python -m facegear.config.reference > docs/reference/config.md`.
 """
 
 import json
@@ -12,9 +12,12 @@ from facegear.config.model import Config
 NUMBERS = ("minimum", "maximum")
 """Words of a JSON schema for the bounds of a number."""
 HEAD = """# All keys of a config
-Made from the models that check a config, by `python -m facegear.config.reference > docs/config.md`.
-Required keys are required where their section is given; `[]` stands for each item of a list, `<name>` for a
-name of your own. A file's name counts from the folder of the config that holds it.
+
+This page is for users who write or change a config: it lists every key with its default, limits and meaning.
+Required keys are required where their section is given.
+`[]` stands for each item of a list, `<name>` for a name of your own.
+A file's name counts from the folder of the config that holds it.
+The page is made from the models that check a config (`python -m facegear.config.reference`).
 """
 
 

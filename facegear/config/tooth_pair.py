@@ -82,7 +82,7 @@ class PinionSection(Section):
 
 
 class GearModificationsSection(Section):
-    """What is taken off both flanks of the face gear along the normal, as docs/geometry.md draws it."""
+    """Material taken off both flanks of the face gear along the normal (docs/explanation/geometry.md)."""
 
     tip_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the tip")
     root_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the root")
@@ -135,7 +135,7 @@ class ShaperSection(Section):
 
 
 class AssemblySection(Section):
-    """Assembly errors; signs as in docs/geometry.md."""
+    """Assembly errors; signs as in docs/explanation/geometry.md."""
 
     offset_um: float = Field(default=0.0, ge=-5000, le=5000, description="dE: offset of the axes")
     shaft_angle_error_deg: float = Field(

@@ -50,8 +50,8 @@ def estimated_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) ->
 
     They grow with the square of the dof on its flank, its two cut faces and the largest cut through it. The
     numbers are fitted to what was measured on six meshes, two of them of wide faces or medium size
-    (docs/contact.md), which they give within a fifth; finer ones are extrapolated. The estimate never falls
-    below the flanks' dense compliance, which is certain.
+    (docs/explanation/contact.md), which they give within a fifth; finer ones are extrapolated. The estimate
+    never falls below the flanks' dense compliance, which is certain.
     """
     nodes, planes = flank_nodes(design, sizes, plan), 2.0 * _elements_along(design, sizes) + 1.0
     dof = 1.75 * nodes + 11.3 * planes * (design.face_gear.rim_thickness / sizes.thickness + 5.3)

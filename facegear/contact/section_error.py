@@ -2,8 +2,8 @@
 
 A section of the tooth with its neighbours is loaded by line forces at several heights of the flank. What the
 mesh of the section misses there is what the mesh of the body misses: the two agree within 0.3 % on the
-paper's pinion (docs/strength.md). Neither how loads are carried to the nodes nor the distance of planes along
-the face is part of it.
+paper's pinion (docs/explanation/strength.md). Neither how loads are carried to the nodes nor the distance of
+planes along the face is part of it.
 """
 
 from collections.abc import Callable

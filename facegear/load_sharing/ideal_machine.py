@@ -2,7 +2,7 @@
 
 References
 ----------
-Singh 2010 for idlers; docs/theory.md for the loop through inputs and idlers.
+Singh 2010 for idlers; docs/explanation/theory.md for the loop through inputs and idlers.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ IDLERS = (Role.IDLER, Role.TAIL)
 
 
 def loop_factor(mapped: MappedMachine, group: LoadGroup) -> float:
-    """Return K_gamma of an input by the loop formula of docs/theory.md.
+    """Return K_gamma of an input by the loop formula of docs/explanation/theory.md.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 References
 ----------
-Singh 2010 for idlers; docs/theory.md for the loop through inputs and idlers.
+Singh 2010 for idlers; docs/explanation/theory.md for the loop through inputs and idlers.
 """
 
 from collections.abc import Iterator

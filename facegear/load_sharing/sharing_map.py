@@ -6,7 +6,7 @@ meshes. Each computed value is that of the machine's own statics.
 
 References
 ----------
-Singh 2010 for the curves of idlers; docs/theory.md for the loop through inputs and idlers.
+Singh 2010 for the curves of idlers; docs/explanation/theory.md for the loop through inputs and idlers.
 """
 
 from collections.abc import Sequence

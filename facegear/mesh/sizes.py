@@ -44,7 +44,7 @@ RESOLUTIONS = {
 
 THIN_ROW, SECOND_ROW = 0.4, 0.5
 """First row below the fillet where stress is read and the row after it, in `profile`, of the named
-resolutions; from convergence (docs/strength.md)."""
+resolutions; from convergence (docs/explanation/strength.md)."""
 OWN_ROW = 0.8
 """First row below the fillet of sizes of one's own."""
 THIN_COLUMN = 0.5

@@ -1,7 +1,7 @@
 """Estimates of the processor time of a report, before any of its stages runs.
 
-They are rough: within a factor of three on one core of a processor of 2020 (docs/speed.md). Stages that take
-a second or less are left out.
+They are rough: within a factor of three on one core of a processor of 2020 (docs/reference/speed.md). Stages
+that take a second or less are left out.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -17,9 +17,9 @@ START = 5.0
 FIGURE = 0.7
 """Seconds a figure, drawn as svg and interactive."""
 COMPLIANCE = 25.0
-"""Seconds for both bodies by GB of their estimated memory (docs/speed.md: 15 s at 0.55 GB)."""
+"""Seconds for both bodies by GB of their estimated memory (docs/reference/speed.md: 15 s at 0.55 GB)."""
 POSITION = 2.5e-3
-"""Seconds a position and torque of the contact analysis (docs/speed.md)."""
+"""Seconds a position and torque of the contact analysis (docs/reference/speed.md)."""
 SPEED = 2e-3
 """Seconds a speed and mesh of a sweep, in each direction: 14 s for 800 speeds of 10 meshes."""
 MOTION = 1.0
@@ -29,7 +29,7 @@ SHARED_SPEED = 0.2
 BRANCHES = 300.0
 """Seconds to follow the branches of a machine."""
 SAMPLE, DESIGN = 5e-3, 0.6
-"""Seconds a dynamic sample, and a design of a search over teeth (docs/speed.md)."""
+"""Seconds a dynamic sample, and a design of a search over teeth (docs/reference/speed.md)."""
 
 Values = Mapping[str, Any]
 

@@ -14,7 +14,7 @@ from facegear.report.table import Table
 
 KINEMATICS = {
     "geometric": "geometric, lever arms and signs as gears have them",
-    "printed": "printed, equation (13) of the source paper to the letter (docs/theory.md)",
+    "printed": "printed, equation (13) of the source paper to the letter (docs/explanation/theory.md)",
 }
 NAMES = ("case", "reproduction")
 """Keys that say nothing of the machine."""

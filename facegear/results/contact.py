@@ -21,7 +21,7 @@ class ContactResult(Result):
     STAGE: ClassVar = "contact"
 
     def table(self) -> pd.DataFrame:
-        """One row a torque and position; columns in docs/stages.md.
+        """One row a torque and position; columns in docs/reference/stages.md.
 
         Columns: torque_n_m, position, ste_um, unloaded_ste_um, k_average_n_per_m, k_local_n_per_m,
         pairs_in_contact, load_share_pair_m2, load_share_pair_m1, load_share_pair_0, load_share_pair_p1,

@@ -13,7 +13,7 @@ class DynamicStressResult(Result):
     STAGE: ClassVar = "dynamic_root_stress"
 
     def table(self) -> pd.DataFrame:
-        """A row a mesh: forces, dynamic factor, root stress of both bodies (docs/strength.md).
+        """A row a mesh: forces, dynamic factor, root stress of both bodies (docs/explanation/strength.md).
 
         Columns: mesh, mean_force_n, largest_force_n, dynamic_factor, pinion_mean_mpa, pinion_running_mpa,
         pinion_bound_mpa, face_gear_mean_mpa, face_gear_running_mpa, face_gear_bound_mpa, pressure_mean_mpa,

@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
 
 class FrictionResult(Result):
-    """Sliding, loss, temperatures and film of one mesh by torque, position and speed (docs/friction.md)."""
+    """Sliding, loss, temperatures and film of one mesh by torque, position and speed.
+
+    docs/explanation/friction.md has the formulas.
+    """
 
     STAGE: ClassVar = "lubrication"
     BESIDE: ClassVar = {"pressure": ("contact", "pressure")}

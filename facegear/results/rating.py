@@ -18,7 +18,7 @@ class RatingResult(Result):
     STAGE: ClassVar = "rating"
 
     def table(self) -> pd.DataFrame:
-        """A row a flank, failure and method: stress, safety, verdict and life (docs/strength.md).
+        """A row a flank, failure and method: stress, safety, verdict and life (docs/explanation/strength.md).
 
         Columns: body, gear, flank, failure, method, stress_mpa, stress_error_mpa, allowed_mpa, cycles,
         safety, required, verdict, reason, caveat, damage, life_hours, within_torques_solved.

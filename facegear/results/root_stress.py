@@ -20,7 +20,7 @@ class RootStressResult(Result):
     STAGE: ClassVar = "root_stress"
 
     def table(self) -> pd.DataFrame:
-        """Peak of each fillet with its place, a row a torque, body and fillet (docs/strength.md).
+        """Peak of each fillet with its place, a row a torque, body and fillet (docs/explanation/strength.md).
 
         Columns: torque_n_m, body, fillet, largest_mpa, largest_error_mpa, passage, radius_mm, tangent_deg,
         at_30_deg_mpa, smallest_mpa.

@@ -17,7 +17,9 @@ class StressOverSpeedResult(Result):
     STAGE: ClassVar = "stress_over_speed"
 
     def table(self) -> pd.DataFrame:
-        """A row a motion and speed; `worst` marks the hardest of all known at it (docs/strength.md).
+        """A row a motion and speed; `worst` marks the hardest of all known at it.
+
+        docs/explanation/strength.md says how.
 
         Columns: motion, class, speed_rpm, mesh, largest_force_n, dynamic_factor, pinion_mpa, face_gear_mpa,
         pressure_mpa, within_torques_solved, worst.

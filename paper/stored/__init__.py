@@ -1,1 +1,1 @@
-"""What the repository stores of the search for the inputs that the paper leaves out (docs/validation.md)."""
+"""Stored results of the search for inputs that the paper leaves out (docs/explanation/validation.md)."""

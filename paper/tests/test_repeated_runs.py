@@ -37,7 +37,7 @@ def test_stored_runs_count_only_for_the_settings_that_decide_them(section, key, 
 
 
 def test_stored_runs_are_those_of_the_committed_config_and_of_every_set():
-    """A changed config or set fails here: docs/load_sharing.md says where the runs are renewed."""
+    """A changed config or set fails here: docs/explanation/load_sharing.md says how runs are renewed."""
     stored, sets = pd.read_csv(STORED.runs), stored_sets(STORED.sets)
     kept = runs_of_config(stored, VALUES, sets)
     dynamic = {claim.id for claim in read_claims(STORED.claims).claims if claim.dynamic}

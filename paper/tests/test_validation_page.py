@@ -12,7 +12,7 @@ from paper.scorecard.claims import read_claims
 
 ROOT = Path(__file__).parents[2]
 STORED = read_reproduction(ROOT / "config" / "reproduction" / "paper.yaml")
-PAGE = (ROOT / "docs" / "validation.md").read_text()
+PAGE = (ROOT / "docs" / "explanation" / "validation.md").read_text()
 TEXT = " ".join(PAGE.split())
 """The page without its line breaks."""
 CLAIMS = read_claims(STORED.claims).claims

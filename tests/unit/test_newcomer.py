@@ -1,4 +1,4 @@
-"""From nothing to the report of a machine by the commands of docs/first_machine.md, without Snakemake."""
+"""From nothing to a machine's report by the commands of docs/tutorials/first_machine.md alone."""
 
 import io
 import re
@@ -15,7 +15,7 @@ from facegear.exchange.rexs import Shaft, Spur, Unit, write_rexs
 from facegear.gearbox import load
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "first_machine.md").read_text()
+PAGE = (ROOT / "docs" / "tutorials" / "first_machine.md").read_text()
 COMMANDS = [shlex.split(line) for line in re.findall(r"(?m)^(facegear .*)$", PAGE)]
 DATE = "2026-11-23T20:00:00+00:00"
 LIGHT = {

@@ -1,10 +1,10 @@
-"""Docstrings name their sources by author and year, and docs/references.md says what they are."""
+"""Docstrings name their sources by author and year, and docs/reference/references.md says what they are."""
 
 import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "references.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference" / "references.md").read_text(encoding="utf-8")
 ENTRIES = re.findall(r"^- \*\*(.+? \d{4})\*\*\. ", PAGE, flags=re.MULTILINE)
 CITED = re.compile(r"\b[A-Z]\w+(?: et al\.| and [A-Z]\w+)?,? (?:19|20)\d\d\b")
 

@@ -39,7 +39,7 @@ WALKED = {
     "pair": ("19", "97", "2.5", "60", "--pressure-angle-deg", "20"),
     "split": ("22", "101", "3.5", "300", "--pinions", "2", "--idlers", "2"),
 }
-"""Teeth, module and torque of the machines of docs/first_machine.md that were walked by hand."""
+"""Teeth, module and torque of the machines of docs/tutorials/first_machine.md that were walked by hand."""
 ASKED = ("--pinion-teeth", "--face-gear-teeth", "--module-mm", "--torque-n-m")
 
 

@@ -10,7 +10,7 @@ from validation import language
 
 pytestmark = pytest.mark.xdist_group("vocabulary")  # all modules are parsed in one process
 ROOT = Path(__file__).parents[2]
-GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+GLOSSARY = (ROOT / "docs" / "reference" / "glossary.md").read_text(encoding="utf-8")
 SAMPLE = '''"""The same of a module."""
 
 KEPT = 1

@@ -3,7 +3,7 @@
 A folder holds `machine.yaml` (a config), `protocol.yaml` (what is predicted, and which inputs nobody knows)
 and what `python -m validation.blind predict FOLDER` makes of them: `prediction.csv` and `seal.txt`. Publish
 all four. Then write `measurement.csv`; `python -m validation.blind compare FOLDER` checks the
-seal and writes `verdict.csv`. docs/blind.md says it step by step.
+seal and writes `verdict.csv`. docs/how_to/blind.md says it step by step.
 """
 
 import hashlib

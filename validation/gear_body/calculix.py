@@ -1,7 +1,8 @@
 """Natural frequencies of a gear body by CalculiX: its section revolved into bricks of 20 nodes, bore held.
 
-The section is that of docs/bodies.md without teeth: a hub, a conical web of 18 to 12 mm and a ring. CalculiX
-knows nothing of waves: it solves the whole body in space, and finds every mode with nodal diameters twice.
+The section is that of docs/explanation/bodies.md without teeth: a hub, a conical web of 18 to 12 mm and a
+ring. CalculiX knows nothing of waves: it solves the whole body in space, and finds every mode with nodal
+diameters twice.
 """
 
 import re

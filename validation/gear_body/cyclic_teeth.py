@@ -68,7 +68,7 @@ class Gear:
 
 
 def paper() -> Gear:
-    """The paper's teeth on the section of docs/bodies.md."""
+    """The paper's teeth on the section of docs/explanation/bodies.md."""
     module = 3.75e-3
     pair = PairDesign(
         module=module,

@@ -64,7 +64,7 @@ def _body(name: str) -> Point:
     return Point(
         "config/paper.yaml",
         "s a body, its process started",
-        "docs/contact.md, resolution",
+        "docs/explanation/contact.md, resolution",
         "compliance",
         wildcards={"body": name},
         whole_process=True,
@@ -76,7 +76,7 @@ def _sample(law: str) -> Point:
     return Point(
         "config/tolerances.yaml",
         "ms a dynamic sample",
-        "docs/tolerances.md, accuracy",
+        "docs/how_to/tolerances.md, accuracy",
         "tolerances_chunk",
         amount=SAMPLES,
         scale=1e3,
@@ -89,7 +89,7 @@ def _sweep(direction: str, config: str = "config/paper.yaml", speeds: int = 400)
     return Point(
         config,
         f"s a sweep of {speeds} speeds",
-        "docs/dynamics.md, convergence of the sweep",
+        "docs/explanation/dynamics.md, convergence of the sweep",
         "dynamics_sweep_chunk",
         wildcards={"direction": direction, "number": "0"},
     )
@@ -99,7 +99,7 @@ def _fresh(*calls: str) -> Point:
     return Point(
         "facegear/example.yaml",
         "s a fresh process",
-        "docs/dynamics.md, integration",
+        "docs/explanation/dynamics.md, integration",
         calls=calls,
         whole_process=True,
     )
@@ -111,7 +111,7 @@ POINTS: Mapping[str, Point] = {
     "contact": Point(
         "config/paper.yaml",
         "ms a contact with its pressure",
-        "docs/contact.md, resolution",
+        "docs/explanation/contact.md, resolution",
         "contact",
         amount=160,
         scale=1e3,
@@ -123,12 +123,15 @@ POINTS: Mapping[str, Point] = {
     "sample_with_law": _sample("load_dependent"),
     "sample_without_law": _sample("constant_load"),
     "load_sharing": Point(
-        "config/paper.yaml", "s the machine's load sharing", "docs/load_sharing.md", "load_sharing"
+        "config/paper.yaml",
+        "s the machine's load sharing",
+        "docs/explanation/load_sharing.md",
+        "load_sharing",
     ),
     "microgeometry": Point(
         "config/microgeometry.yaml",
         "s a design",
-        "docs/tolerances.md, accuracy",
+        "docs/how_to/tolerances.md, accuracy",
         "tolerances_chunk",
         amount=DESIGNS,
         wildcards={"design": "samples", "first": "0", "last": str(DESIGNS - 1)},

@@ -10,7 +10,7 @@ from validation.contact.pair_peer import CLOSE
 from validation.contact.refinement_levels import CUTS, DEFAULT, FINEST, LINEAR, SECTORS
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "contact.md").read_text()
+PAGE = (ROOT / "docs" / "explanation" / "contact.md").read_text()
 MEASURED = ROOT / "docs" / "measured"
 PEERS = ("CalculiX", "Kratos")
 

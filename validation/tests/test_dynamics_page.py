@@ -8,7 +8,7 @@ import pytest
 from validation.dynamics.work_precision import seconds_at
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "dynamics.md").read_text()
+PAGE = (ROOT / "docs" / "explanation" / "dynamics.md").read_text()
 README = (ROOT / "README.md").read_text()
 SWEEP = pd.read_csv(ROOT / "docs" / "measured" / "dynamics_convergence.csv")
 SLOW_RPM = 1100.0

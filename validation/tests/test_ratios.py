@@ -20,7 +20,7 @@ MOTIONS = np.array(["period-1", "chaotic", "period-2", "period-1"])
 
 
 def test_code_is_measured_beside_itself_with_the_same_answers(tmp_path):
-    point = Point("config/harmonics_only.yaml", "s", "docs/theory.md", "modal", amount=2)
+    point = Point("config/harmonics_only.yaml", "s", "docs/explanation/theory.md", "modal", amount=2)
     here = np.ones(80_000_000)  # 640 MB that are not the job's
     row = ratio("modal", point, (present(), present()), tmp_path, turns=1)
     assert 50.0 < row["memory_now_mb"] < 600.0 < here.nbytes / 2**20

@@ -7,7 +7,7 @@ import pytest
 from references import against, agrees
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "strength.md").read_text()
+PAGE = (ROOT / "docs" / "explanation" / "strength.md").read_text()
 MEASURED = ROOT / "docs" / "measured"
 BODIES = {"pinion": "pinion", "face_gear": "face gear"}
 HALVED = {"all": "all sizes", "width": "along the face", "thickness": "inside the tooth"}

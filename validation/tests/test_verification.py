@@ -22,10 +22,11 @@ from validation.references import (
     NO_LESS,
     ROOT,
     Kind,
+    comparison_tables,
+    counts_table,
     declarations,
     read,
     shares_table,
-    verification_table,
 )
 
 DECLARATIONS = declarations()
@@ -110,20 +111,20 @@ def test_a_row_of_an_unknown_kind_is_refused():
 
 
 def test_the_page_opens_with_the_shares_and_says_what_was_never_measured():
-    page = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8").splitlines()
-    assert page[2].startswith("## What was never checked against the real world")
-    opening = page[3 : page.index("## How it is checked")]
-    assert "{shares}" in opening
+    page = (ROOT / "docs" / "reference" / "verification.md").read_text(encoding="utf-8")
+    assert page.index("\n## ") == page.index("\n## What was never checked against the real world")
+    opening = page[page.index("\n## ") : page.index("\n## How it is checked")].splitlines()
+    assert "<!-- generated: shares -->" in opening
     assert sum(line.startswith(("- **Strong**", "- **Weak**", "- **Missing**")) for line in opening) == 5
 
 
-def test_the_page_shows_every_stored_row_and_every_capability(stored):
-    page = verification_table(stored)
-    shown = re.findall(r"^\| .* \|$", page, flags=re.MULTILINE)
-    headings = re.findall(r"^## .*\(`(\w+)`\)$", page, flags=re.MULTILINE)
-    counts = 1 + len({*STAGES, *METHODS.values()})
-    assert len(shown) == counts + len(headings) + len(stored)
+def test_the_pages_show_every_stored_row_and_every_capability(stored):
+    shown = re.findall(r"^\| .* \|$", comparison_tables(stored), flags=re.MULTILINE)
+    headings = re.findall(r"^## .*\(`(\w+)`\)$", comparison_tables(stored), flags=re.MULTILINE)
+    assert len(shown) == len(headings) + len(stored)
     assert len(set(headings)) == len(headings)
+    counted = [line.split(" | ")[0].removeprefix("| ") for line in counts_table(stored).splitlines()[2:]]
+    assert len(counted) == len(set(counted)) and set(counted) == {*STAGES, *METHODS.values()}
 
 
 SECTIONS = (

@@ -97,7 +97,7 @@ def test_a_mesh_that_cannot_fit_into_memory_is_refused_with_an_estimate(profile)
     ],
 )
 def test_the_estimate_of_memory_agrees_with_what_was_measured_within_a_fifth(resolution, cuts, measured_gb):
-    """The measured ones are those of docs/contact.md, the paper's pair: the job of the face gear."""
+    """The measured ones are from docs/explanation/contact.md, the paper's pair: the face gear's job."""
     refinement = dict(zip(("profile", "width", "depth"), cuts, strict=True))
     values = changed(QUICK, mesh__resolution=resolution, contact__refinement=refinement)
     config = parse(Config, changed(values, contact__torques_n_m=[600, 1000]))
@@ -159,7 +159,7 @@ def test_single_teeth_that_deviate_are_reported_when_a_run_starts():
 
 
 def test_the_dynamics_take_the_backlash_of_the_teeth_as_assembled():
-    """Of the pair of docs/second_machine.md: 120 um of thinning, moved apart by the assembly errors."""
+    """The pair of docs/tutorials/second_machine.md: 120 um of thinning, moved apart by assembly errors."""
     found = resolved(parse(Config, changed(TWO, transmission__backlash_um=None, studies=[])))
     assert found["transmission"]["backlash_um"] == pytest.approx(130.518, abs=0.01)
     nominal = resolved(parse(Config, changed(QUICK, transmission__backlash_um=None, studies=[])))

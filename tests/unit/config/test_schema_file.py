@@ -21,8 +21,8 @@ def test_schema_file_is_what_the_models_say():
 
 
 def test_the_page_of_all_keys_is_what_the_models_say():
-    stored = (ROOT / "docs" / "config.md").read_text()
-    assert stored == reference(), "run: python -m facegear.config.reference > docs/config.md"
+    stored = (ROOT / "docs" / "reference" / "config.md").read_text()
+    assert stored == reference(), "run: python -m facegear.config.reference > docs/reference/config.md"
     assert "| `transmission.pinions[].angle_deg` | `null` | number from -360, to 360 or null |" in stored
 
 

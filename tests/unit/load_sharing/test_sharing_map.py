@@ -48,7 +48,7 @@ def test_curves_of_equal_idlers_are_the_closed_form(upper):
 
 @against(
     "analytic",
-    "loop formula of docs/theory.md",
+    "loop formula of docs/explanation/theory.md",
     capability="sharing_map",
     module="facegear.load_sharing.sharing_map",
 )

@@ -141,7 +141,7 @@ def test_what_a_stage_depends_on_reaches_back_to_the_teeth():
 
 def test_the_page_shows_the_table_as_it_is():
     """Renewed by `python -m facegear.pipeline.listing`."""
-    assert listing() in (ROOT / "docs" / "stages.md").read_text()
+    assert listing() in (ROOT / "docs" / "reference" / "stages.md").read_text()
 
 
 def test_the_report_is_given_every_table_that_its_chapters_read():

@@ -98,7 +98,8 @@ def test_jumps_are_looked_for_only_where_a_goal_asks_for_them(monkeypatch):
 
 
 def difference(inputs, idlers, clocking):
-    """F_u - F_l of an input after docs/theory.md, of which K_gamma of the inputs is a growing function.
+    """F_u - F_l of an input after docs/explanation/theory.md, of which K_gamma of the inputs is a growing
+    function.
 
     Clocking of the idlers (deg) takes its length at the base circle from the play of two flanks.
     """

@@ -122,7 +122,7 @@ def test_inputs_float_along_one_line_and_idlers_along_none():
 
 
 def test_the_table_of_both_kinematics_in_the_docs_is_what_the_model_gives():
-    message = (ROOT / "docs" / "validation.md").read_text().splitlines()
+    message = (ROOT / "docs" / "explanation" / "validation.md").read_text().splitlines()
     for line in table_lines():
         assert line in message
 

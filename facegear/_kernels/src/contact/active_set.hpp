@@ -1,6 +1,6 @@
 // The active set of a frictionless contact: forces f >= 0 and a rotation r with
 //   gap + C f - r a >= 0,   f . (gap + C f - r a) = 0,   a . f = torque,
-// a the lever arms (docs/contact.md, "What is solved").
+// a the lever arms (docs/explanation/contact.md, "What is solved").
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // The face gear that rays are cut with: the right side of tooth 0 in the gear's body frame
-// (docs/geometry.md).
+// (docs/explanation/geometry.md).
 #pragma once
 
 #include "tables.hpp"

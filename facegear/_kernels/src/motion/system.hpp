@@ -1,4 +1,4 @@
-// What is integrated: unit-mass oscillators coupled by meshes with clearance (docs/dynamics.md).
+// What is integrated: unit-mass oscillators coupled by meshes with clearance (docs/explanation/dynamics.md).
 //
 //     y'' + damping y' + omega_squared y + coupling + G^T F = load(s),   F = law(s, x) + c d',   d = G y -
 //     e(s)

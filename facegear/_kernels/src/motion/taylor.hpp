@@ -2,7 +2,7 @@
 //
 // Between switches the forces are analytic, and coefficient i of the forces needs no more than those up to i
 // of the deflections: so the coefficients of y follow from each other by a recurrence that costs one product
-// with G, one with its transpose and what the law asks for each order (docs/dynamics.md).
+// with G, one with its transpose and what the law asks for each order (docs/explanation/dynamics.md).
 #pragma once
 
 #include "motion/functions.hpp"

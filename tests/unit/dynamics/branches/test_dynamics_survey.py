@@ -156,7 +156,7 @@ def without_ripples(kinds, speeds):
     """The list without pairs of grazes that lie within NEAR of each other.
 
     A ripple that is born and grazes twice within one step may be missed there: the grazes at 5542.97 and
-    5546.27 rpm are missing at one of these steps on some processors (docs/branches.md).
+    5546.27 rpm are missing at one of these steps on some processors (docs/explanation/branches.md).
     """
     grazes = [speed for kind, speed in zip(kinds, speeds, strict=True) if kind == Kind.GRAZE.value]
     paired = {

@@ -1,5 +1,5 @@
 // The load-dependent law: between two levels of the amount the force is a cubic, whose coefficients are
-// Fourier series of the phase (docs/mesh_law.md).
+// Fourier series of the phase (docs/explanation/mesh_law.md).
 #pragma once
 
 #include <algorithm>
