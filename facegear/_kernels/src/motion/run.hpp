@@ -76,7 +76,7 @@ class Runner final : public AnyRunner {
         for (Index row = 0; row < 2; ++row)
             for (Index k = 0; k < n; ++k) work_.y.one(row, k, 0) = state[row * n + k];
         start_step(work_);
-        recurrence(work_, 2, work_.y, work_.deflection, false);
+        recurrence(work_, 0, 1, work_.y, work_.deflection, false);
         for (Index k = 0; k < n; ++k) out[k] = 2.0 * work_.y.one(2, k, 0);
     }
 
