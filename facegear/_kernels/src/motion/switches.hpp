@@ -23,15 +23,15 @@ struct Reach {
 };
 template <class V, class Term>
 [[gnu::always_inline]] inline Reach<V> reach_of(V start, Index order, Term term) {
-    const V none = V::splat(0.0);
-    V above = none, below = none;
+    V sum = V::splat(0.0), sizes = sum;
     for (Index i = 1; i <= order; ++i) {
         const V own = term(i);
-        above = above + larger(own, none);
-        below = below + smaller(own, none);
+        sum = sum + own;
+        sizes = sizes + absolute(own);
     }
-    const V slack = (above - below) * V::splat(1e-12);
-    return {start + above + slack, start + below - slack};
+    // Terms above zero add up to half of sizes + sum, those below to half of sizes - sum.
+    const V half = V::splat(0.5), slack = sizes * V::splat(1e-12);
+    return {start + half * (sizes + sum) + slack, start - half * (sizes - sum) - slack};
 }
 
 // How often the Bernstein coefficients of the ways change their sign over the step, and the last of them: the
