@@ -37,7 +37,7 @@ html_css_files = ["tables.css"]
 
 
 def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
-    """Put the stored references, mutants and platforms into the page that shows them."""
+    """Put stored tables into the pages that show them."""
     if name == "verification":
         import pandas as pd
 
@@ -50,6 +50,12 @@ def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
         source[0] = source[0].replace("{platform_tests}", outcomes_table(pd.read_csv(OUTCOMES)))
         source[0] = source[0].replace("{shares}", shares_table(read()))
         source[0] = source[0].replace("{references}", verification_table(read()))
+    if name == "load_sharing":
+        import pandas as pd
+
+        from validation.sharing_advice import TABLE, advice_table
+
+        source[0] = source[0].replace("{sharing_advice}", advice_table(pd.read_csv(TABLE)))
 
 
 def setup(app: Sphinx) -> None:

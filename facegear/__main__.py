@@ -20,17 +20,24 @@ from facegear.questions import OPTIONS, QUESTIONS, answered, flag
 ROOT = Path(__file__).parents[1]
 INTERRUPTED = 130
 """Exit code of a command that was stopped by Ctrl-C, as shells have it."""
+STOPPED = {"new": "; no file was written", "report": "; the same command goes on from here"}
+"""What follows for the user after the line of a command that was stopped by Ctrl-C."""
 CONFIG = "config file (yaml)"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; a mistake of the user's ends it with one line each and exit code 1.
 
-    So does a file or folder that the system refuses.
+    So does a file or folder that the system refuses. Ctrl-C ends it with one line and exit code INTERRUPTED.
     """
     given = parser().parse_args(arguments)
     try:
         return given.command(given)
+    except KeyboardInterrupt:
+        # The terminal shows ^C behind what stands there, such as a question.
+        start = "\n" if sys.stderr.isatty() else ""
+        print(f"{start}{given.name}: stopped{STOPPED.get(given.name, '')}", file=sys.stderr)
+        return INTERRUPTED
     except FacegearError as error:
         print(error, file=sys.stderr)
     except OSError as error:
@@ -45,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser("facegear", description="Spur pinion and face gear transmissions.")
     top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
-    commands = top.add_subparsers(required=True, metavar="command")
+    commands = top.add_subparsers(required=True, metavar="command", dest="name")
     new = commands.add_parser("new", help="write a config to start from, asking for what is not given")
     new.add_argument("config", type=Path, help="file to write, such as own.yaml")
     for name, (kind, default, text) in QUESTIONS.items():
@@ -196,7 +203,7 @@ def _with_cache(folder: Path) -> dict[str, str]:
 
     Snakemake ends with a traceback where it cannot make its own folder there.
     """
-    from platformdirs import user_cache_path
+    from platformdirs import user_cache_path  # a library of the extra `workflow`
 
     try:
         require_writable(user_cache_path("snakemake"))
@@ -229,12 +236,7 @@ def _report(given: argparse.Namespace) -> int:
         failures.extend([stage] * summary.startswith("not computed: "))
         _printed(stage, summary)
 
-    try:
-        page = gearbox.report(path, print_stage)
-    except KeyboardInterrupt:
-        print("report: stopped; the same command goes on from here", file=sys.stderr)
-        return INTERRUPTED
-    print(page)
+    print(gearbox.report(path, print_stage))
     return 1 if failures else 0
 
 
@@ -281,26 +283,24 @@ def _limits(given: argparse.Namespace) -> int:
 
 def _compare(given: argparse.Namespace) -> int:
     """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
-    from facegear.compare.answers import opened
-    from facegear.compare.judge import compare
-    from facegear.compare.page import by_table, causes_table, stored_in_words, verdict, write_page
+    from facegear.compare import answers, judge, page  # these draw, and bring matplotlib
 
     if given.page:
         _say_if_new(given.page.parent)
         require_writable_file(given.page)
-    with opened(given.old) as old, opened(given.new) as new:
-        comparison = compare(old, new)
-        reasons = causes_table(comparison, old, new)
-        print(verdict(comparison))
+    with answers.opened(given.old) as old, answers.opened(given.new) as new:
+        comparison = judge.compare(old, new)
+        reasons = page.causes_table(comparison, old, new)
+        print(page.verdict(comparison))
         sides = {given.old: old, given.new: new}.items()
-        for sentence in filter(None, [stored_in_words(name, folder) for name, folder in sides]):
+        for sentence in filter(None, [page.stored_in_words(name, folder) for name, folder in sides]):
             print(sentence)
         if len(comparison.rows):
-            print(by_table(comparison).to_string(index=False, na_rep=""))
+            print(page.by_table(comparison).to_string(index=False, na_rep=""))
             for reason in reasons.itertuples(index=False):
                 print(f"{reason.cause}  [{reason.table}]")
         if given.page:
-            write_page(given.page, comparison, reasons, old, new)
+            page.write_page(given.page, comparison, reasons, old, new)
     return 0 if comparison.equal else 1
 
 

@@ -3,6 +3,9 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import scipy.linalg  # noqa: F401 - brings a BLAS of its own; only what is loaded can be limited
+from threadpoolctl import threadpool_limits
+
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
@@ -16,8 +19,5 @@ def one_blas_thread() -> Iterator[None]:
     Iterator[None]
         A context, with nothing to be used inside.
     """
-    import scipy.linalg  # noqa: F401 - brings a BLAS of its own; only what is loaded can be limited
-    from threadpoolctl import threadpool_limits
-
     with threadpool_limits(limits=1):
         yield

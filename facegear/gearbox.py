@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from facegear.config.cases import changed_config, expand_cases
+from facegear.config.keys import keys_named
 from facegear.config.load import config_of, load_config, plain
 from facegear.config.model import Config, resolved
 from facegear.errors import ConfigError, FacegearError, chosen, extras_named, file_path
+from facegear.pipeline.run import machine_inputs
 from facegear.results.chain import Chain
 from facegear.results.store import Store, case_folder
 
@@ -705,7 +707,8 @@ class Gearbox:
         if ending == ".fmu":
             from facegear.exchange.fmu import write_fmu
 
-            return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
+            with keys_named():
+                return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
         if ending == ".glb":
             return self._scene(path)
         if ending == ".csv":
@@ -868,13 +871,7 @@ class Gearbox:
 
     def _machine(self) -> "Machine":
         """The lumped machine as the dynamics take it. Raises ConfigError without a transmission."""
-        from facegear.config.arguments import typed_arguments
-        from facegear.config.machines import wired_machine
-
-        given = self._chain.arguments("dynamics_response")
-        named = {"section": given["transmission"], "teeth": given["teeth"], "stiffness": given["harmonics"]}
-        named |= {name: given[name] for name in ("friction", "law", "poses", "bodies") if name in given}
-        return wired_machine(**typed_arguments(wired_machine, named))
+        return machine_inputs(self._chain.arguments("dynamics_response")).build()
 
     def _whole_case(self, on_stage: Callable[[str, str], None] | None) -> "WholeCase":
         from facegear.results.whole_case import WholeCase

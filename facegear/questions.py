@@ -66,7 +66,12 @@ def answered(given: Mapping[str, Any]) -> dict[str, Any]:
 def asked(name: str) -> float:
     """What a user answers to a question; nothing takes the default."""
     kind, default, text = QUESTIONS[name]
-    answer = input(f"{text}{'' if default is None else f' [{default}]'}: ").strip()
+    try:
+        answer = input(f"{text}{'' if default is None else f' [{default}]'}: ").strip()
+    except EOFError:
+        # Ctrl-D leaves the cursor behind the question.
+        print(file=sys.stderr)
+        raise FacegearError(f"new: {flag(name)} was not answered; no file was written") from None
     if not answer and default is not None:
         return default
     try:

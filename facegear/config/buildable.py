@@ -4,14 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from facegear.arrays import Array
 from facegear.config.bodies import SingleGear, SinglePinion
-from facegear.config.lumped_model import Described, described, half_backlash
+from facegear.config.lumped_model import Described, described
+from facegear.config.machine_errors import half_backlash
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.transmission.assembly import Assembly, assembly, squeezed
-from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
 
 
@@ -34,7 +33,7 @@ def require_buildable(section: Transmission, teeth: ToothNumbers, made: Describe
     bodies: dict[str, SinglePinion | SingleGear] = {**section.single_pinions, **section.single_gears}
     for name, body in bodies.items():
         _require_hold(shape, name, body)
-    _require_assembly(section, shape, assembly(shape, _half_backlashes(section, flaws), flaws.clocking))
+    _require_assembly(section, shape, assembly(shape, half_backlash(section, shape), flaws.clocking))
 
 
 def require_room(section: Transmission, teeth: ToothNumbers, made: Described | None = None) -> None:
@@ -46,10 +45,6 @@ def require_room(section: Transmission, teeth: ToothNumbers, made: Described | N
 def preloads(section: Transmission, teeth: ToothNumbers) -> list[str]:
     """A line for each pinion and mesh that is pressed together at rest, with key and amount."""
     return [f"{key}: {amount}" for key, amount, _ in _pressed(section, described(section, teeth))]
-
-
-def _half_backlashes(section: Transmission, flaws: Imperfections) -> Array:
-    return np.where(np.isnan(flaws.half_backlash), half_backlash(section), flaws.half_backlash)
 
 
 def _require_hold(shape: Layout, name: str, own: SinglePinion | SingleGear) -> None:
@@ -83,7 +78,7 @@ def _require_assembly(section: Transmission, shape: Layout, built: Assembly) -> 
 def _pressed(section: Transmission, made: Described) -> Iterator[tuple[str, str, str]]:
     """Key, amount and what is allowed of everything that is pressed together at rest."""
     shape, flaws = made
-    half = _half_backlashes(section, flaws)
+    half = half_backlash(section, shape)
     built = assembly(shape, half, flaws.clocking, flaws)
     for i in np.flatnonzero(~built.fits):
         allowed = f"errors of this pinion and its meshes within the {1e6 * built.room[i]:.0f} um they leave"

@@ -8,12 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.config.machine_errors import error_lags, imperfections
+from facegear.config.machine_errors import error_lags, half_backlash, imperfections
 from facegear.config.machine_layout import ToothNumbers, layout, single_parts
 from facegear.config.shafts import OUTPUT, TurningMassSection
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import error_series
-from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.shafts.condensed import condensed
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
@@ -61,7 +60,7 @@ def machine(
         torques=balanced_torques(shape, given_torques(section, shape), other_gear_torque(section)),
         stiffness=stiffness,
         error=error_series(section.transmission_error, unloaded),
-        half_backlash=half_backlash(section),
+        half_backlash=half_backlash(section, shape),
         damping=Damping(
             damping.mesh_n_s_per_m, damping.mass_per_s, damping.bearing_s, OpenFlanks(damping.open_flanks)
         ),
@@ -110,15 +109,6 @@ def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
     shape = layout(section, teeth)
     clocking = imperfections(section, shape).clocking
     return mesh_phases(shape, PhaseConvention(section.phase_convention), clocking)
-
-
-def half_backlash(section: Transmission) -> float:
-    """Half the backlash (m) common to all meshes. Raises ConfigError where it was not filled in."""
-    if section.backlash_um is None:
-        raise ConfigError(
-            "transmission.backlash_um", None, "a number, as facegear.config.model.resolved gives"
-        )
-    return 0.5e-6 * section.backlash_um
 
 
 def external_forces(section: Transmission, shape: Layout) -> Array:

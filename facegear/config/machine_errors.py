@@ -9,6 +9,7 @@ from facegear.config.bodies import RunoutSection, SingleGear, SinglePinion
 from facegear.config.machine_layout import single_parts
 from facegear.config.transmission import LIKE_ALL_MESHES, Transmission
 from facegear.config.transmission_error import error_series
+from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.imperfections import Imperfections, Runout
 from facegear.transmission.layout import Layout
@@ -22,10 +23,8 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
         section.pinion.bearing_clearance_um if own.bearing_clearance_um is None else own.bearing_clearance_um
         for own in pinions
     ]
-    backlash = [np.nan if own.backlash_um is None else own.backlash_um for own in meshes]
     return Imperfections(
         error=1e-6 * np.array([own.error_um for own in meshes]),
-        half_backlash=0.5e-6 * np.array(backlash),
         stiffness=np.array([own.stiffness_factor for own in meshes]),
         series={
             mesh: error_series(own.transmission_error, unloaded)
@@ -40,6 +39,34 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
         pinion_pitch=_pitch_curves(pinions),
         gear_pitch=_pitch_curves(gears),
     )
+
+
+def half_backlash(section: Transmission, shape: Layout) -> Array:
+    """Return half the backlash of each mesh: its own, or that of all meshes.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    shape : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    (meshes,) array
+        Half the backlash, m.
+
+    Raises
+    ------
+    ConfigError
+        If the backlash of all meshes was not filled in.
+    """
+    if section.backlash_um is None:
+        raise ConfigError(
+            "transmission.backlash_um", None, "a number, as facegear.config.model.resolved gives"
+        )
+    meshes = [section.single_meshes.get(name, LIKE_ALL_MESHES).backlash_um for name in shape.mesh_names]
+    return 0.5e-6 * np.array([section.backlash_um if single is None else single for single in meshes])
 
 
 def error_lags(section: Transmission, shape: Layout) -> Array | None:

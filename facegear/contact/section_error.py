@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.interpolate import CubicSpline
 from skfem import Basis, ElementQuad2, MeshQuad2
 
 from facegear.arrays import Array, Integers
@@ -163,7 +164,5 @@ def _tension(moved: Array, points: Array, material: Material) -> float:
         slopes = _lagrange(station - first - 1.0)[1]
         along, moves = slopes @ points[first : first + 3], slopes @ moved[first : first + 3]
         stress.append(stiff * float(along @ moves) / float(along @ along))
-    from scipy.interpolate import CubicSpline
-
     kind = CubicSpline(np.arange(len(stress)), stress)
     return float(kind(np.linspace(0.0, len(stress) - 1.0, FINE * len(stress))).max())

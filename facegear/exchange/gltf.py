@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -32,7 +31,7 @@ def write_gltf(
     errors are left out. Raises MissingExtra where trimesh is not installed.
     """
     with extras_named():
-        import trimesh
+        import trimesh  # a library of the extra `exchange`
 
     path, plain = Path(path), replace(design, assembly=AssemblyErrors())
     scene = trimesh.Scene()
@@ -40,21 +39,20 @@ def write_gltf(
     placed += [(name, BODIES[0], pinion_transform(plain, angle)) for name, angle in pinions]
     for name, body, transform in placed:
         if body not in scene.geometry:
-            scene.geometry[body] = _shape(plain, body)  # once, however many of them there are
+            corners = _corners(plain, body)  # once, however many of them there are
+            shape = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3))
+            shape.merge_vertices(digits_vertex=9)
+            shape.visual.face_colors = COLOURS[body]
+            scene.geometry[body] = shape
         scene.graph.update(name, matrix=UPWARDS @ transform, geometry=body)
     with atomic_path(path) as temporary:
         temporary.write_bytes(scene.export(file_type="glb"))
     return path
 
 
-def _shape(design: PairDesign, body: Body) -> Any:
-    import trimesh
-
-    corners = triangles(solid(design, body, None, PROFILE, WIDTH))
-    shape = trimesh.Trimesh(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
-    shape.merge_vertices(digits_vertex=9)
-    shape.visual.face_colors = COLOURS[body]
-    return shape
+def _corners(design: PairDesign, body: Body) -> Array:
+    """Corners of the triangles of a body, three rows each, in metres."""
+    return triangles(solid(design, body, None, PROFILE, WIDTH)).reshape(-1, 3)
 
 
 def pinion_transform(design: PairDesign, angle: float) -> Array:

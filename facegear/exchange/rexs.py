@@ -15,7 +15,7 @@ from facegear.io.atomic import atomic_path
 VERSION = "2.0"
 LOST = (
     "face gears: their teeth and shapes; each is a shaft with its mass and bearing alone",
-    "distribution angles, torques, backlash, errors and damping",
+    "distribution angles, torques with their excitations, backlash, errors and damping",
     "inertias; REXS takes them from the shapes of bodies",
     "bearing stiffness along x and y where they differ: the smaller one is written",
     "tooth thickness, addendum, dedendum, profile shift and modifications of the pinion",

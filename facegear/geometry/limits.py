@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
 
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from facegear.errors import GeometryError, NotConverged
 from facegear.geometry import face_gear
@@ -59,25 +59,51 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
     """
     tip_undercut = tip_plane_radius(design)
     inner, inner_reason = max((limits.inner, "undercut"), (tip_undercut * (1 + 1e-9), "tip undercut"))
-    if limits.outer <= inner:
+    land = _radii_with_land(design, inner, limits.outer) if limits.outer > inner else None
+    if land is None:
         raise _no_face(design, "the teeth are pointed where they are no longer undercut")
-    candidates = [
-        (_last(_land_left, design, inner, limits.outer), f"tips pointed at {1e3 * limits.outer:.3f}"),
-    ]
+    if land[0] > inner:
+        inner, inner_reason = land[0], "tips pointed further in"
+    candidates = [(land[1], f"tips pointed at {1e3 * limits.outer:.3f}")]
     sharpest = sharpest_fillet_radius(design)
     if _fillet_left(design, sharpest) < 0:
         last = _last(_fillet_left, design, inner, sharpest)
         reason = "the shaper's tip leaves no fillet further out; a larger shaper.tip_rounding_modules does"
         candidates.append((last, reason))
     outer, outer_reason = min(candidates)
+    found = FaceRange(inner, outer, inner_reason, outer_reason)
     if outer - inner < 0.5 * design.module:
-        raise _no_face(design, "less than half a module lies between undercut and the outer limit")
-    return FaceRange(inner, outer, inner_reason, outer_reason)
+        raise _no_face(design, f"less than half a module of face is left {found}")
+    return found
 
 
 def _no_face(design: PairDesign, reason: str) -> GeometryError:
     tip = round(design.face_gear.addendum / design.module, 6)
-    return GeometryError("face_gear.addendum_modules", tip, f"another one: no face can be, as {reason}")
+    return GeometryError("face_gear.addendum_modules", tip, f"less: {reason}")
+
+
+def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float, float] | None:
+    """Smallest and largest radius (m) at which the tip land is wide enough; None where it is at no radius.
+
+    The land has one maximum: with many pinion teeth it also vanishes near the radius of tip undercut.
+    """
+    start, end = low * (1 + 1e-9), high * (1 - 1e-6)
+    if end <= start:
+        return None
+    if _land_left(design, start) > 0:
+        return low, _last(_land_left, design, low, high)
+    widest = float(
+        minimize_scalar(
+            lambda radius: -_land_left(design, radius),
+            bounds=(start, end),
+            method="bounded",
+            options={"xatol": 1e-3 * design.module},
+        ).x
+    )
+    if _land_left(design, widest) <= 0:
+        return None
+    first = brentq(lambda radius: _land_left(design, radius), start, widest, xtol=ROUNDING)
+    return float(first), _last(_land_left, design, widest, high)
 
 
 def _last(room: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:

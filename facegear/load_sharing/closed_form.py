@@ -5,7 +5,7 @@ flanks, and the face gears sit on rigid bearings, or one of them floats.
 
 References
 ----------
-Singh 2010 and Ligata et al. 2009 for idlers; docs/theory.md for the loop through inputs and idlers.
+Singh 2010 for idlers; docs/theory.md for the loop through inputs and idlers.
 """
 
 from dataclasses import dataclass

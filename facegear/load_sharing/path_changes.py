@@ -86,8 +86,25 @@ def with_half_backlash(machine: Machine, half: float) -> Machine:
     Machine
         With this backlash.
     """
-    flaws = replace(machine.imperfections, half_backlash=np.full(len(machine.layout.meshes), np.nan))
-    return replace(machine, half_backlash=half, imperfections=flaws)
+    return replace(machine, half_backlash=np.full(len(machine.layout.meshes), half))
+
+
+def with_scaled_backlash(machine: Machine, factor: float) -> Machine:
+    """Scale the backlash of every mesh, so that meshes that differ keep their proportion.
+
+    Parameters
+    ----------
+    machine : Machine
+        With backlash as it is.
+    factor : float
+        On the backlash, dimensionless.
+
+    Returns
+    -------
+    Machine
+        With this backlash.
+    """
+    return replace(machine, half_backlash=factor * machine.half_backlash)
 
 
 def _with_layout(machine: Machine, layout: Layout) -> Machine:

@@ -42,8 +42,7 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
         given, series={}, error=np.zeros_like(given.error), position=np.zeros_like(given.position)
     )
     silent = replace(machine, error=Harmonics(np.zeros(1), np.zeros(1)), imperfections=quiet)
-    shut = replace(quiet, half_backlash=np.full(len(machine.layout.meshes), np.nan))
-    tight = replace(silent, half_backlash=0.0, imperfections=shut)
+    tight = replace(silent, half_backlash=np.zeros(len(machine.layout.meshes)))
     cases = {
         "static": static_forces(machine, POSITIONS),
         "quasi_static": slow_forces(machine, settings, options.slow_rpm),

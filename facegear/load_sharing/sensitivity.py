@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Mask
+from facegear.arrays import Array, Mask
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import (
     HuntingCycle,
@@ -46,7 +46,7 @@ def sensitivities(base: HuntingCycle) -> pd.DataFrame:
     base = _coarser(base)
     machine, rows, hard = base.machine, [], _may_be_hardest(base)
     for name, low, high, width in _changes(machine):
-        changed = [replace(machine, imperfections=shifted) for shifted in (low, high)]
+        changed = (low, high)
         # The base repeats itself through a longer hunting cycle.
         hardest = np.flatnonzero(np.tile(hard, max(map(hunting_length, changed)) // hard.size))
         ends = [at_cycles(shifted, hardest, base.positions) for shifted in changed]
@@ -105,44 +105,46 @@ def bearing_scan(machine: Machine) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns).dropna(ignore_index=True)
 
 
-def _changes(machine: Machine) -> Iterator[tuple[str, Imperfections, Imperfections, float]]:
-    """Name, errors a little smaller and larger, their distance (m)."""
-    layout, base = machine.layout, machine.imperfections
-    own = replace(base, half_backlash=machine.half_backlashes)
+def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
+    """Yield the name of each error, the machine with less and more of it, and the difference (m)."""
+    layout, errors, half = machine.layout, machine.imperfections, machine.half_backlash
     for mesh, name in enumerate(layout.mesh_names):
-        low, high = _moved(own, "error", mesh)
-        yield f"error {name}", low, high, 2 * STEP
-        low, high = _moved(own, "half_backlash", mesh, down=own.half_backlash[mesh])
-        yield f"backlash {name}", low, high, 2 * float(high.half_backlash[mesh] - low.half_backlash[mesh])
+        yield f"error {name}", *_moved(machine, "error", mesh), 2 * STEP
+        tighter, looser = _with_step(half, mesh, -min(STEP, half[mesh])), _with_step(half, mesh, STEP)
+        low, high = (replace(machine, half_backlash=values) for values in (tighter, looser))
+        yield f"backlash {name}", low, high, 2 * float(looser[mesh] - tighter[mesh])
     for i, pinion in enumerate(layout.pinions):
         for k, letter in enumerate("xy"):
-            low, high = _moved(own, "position", (i, k))
-            yield f"position {letter} {pinion.name}", low, high, 2 * STEP
-        if own.bearing_clearance[i] > STEP:
-            low, high = _moved(own, "bearing_clearance", i)
-            yield f"clearance {pinion.name}", low, high, 2 * STEP
+            yield f"position {letter} {pinion.name}", *_moved(machine, "position", (i, k)), 2 * STEP
+        if errors.bearing_clearance[i] > STEP:
+            yield f"clearance {pinion.name}", *_moved(machine, "bearing_clearance", i), 2 * STEP
     for key, names in (
         ("pinion_runout", [pinion.name for pinion in layout.pinions]),
         ("gear_runout", [gear.name for gear in layout.gears]),
     ):
         for body, name in enumerate(names):
-            now = getattr(own, key)[body].amplitude
-            low, high = max(now - STEP, 0.0), now + STEP
-            smaller, larger = (_with_runout(own, key, body, amplitude) for amplitude in (low, high))
-            yield f"runout {name}", smaller, larger, high - low
+            amplitude = getattr(errors, key)[body].amplitude
+            ends = max(amplitude - STEP, 0.0), amplitude + STEP
+            low, high = (replace(machine, imperfections=_with_runout(errors, key, body, end)) for end in ends)
+            yield f"runout {name}", low, high, ends[1] - ends[0]
 
 
-def _moved(
-    base: Imperfections, key: str, index: int | tuple[int, int], down: float = STEP
-) -> tuple[Imperfections, Imperfections]:
-    """A little smaller, by no more than `down`, and a little larger."""
+def _moved(machine: Machine, key: str, index: int | tuple[int, int]) -> tuple[Machine, Machine]:
+    """Return the machine with one value of its errors smaller, and larger, by STEP."""
+    errors = machine.imperfections
 
-    def moved(change: float) -> Imperfections:
-        values = getattr(base, key).copy()
-        values[index] += change
-        return replace(base, **{key: values})
+    def machine_with(step: float) -> Machine:
+        values: dict[str, Any] = {key: _with_step(getattr(errors, key), index, step)}
+        return replace(machine, imperfections=replace(errors, **values))
 
-    return moved(-min(STEP, down)), moved(STEP)
+    return machine_with(-STEP), machine_with(STEP)
+
+
+def _with_step(values: Array, index: int | tuple[int, int], step: float) -> Array:
+    """Return a copy of the values with a step added to one of them."""
+    stepped = values.copy()
+    stepped[index] += step
+    return stepped
 
 
 def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> Imperfections:
@@ -160,9 +162,7 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     gears = tuple(replace(gear, body=replace(gear.body, tilt=None)) for gear in layout.gears)
     other = replace(layout, gear_radius=radius, kinematics=kinematics, gears=gears)
     kept = machine.imperfections
-    errors = replace(
-        perfect(other), error=kept.error, half_backlash=kept.half_backlash, stiffness=kept.stiffness
-    )
+    errors = replace(perfect(other), error=kept.error, stiffness=kept.stiffness)
     pinions = len(layout.pinions)
     lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
     torques = balanced_torques(other, machine.torques[:pinions], float(lower))

@@ -4,6 +4,7 @@ This module names no stage: the fingerprint of a rule holds it and the modules o
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +12,10 @@ from facegear.blas_threads import one_blas_thread
 from facegear.config.arguments import typed_arguments
 from facegear.config.keys import keys_named
 from facegear.io.files import write_part
-from facegear.pipeline.stage import From, Stage, load
+from facegear.pipeline.stage import MACHINE_INPUTS, From, Stage, load
 
 if TYPE_CHECKING:
+    from facegear.config.machines import MachineInputs
     from facegear.stages.outcome import Outcome
 
 Paths = Mapping[str, str | Sequence[str]]
@@ -53,5 +55,56 @@ def call(stage: Stage, given: Mapping[str, Any], **more: Any) -> "Outcome":
     """
     function = load(stage.function)
     with keys_named(), one_blas_thread():
-        outcome: Outcome = function(**typed_arguments(function, given), **more)
+        arguments = typed_arguments(function, with_machine(stage, given))
+        outcome: Outcome = function(**arguments, **more)
     return outcome
+
+
+def with_machine(stage: Stage, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return arguments with the machine, or its inputs, in place of the values that decide it.
+
+    Parameters
+    ----------
+    stage : Stage
+        Row of the table of stages.
+    arguments : mapping
+        Arguments from the config and from earlier stages by name.
+
+    Returns
+    -------
+    mapping
+        The arguments that the stage's function takes.
+
+    Raises
+    ------
+    ConfigError
+        If pinions or torques do not fit the layout.
+    NotConverged
+        If the loaded position of the bodies is not found.
+    """
+    if not stage.machine:
+        return arguments
+    inputs = machine_inputs(arguments)
+    names = {field.name for field in fields(inputs)}
+    other_arguments = {name: value for name, value in arguments.items() if name not in names}
+    return {**other_arguments, stage.machine: inputs.build() if stage.machine == "machine" else inputs}
+
+
+def machine_inputs(arguments: Mapping[str, Any]) -> "MachineInputs":
+    """Return the inputs of the machine among the arguments of a stage.
+
+    Parameters
+    ----------
+    arguments : mapping
+        Arguments from the config and from earlier stages by name.
+
+    Returns
+    -------
+    MachineInputs
+        Everything that decides what the machine is.
+    """
+    kind = load(MACHINE_INPUTS)
+    names = {field.name for field in fields(kind)}
+    inputs_by_name = {name: value for name, value in arguments.items() if name in names}
+    inputs: MachineInputs = kind(**typed_arguments(kind, inputs_by_name))
+    return inputs

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path, PurePosixPath
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 from facegear.io.checksums import MANIFEST_SUFFIX
 
@@ -18,6 +18,10 @@ FIGURES = "_figures"
 """Ending of the name of a rule that draws the figures of a chapter."""
 NUMBER = r"\d+"
 """A wildcard that stands for a number is handed to the stage as one."""
+
+
+MACHINE_INPUTS = "facegear.config.machines:MachineInputs"
+"""Class that holds everything that decides what a machine is."""
 
 
 @dataclass(frozen=True)
@@ -150,6 +154,8 @@ class Stage:
       or where its file is asked for by name
     - section: optional section of the config without which there is nothing to do
     - resumable: file beside which finished parts are kept, so that a killed job goes on after the last
+    - machine: "machine" where the stage takes the machine in motion or at rest, built of its inputs; "inputs"
+      where it builds machines itself; the arguments that are fields of MACHINE_INPUTS go into them
     - together: cases of studies that one job makes, where a case takes about a second
     - local: short enough for the computer that submits jobs to a cluster
     - priority: long jobs, and those that long ones wait for, start first; figures (0) wait for all of them
@@ -165,6 +171,7 @@ class Stage:
     asked: Callable[[Case], bool] | None = None
     section: str = ""
     resumable: str = ""
+    machine: Literal["", "machine", "inputs"] = ""
     folder: str = ""
     memory_mb: int | None = None
     minutes: int | None = None
@@ -181,6 +188,7 @@ class Stage:
     def modules(self) -> tuple[str, ...]:
         """Modules whose code decides its files."""
         named = [self.function, *(file.view for file in self.files.values() if file.view)]
+        named += [MACHINE_INPUTS] if self.machine else []
         return tuple(name.partition(":")[0] for name in named)
 
     @property

@@ -6,9 +6,6 @@ from math import ceil, floor, log10
 from types import MappingProxyType
 from typing import Any
 
-import matplotlib
-from matplotlib.colors import to_hex
-
 BLACK, BLUE, RED, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"
 PURPLE, ORANGE, SKY, WHITE = "#CC79A7", "#E69F00", "#56B4E9", "#ffffff"
 COLOURS = (BLACK, BLUE, RED, GREEN, PURPLE, ORANGE, SKY)
@@ -86,7 +83,9 @@ def scale_colours(name: str, positions: Iterable[float]) -> list[str]:
 
 @cache
 def _scale_colour(name: str, position: float) -> str:
-    return str(to_hex(matplotlib.colormaps[name](position)))
+    from matplotlib import colormaps, colors  # a figure is data: only its drawing and scales need the library
+
+    return str(colors.to_hex(colormaps[name](position)))
 
 
 def shades(count: int, last: float = 0.85) -> list[str]:

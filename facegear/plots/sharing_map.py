@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pandas as pd
 
 from facegear.load_sharing.sharing_map import AS_GIVEN
-from facegear.plots.colours import BLACK, BLUE, GREEN, PURPLE, RED, colour_of, grey
+from facegear.plots.colours import BLACK, BLUE, GREEN, RED, colour_of, grey
 from facegear.plots.description import Axis, Curve, Figure, LineStyle, Panel
 
 FLOATING: Mapping[str, tuple[str, str]] = {
@@ -69,7 +69,7 @@ def _machine(points: pd.DataFrame, kind: str) -> Curve:
     """The machine at each of its torques."""
     rows = points[points["kind"] == kind]
     at = rows["number"].to_numpy(), rows["k_gamma_p95"].to_numpy()
-    return Curve(*at, "this machine", PURPLE, "none", marker="circle", size=6.0, hollow=True)
+    return Curve(*at, "this machine", BLACK, "none", marker="circle", size=7.0)
 
 
 def _idlers(curves: pd.DataFrame) -> list[Curve]:
@@ -81,11 +81,11 @@ def _idlers(curves: pd.DataFrame) -> list[Curve]:
         number = rows["number"].to_numpy()
         if _is_close(rows):
             broad.append(_closed_form(number, rows["closed_p95"], not broad))
-        marks.append(Curve(number, rows["k_gamma_p95"].to_numpy(), f"P95, {words}", colour))
+        marks.append(Curve(number, rows["k_gamma_p95"].to_numpy(), f"idlers, P95, {words}", colour))
         if floating == AS_GIVEN:
             for level, line in OTHER_LEVELS.items():
                 values = rows[f"k_gamma_p{level}"].to_numpy()
-                marks.append(Curve(number, values, f"P{level}, {words}", colour, line, width=0.9))
+                marks.append(Curve(number, values, f"idlers, P{level}, {words}", colour, line, width=0.9))
     return broad + marks
 
 
@@ -104,7 +104,7 @@ def _inputs(inputs: pd.DataFrame) -> list[Curve]:
         number, factor = rows["number"].to_numpy(), rows["k_gamma"].to_numpy()
         if (rows["k_gamma"] / rows["closed"] - 1.0).abs().max() < HOLDS:
             broad.append(_closed_form(number, rows["closed"], not broad))
-        name = f"bearings {1e-6 * float(bearing):.3g} N/µm"
+        name = f"inputs, bearings {1e-6 * float(bearing):.3g} N/µm"
         marks.append(Curve(number, factor, name, colour_of(index)))
     return broad + marks
 

@@ -242,10 +242,8 @@ def _with(machine: Machine, factor: Array, closing: Array) -> Machine:
     drive, back = np.split(closing, 2)
     return replace(
         machine,
+        half_backlash=machine.half_backlash - 0.5 * (drive + back),
         imperfections=replace(
-            flaws,
-            stiffness=flaws.stiffness * factor,
-            error=flaws.error - 0.5 * (drive - back),
-            half_backlash=machine.half_backlashes - 0.5 * (drive + back),
+            flaws, stiffness=flaws.stiffness * factor, error=flaws.error - 0.5 * (drive - back)
         ),
     )

@@ -71,7 +71,8 @@ CAPTIONS = {
     "search_hypervolume": "How much of the box between best and worst of the front each seed has covered.",
     "sharing_map": "K_gamma of idlers over k_e sigma / W (stiffness of a path, standard deviation of its "
     "lateness, load of all paths), and of inputs over 2 b k / W (backlash, mesh stiffness, load of the "
-    "input); grey: closed forms, where they hold.",
+    "input). Curves: at the torque of the machine; dots: the machine at each of its torques; grey: closed "
+    "forms, where they hold.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
 }
 

@@ -17,11 +17,14 @@ POINTS = (
     "input has one value"
 )
 ADVICE = (
-    "Each change of the machine by itself, at its nominal torque. k_gamma: before; found: by the statics of "
-    "the changed machine; gain: what k_gamma falls by; predicted gain: by the closed forms alone. Idlers are "
-    "judged by the 95th percentile over their drawn errors; worst, worst found: the largest of all groups "
-    "before and after"
+    "Each change of the machine by itself, at its nominal torque, and what it does to {group}: K_gamma is "
+    "{now:.3f} before. found: by the statics of the changed machine; gain: what K_gamma falls by; predicted "
+    "gain: by the closed forms alone{note}. worst, worst found: the largest of all groups before and after"
 )
+"""Caption of the first table of advice."""
+MORE_ADVICE = "Changes and {group}: K_gamma is {now:.3f} before{note}"
+"""Caption of the tables of advice below it."""
+PERCENTILE_NOTE = ". Idlers are judged by the 95th percentile over their drawn errors"
 CURVES = (
     "Curves of the idlers. all carry: fraction of the drawn machines in which every path carries, where the "
     "closed form may hold"
@@ -31,7 +34,7 @@ VISIBLE = 1e-3
 """Fall of K_gamma below which a change is not named: three digits stand in the text."""
 BEST = 3
 """Changes that are named for the machine as a whole."""
-MAIN_COLUMNS = ("group", "change", "from_to", "k_gamma", "found", "gain", "predicted_gain")
+MAIN_COLUMNS = ("change", "from_to", "found", "gain", "predicted_gain")
 
 
 def sharing_map_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
@@ -50,7 +53,7 @@ def sharing_map_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if "sharing_map_advice" not in tables:
         return []
     return [
-        Table(ADVICE, tables["sharing_map_advice"], 4, main=MAIN_COLUMNS),
+        *advice_tables(tables["sharing_map_advice"]),
         Table(POINTS, tables["sharing_map_points"], 4),
         *(
             Table(caption, tables[name], 4, is_folded=True)
@@ -58,6 +61,28 @@ def sharing_map_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
             if len(tables[name])
         ),
     ]
+
+
+def advice_tables(advice: pd.DataFrame) -> list[Table]:
+    """List a table of each group, without the changes that do nothing to it.
+
+    Parameters
+    ----------
+    advice : pd.DataFrame
+        Table `advice` of stage sharing_map.
+
+    Returns
+    -------
+    list of Table
+        One a group.
+    """
+    group_tables: list[Table] = []
+    for group, rows in advice[advice["gain"] != 0.0].groupby("group", sort=False):
+        note = PERCENTILE_NOTE if rows["kind"].iloc[0] == "idlers" else ""
+        words = MORE_ADVICE if group_tables else ADVICE
+        caption = words.format(group=f"the {group}", now=rows["k_gamma"].iloc[0], note=note)
+        group_tables.append(Table(caption, rows.reset_index(drop=True), 4, main=MAIN_COLUMNS))
+    return group_tables
 
 
 def sharing_map_text(tables: Mapping[str, pd.DataFrame]) -> str:

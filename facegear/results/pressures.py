@@ -1,19 +1,25 @@
 """Pressures along the contact lines as one labelled dataset."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from facegear.arrays import AnyArray, Arrays
 from facegear.contact.columns import EDGES
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-def pressure_dataset(arrays: Arrays) -> xr.Dataset:
+
+def pressure_dataset(arrays: Arrays) -> "xr.Dataset":
     """Over torque_n_m, position, pair and plane, from arrays as PRESSURE_ARRAYS.
 
     `pressure_mpa`, `pressure_error_mpa` and `half_width_mm`: nan unless inside; `line_load_n_per_mm`: zero
     where unloaded; `where`: one of EDGES, empty where unloaded. Coordinates `pinion_radius_mm` (position,
     pair, plane) and `axial_mm` (plane) place the contact lines on the pinion's flank.
     """
+    import xarray as xr  # a third of a second, and few answers are asked for as a dataset
+
     axes = {name: np.unique(arrays[f"contact_{name}"]) for name in ("position", "tooth")}
     axes = {"torque_n_m": np.unique(arrays["line_torque_n_m"]), **axes}
     points = 1e3 * arrays["contact_point_m"]

@@ -39,7 +39,7 @@ class RootStressResult(Result):
 
     def stress(self, body: str = "face_gear") -> "xr.DataArray":
         """Stress (MPa) of `pinion` or `face_gear` over torque, passage, fillet and the fillet's gauges."""
-        import xarray as xr
+        import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
         chosen(body, ("pinion", "face_gear"), "body")
         arrays = self.content["stress"]

@@ -3,9 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Never
 
-from facegear.errors import extras_named
 from facegear.pipeline.reported import REPORTED, asked_for, table_name
 from facegear.pipeline.table import STAGES
+from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
+from facegear.report.first_screen import found_in_words, key_cards
+from facegear.report.verdicts import status_line, verdicts
 from facegear.results.chain import Chain
 
 if TYPE_CHECKING:
@@ -25,11 +27,6 @@ def summary_text(chain: Chain) -> str:
     str
         Status, key numbers, verdicts with their reasons, and gear data.
     """
-    with extras_named():
-        from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
-        from facegear.report.first_screen import found_in_words, key_cards
-        from facegear.report.verdicts import status_line, verdicts
-
     has_bodies = chain.values["tooth_pair"]["pinion"] is not None
     pair = chain.part("geometry", "pair") if has_bodies else None
     tables = dict(_known_tables(chain))

@@ -1,19 +1,25 @@
 """The tidy table of a sweep as a labelled dataset."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pandas as pd
-import xarray as xr
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KEYS = ["direction", "speed_rpm"]
 NO_ITEM = "machine"
 """What stands for body or mesh in rows that belong to the whole machine."""
 
 
-def sweep_dataset(table: pd.DataFrame) -> xr.Dataset:
+def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
     """Quantities over direction, speed_rpm and mesh, body or nothing, in the order of the table.
 
     The names of meshes hold a stroke, `pinion/side`, those of bodies do not.
     """
+    import xarray as xr  # a third of a second, and few answers are asked for as a dataset
+
     axes: dict[str, list] = {
         "direction": list(dict.fromkeys(table["direction"])),
         "speed_rpm": np.unique(table["speed_rpm"]).tolist(),
@@ -42,8 +48,10 @@ def _kind(name: str) -> str:
     return "" if name == NO_ITEM else "mesh" if "/" in name else "body"
 
 
-def _filled(rows: pd.DataFrame, column: str, axes: dict[str, list], nothing: object) -> xr.DataArray:
+def _filled(rows: pd.DataFrame, column: str, axes: dict[str, list], nothing: object) -> "xr.DataArray":
     """One column over its axes; `nothing` where the table has no row."""
+    import xarray as xr  # as above
+
     values = np.full([len(axis) for axis in axes.values()], nothing, dtype=object if nothing == "" else float)
     places = tuple(pd.Index(axis).get_indexer(rows[name]) for name, axis in axes.items())
     values[places] = rows[column].to_numpy()

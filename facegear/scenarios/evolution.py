@@ -126,7 +126,7 @@ def feasible(designs: pd.DataFrame, task: Task) -> Mask:
 
 def front(designs: pd.DataFrame, task: Task) -> pd.DataFrame:
     """The feasible designs that no other beats in every objective, each once, by the first objective."""
-    from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+    from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting  # of the extra `search`
 
     names = [variable.name for variable in task.variables]
     held = designs[feasible(designs, task)].drop_duplicates(names)
@@ -142,7 +142,7 @@ def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFram
     Of all its designs up to each generation; a tenth is added to the box, so that its corners count.
     Columns: seed, generation, hypervolume. Empty where no design is feasible.
     """
-    from pymoo.indicators.hv import HV
+    from pymoo.indicators.hv import HV  # a library of the extra `search`
 
     whole = front(pd.concat(islands.values(), ignore_index=True), task)
     rows = []
@@ -171,16 +171,16 @@ def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) ->
 
 
 def _algorithm(task: Task, effort: Effort) -> Any:
-    from pymoo.algorithms.moo.nsga2 import NSGA2
-    from pymoo.core.problem import Problem
-    from pymoo.core.repair import Repair
+    from pymoo.algorithms.moo.nsga2 import NSGA2  # a library of the extra `search`
+    from pymoo.core import problem as problems
+    from pymoo.core import repair
 
-    class Snap(Repair):
+    class Snap(repair.Repair):
         def _do(self, problem: Any, X: Array, **_: Any) -> Array:
             return np.column_stack([variable.snapped(X[:, i]) for i, variable in enumerate(task.variables)])
 
     count = len(task.variables)
-    problem = Problem(
+    problem = problems.Problem(
         n_var=count, n_obj=len(task.objectives), n_ieq_constr=len(task.limits) + 1, xl=0.0, xu=1.0
     )
     algorithm = NSGA2(pop_size=effort.population, repair=Snap())
@@ -190,7 +190,7 @@ def _algorithm(task: Task, effort: Effort) -> Any:
 
 def _tell(algorithm: Any, asked: Any, rows: list[dict[str, Any]], task: Task) -> None:
     """Give the algorithm the objectives and by how much limits are broken, 1e9 for what has no results."""
-    from pymoo.core.evaluator import Evaluator
+    from pymoo.core.evaluator import Evaluator  # as above
     from pymoo.problems.static import StaticProblem
 
     size = len(task.objectives)

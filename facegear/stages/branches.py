@@ -7,9 +7,6 @@ import pandas as pd
 from facegear.arrays import Arrays
 from facegear.config.branches import Branches, branch_plan
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.dynamics.branches import operating_tables, tables
 from facegear.dynamics.branches.machine import machine_period_map, machine_survey, margins
 from facegear.dynamics.branches.margins import several
@@ -19,22 +16,17 @@ from facegear.dynamics.branches.swept import swept_motions
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import from_arrays as chunk_from_arrays
 from facegear.stages.outcome import Outcome
+from facegear.transmission.machine import Machine
 
 
 def branches(
     starts: Iterable[Arrays],
     chunks: Iterable[Arrays],
     jumps: pd.DataFrame,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     branches: Branches | None,
     sweep: Sweep,
     speed_rpm: float,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`branches`, `ends`, `unfollowed`, `multipliers`, `special`, `coexistence`, `ranges`, `margins`, `swept`
     and `jumps` (tables) and `orbits` (arrays).
@@ -42,9 +34,7 @@ def branches(
     starts: arrays of the random starts, speed by speed. chunks, jumps: of the sweep, direction by direction
     in the order of the config. Raises NotConverged if no motion of period one is found.
     """
-    model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
-    )
+    model = build_model(machine)
     plan, layout = branch_plan(branches, speed_rpm), model.machine.layout
     period_map, swept_plan = machine_period_map(model, plan), sweep_plan(sweep)
     starting = [from_arrays(period_map, arrays) for arrays in starts]

@@ -1,36 +1,24 @@
 """Loci of folds and period doublings in the plane of speed and a second parameter."""
 
-import pandas as pd
-
 from facegear.arrays import Arrays
 from facegear.config.branches import Branches, branch_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.dynamics.branches.machine import machine_loci, machine_period_map
 from facegear.dynamics.branches.stored import special_points
 from facegear.dynamics.branches.summary import loci_summary, tell
 from facegear.dynamics.branches.tables import locus_table
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.stages.outcome import Outcome
+from facegear.transmission.machine import Machine
 
 
 def branches_loci(
     orbits: Arrays,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     branches: Branches | None,
     speed_rpm: float,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`loci` (table). orbits: arrays of the special points."""
-    model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
-    )
+    model = build_model(machine)
     plan = branch_plan(branches, speed_rpm)
     loci, missed = machine_loci(model, plan, special_points(machine_period_map(model, plan), orbits), tell)
     return Outcome({"loci": locus_table(loci)}, loci_summary(loci, missed))

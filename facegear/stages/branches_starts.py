@@ -1,35 +1,22 @@
 """Random starts at one speed: which motions they end on."""
 
-import pandas as pd
-
-from facegear.arrays import Arrays
 from facegear.config.branches import Branches, branch_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.dynamics.branches.machine import random_starts
 from facegear.dynamics.branches.stored import to_arrays
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
+from facegear.transmission.machine import Machine
 
 
 def branches_starts(
     number: int,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     branches: Branches | None,
     speed_rpm: float,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`motions` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
-    model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
-    )
+    model = build_model(machine)
     plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]
     motions = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)

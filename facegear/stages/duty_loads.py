@@ -2,32 +2,21 @@
 
 import pandas as pd
 
-from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.strength import Strength
-from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
 from facegear.strength.columns import DUTY_LOAD_COLUMNS, DUTY_SPECTRUM_COLUMNS
 from facegear.strength.duty_loads import history_of, load_rows, spectrum_rows
 from facegear.ties import first_largest_row
-from facegear.variants.loads import at_mesh_torque
 
 
 def duty_loads(
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    inputs: MachineInputs,
     accuracy: Accuracy,
     strength: Strength | None,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
-    tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
 
@@ -39,17 +28,7 @@ def duty_loads(
     known = settings(accuracy)
     progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
     for number, load in enumerate(strength.duty, start=1):
-        loaded = at_mesh_torque(transmission, load.torque_n_m)
-        machine = wired_machine(
-            loaded,
-            teeth,
-            harmonics,
-            friction=friction,
-            law=law,
-            poses=poses,
-            bodies=bodies,
-            tooth_errors=tooth_errors,
-        )
+        machine = inputs.at_torque(load.torque_n_m).build()
         history = history_of(machine, load.speed_rpm, known)
         key = (number, load.torque_n_m, load.speed_rpm)
         loads += [(*key, *row) for row in load_rows(history)]

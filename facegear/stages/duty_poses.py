@@ -4,10 +4,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.strength import Strength
-from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.flank_errors import FLANKS
@@ -15,7 +13,6 @@ from facegear.number_format import count_noun
 from facegear.poses.fixed_point import operating_pose
 from facegear.poses.surface import PoseSurface
 from facegear.stages.outcome import Outcome
-from facegear.variants.loads import at_mesh_torque
 
 COLUMNS = (
     *("bin", "torque_n_m", "mesh", "flank"),
@@ -25,12 +22,8 @@ COLUMNS = (
 
 def duty_poses(
     surface: Arrays,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    inputs: MachineInputs,
     strength: Strength | None,
-    law: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`duty_poses` (table), a row a bin, mesh and flank, COLUMNS.
 
@@ -40,8 +33,7 @@ def duty_poses(
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
     known, rows = PoseSurface.of_arrays(surface), []
     for number, load in enumerate(strength.duty, start=1):
-        loaded = at_mesh_torque(transmission, load.torque_n_m)
-        machine = wired_machine(loaded, teeth, harmonics, law=law, bodies=bodies)
+        machine = inputs.at_torque(load.torque_n_m).build()
         result = operating_pose(machine, known)
         for mesh, name in enumerate(machine.layout.mesh_names):
             for back, flank in enumerate(FLANKS):

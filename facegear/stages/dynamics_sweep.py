@@ -6,9 +6,6 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Arrays
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.steady_state.spectra import ORDERS
 from facegear.dynamics.sweeps.stored import from_arrays
@@ -17,27 +14,20 @@ from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, s
 from facegear.dynamics.sweeps.whole_sweep import Direction, whole_sweep
 from facegear.stages.outcome import Outcome
 from facegear.transmission.loaded_modes import loaded_modes
+from facegear.transmission.machine import Machine
 
 
 def dynamics_sweep(
     chunks: Iterable[Arrays],
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     sweep: Sweep,
     threads: int = 1,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`sweep`, `jumps`, `resonances`, `seams` (tables) and `waterfall` (arrays).
 
     `chunks`: the arrays of all chunks, direction by direction in the order of the config.
     """
-    model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
-    )
+    model = build_model(machine)
     plan, layout = sweep_plan(sweep), model.machine.layout
     stored = iter(chunks)
     pieces = {name: [from_arrays(next(stored)) for _ in range(plan.chunks)] for name in plan.directions}

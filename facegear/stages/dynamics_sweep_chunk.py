@@ -1,39 +1,26 @@
 """One chunk of a speed sweep in one direction."""
 
-import pandas as pd
-
-from facegear.arrays import Arrays
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import to_arrays
 from facegear.dynamics.sweeps.sweep import run_chunk
 from facegear.number_format import count_noun
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
+from facegear.transmission.machine import Machine
 
 
 def dynamics_sweep_chunk(
     direction: str,
     number: int,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     sweep: Sweep,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`chunk` (arrays). Raises NotConverged naming the speed."""
     plan = sweep_plan(sweep)
     total = sum(map(len, plan.chunk(direction, number)))
     progress = Progress(f"sweep {direction}, chunk {number}", total)
-    model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
-    )
+    model = build_model(machine)
     before, own = run_chunk(model, plan, direction, number, progress.step)
     summary = f"{count_noun(len(own.speeds), 'speed')} {direction}, {len(before.speeds)} for overlap"
     return Outcome({"chunk": to_arrays(before, own)}, summary)

@@ -1,48 +1,26 @@
 """Load sharing of the running machine while its runouts and pitch deviations turn."""
 
-import pandas as pd
-
-from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.load_sharing.following import running, running_mesh_table, running_table
 from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.stages.outcome import Outcome
+from facegear.transmission.machine import Machine
 
 FINER = 4
 """Samples of the running machine for each position of the machine at rest: it has peaks between."""
 
 
 def following(
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     accuracy: Accuracy,
     speed_rpm: float,
     positions: int,
     cycles: int | None,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
-    tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """`groups` and `meshes` (tables) over `cycles` mesh cycles, or all of the hunting cycle.
 
     Raises NotConverged naming the position or the mesh phase.
     """
-    machine = wired_machine(
-        transmission,
-        teeth,
-        harmonics,
-        friction=friction,
-        law=law,
-        poses=poses,
-        bodies=bodies,
-        tooth_errors=tooth_errors,
-    )
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
     moving = running(machine, speed_rpm, part, FINER * positions, settings(accuracy))

@@ -1,12 +1,7 @@
 """Modes of the machine at its nominal speed with its damping, and the waves of its face gears in them."""
 
 import numpy as np
-import pandas as pd
 
-from facegear.arrays import Arrays
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
@@ -21,23 +16,17 @@ SPEEDS = 21
 
 
 def gear_waves(
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     speed_rpm: float,
     last_rpm: float,
-    bodies: Arrays | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
 ) -> Outcome:
     """`waves`, `campbell` and `campbell_crossings` (tables) of the machine about its static load, meshes at
     their mean stiffness: at the nominal speed, and from rest to `last_rpm`.
 
     Raises ConfigError where all face gears are rigid, NotConverged.
     """
-    if bodies is None:
+    if machine.bodies is None:
         raise ConfigError("transmission.face_gear.body", None, "given: all face gears are rigid")
-    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     speeds = sorted({*np.linspace(0.0, last_rpm, SPEEDS).tolist(), float(speed_rpm)})
     all_modes = machine_at_speeds(machine, speeds)
     modes = all_modes[speeds.index(float(speed_rpm))]

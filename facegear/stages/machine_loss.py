@@ -1,6 +1,7 @@
 """Loss and heat of the machine's meshes and bodies, at its nominal load and over its duty cycle."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -8,11 +9,9 @@ import pandas as pd
 
 from facegear.arrays import Array, Arrays
 from facegear.config.lubrication import LubricationSection, limits_of
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.strength import Strength
 from facegear.config.tooth_pair import ToothPair
-from facegear.config.transmission import Transmission
 from facegear.dynamics.response_tables import losses_in_motion
 from facegear.lubrication import machine_loss as losses
 from facegear.lubrication.machine_loss import LoadedPair, MeshLoads
@@ -26,51 +25,38 @@ from facegear.stages.lubrication import loaded_pair, lubrication_section
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
 from facegear.transmission.ratings import mesh_table, rated
-from facegear.variants.loads import at_mesh_torque
 
 
 def machine_loss(
     ltca: pd.DataFrame,
     pressure: Arrays,
-    harmonics: pd.DataFrame,
+    inputs: MachineInputs,
     duty_loads: pd.DataFrame | None = None,
-    friction: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
     response: pd.DataFrame | None = None,
     *,
     tooth_pair: ToothPair,
     lubrication: LubricationSection | None,
-    transmission: Transmission,
-    teeth: ToothNumbers,
     strength: Strength | None,
     speed_rpm: float,
 ) -> Outcome:
     """`meshes`, `bodies`, `machine` (tables): at the nominal load at rest and in every bin of a duty cycle.
 
-    ltca, pressure: of stage contact; harmonics: table of stage stiffness; duty_loads: table of that stage,
-    where the loads of the duty cycle are the machine's; friction, response: table `excitation` of stage
-    lubrication and that of stage dynamics_response, where friction disturbs the motion. Raises ConfigError
-    without section lubrication, TooHot where a body passes the oil's flash point, NotConverged where bulk
-    temperatures do not settle.
+    ltca, pressure: of stage contact; duty_loads: table of that stage, where the loads of the duty cycle are
+    the machine's; response: table of stage dynamics_response, where friction acts on the motion. Raises
+    ConfigError without section lubrication, TooHot where a body passes the oil's flash point, NotConverged
+    where bulk temperatures do not settle.
     """
     section = lubrication_section(lubrication)
     loaded = loaded_pair(ltca, pressure, section, tooth_pair)
-    states = list(
-        _states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm, law, poses, bodies)
-    )
+    states = list(_states(loaded, replace(inputs, friction=None), duty_loads, strength, speed_rpm))
     content = {
         "meshes": mesh_loss_table(states, loaded.known, limits_of(section)),
         "bodies": body_heat_table(states, loaded.known),
         "machine": machine_loss_table(states),
     }
-    if friction is not None and response is not None:
-        machine = wired_machine(
-            transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies
-        )
+    if inputs.friction is not None and response is not None:
         rest = content["meshes"]["bin"] == 0
-        moving = losses_in_motion(machine, response, speed_rpm)
+        moving = losses_in_motion(inputs.build(), response, speed_rpm)
         content["meshes"].loc[rest, "loss_in_motion_w"] = content["meshes"].loc[rest, "mesh"].map(moving)
     whole, hottest = content["machine"].iloc[0], content["meshes"]["contact_temperature_c"].max()
     beyond = content["meshes"].loc[~content["meshes"]["within_torques_solved"], "bin"].unique()
@@ -86,18 +72,13 @@ def machine_loss(
 
 def _states(
     loaded: LoadedPair,
-    harmonics: pd.DataFrame,
+    inputs: MachineInputs,
     duty_loads: pd.DataFrame | None,
-    transmission: Transmission,
-    teeth: ToothNumbers,
     strength: Strength | None,
     speed_rpm: float,
-    law: Arrays | None,
-    poses: Arrays | None,
-    bodies: Arrays | None,
 ) -> Iterator[MachineState]:
     """The machine at its nominal load at rest, then in every bin of its duty cycle."""
-    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
+    machine = inputs.build()
     table = mesh_table(machine, speed_rpm)
     table = table[table["flank"] != "open"]
     torque = table["pinion_torque_n_m"].abs().to_numpy()
@@ -107,14 +88,7 @@ def _states(
         return
     for number, load in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
-        machine = wired_machine(
-            at_mesh_torque(transmission, load.torque_n_m),
-            teeth,
-            harmonics,
-            law=law,
-            poses=poses,
-            bodies=bodies,
-        )
+        machine = inputs.at_torque(load.torque_n_m).build()
         arm = machine.layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()
         peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()

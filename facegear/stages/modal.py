@@ -1,12 +1,11 @@
 """Natural frequencies, mode shapes and their classes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Arrays
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
+from facegear.config.machines import MachineInputs
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.number_format import count_noun, format_number
@@ -17,15 +16,10 @@ from facegear.transmission.mode_classes import name_modes
 
 
 def modal(
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    inputs: MachineInputs,
     mean_stiffness: float | None,
     source: str,
     definition: str,
-    harmonics: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`frequencies`, `shapes` and `contacts` (tables) of the machine with the mean mesh stiffness (N/m).
 
@@ -33,15 +27,16 @@ def modal(
     the operating load; without, the config's own mean. With the arrays `law` of stage mesh_law every mesh has
     its local stiffness under its own load instead. Raises ConfigError without any.
     """
-    if harmonics is None:
+    if isinstance(inputs.harmonics, pd.DataFrame):
+        mean: float | None = float(inputs.harmonics[f"mean_{definition}_n_per_m"].iloc[0])
+        source_text = definition
+    else:
         mean = mean_stiffness
         source_text = f"{definition}, given" if source == "fem_scaled" else "given"
-    else:
-        mean, source_text = float(harmonics[f"mean_{definition}_n_per_m"].iloc[0]), definition
     if mean is None:
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
     constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
-    machine = wired_machine(transmission, teeth, constant, unloaded=none, law=law, poses=poses, bodies=bodies)
+    machine = replace(inputs, harmonics=constant, unloaded_error=none).build()
     vibration = vibrating_machine(machine)
     modes, contacts = vibration.modes, contact_table(machine, vibration, source_text)
     rigid = int((modes.frequencies == 0.0).sum())
@@ -52,7 +47,7 @@ def modal(
         "contacts": contacts,
     }
     closed = contacts.loc[contacts["state"].isin(["drive", "back", "wedged"]), "stiffness_n_per_m"]
-    sizes = [mean] if law is None else [closed.min(), closed.max()]
+    sizes = [mean] if inputs.law is None else [closed.min(), closed.max()]
     size = " to ".join(format_number(1e-6 * stiffness) for stiffness in sizes)
     summary = (
         f"{count_noun(rigid, 'rigid body mode')}, {elastic.size} elastic from {elastic[0]:.1f} to "

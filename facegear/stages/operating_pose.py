@@ -6,10 +6,7 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Arrays
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import ToothPair, pair
-from facegear.config.transmission import Transmission
 from facegear.contact.gear_flank import GearFlank, from_arrays
 from facegear.contact.margins import pattern_margins
 from facegear.contact.posed import PosedContact, met_contacts
@@ -33,6 +30,7 @@ from facegear.poses.tables import (
 )
 from facegear.stages.outcome import Outcome
 from facegear.stages.pose_surface import quantities
+from facegear.transmission.machine import Machine
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import mean_equilibrium
 
@@ -41,13 +39,9 @@ def operating_pose(
     surface: Arrays,
     pinion: Arrays,
     face_gear: Arrays,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     tooth_pair: ToothPair,
     contact: Contact,
-    law: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`meshes`, `loads`, `leaving`, `check` (tables), `as_assembled` and `running` (arrays).
 
@@ -57,7 +51,6 @@ def operating_pose(
     NotConverged.
     """
     known = PoseSurface.of_arrays(surface)
-    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
     result = fixed_point(machine, known)
     before = mean_equilibrium(at_rest(machine)).forces[0]
     meshes = mesh_table(machine, known, result, before)

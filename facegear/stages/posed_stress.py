@@ -9,10 +9,7 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Arrays
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import ToothPair, pair
-from facegear.config.transmission import Transmission
 from facegear.contact.gear_flank import from_arrays
 from facegear.contact.posed import met_contacts
 from facegear.geometry.bodies import BODIES
@@ -28,6 +25,7 @@ from facegear.strength.flank_contacts import FlankContact, contacts_of, flank_co
 from facegear.strength.passage import passing
 from facegear.strength.posed_contacts import root_arrays_of, solved_contacts
 from facegear.strength.root_stress import RootStress
+from facegear.transmission.machine import Machine
 
 
 def posed_stress(
@@ -36,14 +34,10 @@ def posed_stress(
     face_gear: Arrays,
     stress: Arrays,
     by_flank: pd.DataFrame,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     tooth_pair: ToothPair,
     contact: Contact,
     gears: Sequence[str],
-    law: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """`by_mesh`, `by_torque` (tables) and `contacts` (arrays): contact solved at the pose of every mesh.
 
@@ -52,7 +46,6 @@ def posed_stress(
     NotConverged.
     """
     known = PoseSurface.of_arrays(surface)
-    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
     result = fixed_point(machine, known)
     design, plan = pair(tooth_pair).design, contact_plan(contact)
     pairs = carrying_pairs(result, design)

@@ -5,10 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Arrays
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.ties import first_largest, first_largest_row
 from facegear.transmission.machine import Machine, mesh_frequency
@@ -36,24 +32,15 @@ OVER_SPEED = ("speed_rpm", "turning", "order", "of_mesh", "frequency_hz", "mesh"
 
 
 def shaft_orders(
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    machine: Machine,
     speed_rpm: float,
     first_rpm: float,
     last_rpm: float,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
-    tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """`orders` (table at the nominal speed), `over_speed` (table, the mesh with the largest force of each of
     the largest orders), `excited` (table: amplitudes of mesh forces and of torques of springs under each
     periodic torque, at the nominal speed and over speed). Raises NotConverged.
     """
-    machine = wired_machine(
-        transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies, tooth_errors=tooth_errors
-    )
     layout, names = machine.layout, machine.layout.mesh_names
     orders, loaded = turn_orders(machine), loaded_machine(machine)
 

@@ -3,10 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import Arrays
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
-from facegear.config.transmission import Transmission
+from facegear.config.machines import MachineInputs
 from facegear.errors import ConfigError
 from facegear.stages.outcome import Outcome
 from facegear.ties import first_largest_row
@@ -22,24 +19,19 @@ from facegear.transmission.statics import mean_equilibrium
 
 
 def shafts(
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
-    bodies: Arrays | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
+    inputs: MachineInputs,
 ) -> Outcome:
     """`seats`, `stiffness`, `bearings`, `deflections`, `torsion` (tables).
 
     Raises ConfigError without shafts and torsion, NotConverged.
     """
-    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
+    machine = inputs.build()
     if (line := machine.drive_line) is None:
         raise ConfigError("transmission.shafts", {}, "given, or transmission.torsion")
-    resting = at_rest(machine)
+    resting, section = at_rest(machine), inputs.transmission
     equilibrium = mean_equilibrium(resting)
-    sections = {i: transmission.shaft_of(pinion) for i, pinion in enumerate(transmission.pinions)}
-    stepped = {i: section.shaft() for i, section in sections.items() if section is not None}
+    shaft_sections = {i: section.shaft_of(pinion) for i, pinion in enumerate(section.pinions)}
+    stepped = {i: shaft.shaft() for i, shaft in shaft_sections.items() if shaft is not None}
     content = {
         "seats": seat_table(resting, line, equilibrium),
         "stiffness": stiffness_table(line),

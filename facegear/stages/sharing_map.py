@@ -5,17 +5,15 @@ from math import isclose
 
 import pandas as pd
 
-from facegear.arrays import Arrays
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.sharing_map import SharingMap, map_options
 from facegear.config.transmission import Transmission
 from facegear.load_sharing.groups import GroupKind
-from facegear.load_sharing.sharing_advice import advice, departures
+from facegear.load_sharing.ideal_machine import departures
+from facegear.load_sharing.sharing_advice import advice
 from facegear.load_sharing.sharing_map import idler_curves, input_curves, map_points
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
-from facegear.variants.loads import at_mesh_torque
 
 BEYOND = 1.2
 """Largest number on the curves over the largest of the machine's own."""
@@ -24,49 +22,34 @@ SHORTEST = 0.1
 
 
 def sharing_map(
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    inputs: MachineInputs,
     sharing_map: SharingMap | None,
     torques: Sequence[float],
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
 ) -> Outcome:
     """Compute the map of load sharing of the machine at rest.
 
     Parameters
     ----------
-    harmonics : pd.DataFrame
-        Mesh stiffness, table of its stage.
-    transmission : Transmission
-        With geometric meshes and two face gears.
-    teeth : ToothNumbers
-        Tooth numbers, module and pressure angle.
+    inputs : MachineInputs
+        Inputs of a machine with geometric meshes and two face gears.
     sharing_map : SharingMap or None
         Deviations and points; None for their defaults.
     torques : sequence of float
         Torques of an input in each of its meshes that the duty cycle has, N m; none without one.
-    law, poses, bodies : mapping of arrays or None
-        As of `wired_machine`.
 
     Returns
     -------
     Outcome
         Tables `curves`, `inputs`, `points`, `advice`, `reasons`. Raises NotConverged.
     """
-
-    def machine_of(section: Transmission) -> Machine:
-        return wired_machine(section, teeth, harmonics, law=law, poses=poses, bodies=bodies)
-
-    section = sharing_map or SharingMap()
-    options, nominal = map_options(section), machine_of(transmission)
+    section, transmission = sharing_map or SharingMap(), inputs.transmission
+    options, nominal = map_options(section), inputs.build()
     machines = {_torque(transmission, nominal): nominal}
     if transmission.torque.per_input_n_m != 0.0:
         for torque in torques:
             whole = torque * len(transmission.face_gears)
             if not any(isclose(whole, mapped) for mapped in machines):
-                machines[whole] = machine_of(at_mesh_torque(transmission, torque))
+                machines[whole] = inputs.at_torque(torque).build()
     points = map_points(sorted(machines.items()), options)
     largest = {
         kind: section.largest_number or max(BEYOND * _largest(points, kind), SHORTEST)

@@ -6,10 +6,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.tooth_pair import ToothPair, pair
-from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.strength.flank_contacts import flank_contacts
 from facegear.strength.posed_contacts import mesh_contacts, posed_of
@@ -23,15 +21,10 @@ def stress_over_speed(
     sweep: pd.DataFrame,
     stress: Arrays,
     by_flank: pd.DataFrame,
-    harmonics: pd.DataFrame,
-    transmission: Transmission,
-    teeth: ToothNumbers,
+    inputs: MachineInputs,
     tooth_pair: ToothPair,
     gears: Sequence[str],
     branches: pd.DataFrame | None = None,
-    law: Arrays | None = None,
-    poses: Arrays | None = None,
-    bodies: Arrays | None = None,
     posed: Arrays | None = None,
     posed_by_torque: pd.DataFrame | None = None,
 ) -> Outcome:
@@ -41,14 +34,14 @@ def stress_over_speed(
     stress of its own gear, of `gears`, on the flank where it is more. posed, posed_by_torque: parts of stage
     posed_stress, where the machine's own forces put the teeth. Raises NotConverged.
     """
-    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
+    machine = inputs.build()
     at_standstill = float(np.abs(static_equilibrium(at_rest(machine)).forces).max())
     forces = swept_forces(sweep)
     if branches is not None:
         followed = branch_forces(branches, np.unique(forces["speed_rpm"]))
         forces = pd.concat([forces, followed], ignore_index=True)
     contacts = flank_contacts(stress, by_flank)
-    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    at_pose = posed_of(contacts, gears, posed, posed_by_torque, inputs.poses)
     by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
     own = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
     radius = pair(tooth_pair).design.pinion_base_radius

@@ -6,6 +6,7 @@ from typing import Any
 
 import pandas as pd
 
+from facegear.config.loads import with_torques
 from facegear.config.tolerances import LoadMap
 from facegear.load_sharing.quantity_names import BETTER_LARGE
 from facegear.number_format import count_noun
@@ -14,7 +15,6 @@ from facegear.scenarios.sampling import samples
 from facegear.scenarios.summary import fraction_table, percentile_table, sampling_table
 from facegear.stages.outcome import Outcome
 from facegear.stages.tolerances import CHECKS, EVENTS
-from facegear.variants.loads import with_torques
 from facegear.variants.sampled import CHECKED, SampledMachine
 
 COLUMNS = (

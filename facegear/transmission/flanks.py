@@ -36,7 +36,7 @@ def carried(forces: Array) -> Array:
 
 def flank_gaps(machine: Machine) -> Array:
     """Half backlash b of every flank, shape (2 meshes,), m."""
-    return np.tile(machine.half_backlashes, 2)
+    return np.tile(machine.half_backlash, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,7 @@ def flank_dampers(machine: Machine, contact_mask: Mask) -> Array:
 def _line_contacts(machine: Machine) -> MeshContacts:
     """Of meshes whose two flanks share one line of action."""
     phases = np.round(machine.error_phases, 12) % 1.0
-    half = np.full(phases.size, machine.half_backlash)
+    half = machine.half_backlash
     return MeshContacts(
         law=line_law(machine),
         error=tuple(machine.error.shifted(float(phase)) for phase in phases),
@@ -206,7 +206,7 @@ def constant_errors(machine: Machine) -> Array:
     """
     layout, errors = machine.layout, machine.imperfections
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
-    misfit = assembly(layout, machine.half_backlashes, errors.clocking).misfit
+    misfit = assembly(layout, machine.half_backlash, errors.clocking).misfit
     side = np.array([[gear.sign] for gear in layout.gears])
     lower = np.array([[float(gear.side is Side.LOWER)] for gear in layout.gears])
     off = side * cosine * errors.position[:, 0] + lower * misfit

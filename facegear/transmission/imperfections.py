@@ -30,8 +30,6 @@ class Imperfections:
     ----------
     error : (meshes,)
         Constant, along the line of action, positive where the drive flank comes late.
-    half_backlash : (meshes,)
-        nan takes the machine's.
     stiffness : (meshes,)
         Factor on k(t).
     teeth
@@ -52,7 +50,6 @@ class Imperfections:
     """
 
     error: Array
-    half_backlash: Array
     stiffness: Array
     position: Array
     bearing_clearance: Array
@@ -91,7 +88,6 @@ def perfect(layout: Layout) -> Imperfections:
     meshes, pinions, gears = len(layout.meshes), len(layout.pinions), len(layout.gears)
     return Imperfections(
         error=np.zeros(meshes),
-        half_backlash=np.full(meshes, np.nan),
         stiffness=np.ones(meshes),
         position=np.zeros((pinions, 2)),
         bearing_clearance=np.zeros(pinions),

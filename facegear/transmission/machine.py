@@ -80,8 +80,8 @@ class Machine:
         Of the reference mesh, N/m.
     error
         e(t) of the reference mesh, a Fourier series in m.
-    half_backlash
-        m.
+    half_backlash : (meshes,)
+        Half the backlash of each mesh, m.
     damping, phase_convention
         Of bodies, bearings and meshes; how meshes lag.
     error_lags : (meshes,)
@@ -115,7 +115,7 @@ class Machine:
     torques: Array
     stiffness: Harmonics
     error: Harmonics
-    half_backlash: float
+    half_backlash: Array
     damping: Damping
     phase_convention: PhaseConvention = PhaseConvention.GEOMETRIC
     error_lags: Array | None = None
@@ -139,7 +139,8 @@ class Machine:
         meshes = len(self.layout.meshes)
         for quantity, given in (
             ("lags of the transmission error", self.error_lags),
-            ("half backlashes", self.imperfections.half_backlash),
+            ("half backlashes", self.half_backlash),
+            ("errors of the meshes", self.imperfections.error),
             ("softening of the meshes", self.softening),
         ):
             if given is not None and len(given) != meshes:
@@ -256,12 +257,6 @@ class Machine:
         """Stiffness phase of each mesh in mesh periods, shape (meshes,)."""
         return mesh_phases(self.layout, self.phase_convention, self.imperfections.clocking)
 
-    @cached_property
-    def half_backlashes(self) -> Array:
-        """Half backlash of each mesh, shape (meshes,), m."""
-        own = self.imperfections.half_backlash
-        return np.where(np.isnan(own), self.half_backlash, own)
-
     @property
     def error_phases(self) -> Array:
         """Transmission error phase of each mesh in mesh periods, shape (meshes,)."""
@@ -290,7 +285,7 @@ def _alike(
         series=series,
         bearing_clearance=np.where(with_clearance, 1.0, 0.0),
     )
-    return Machine(**given, half_backlash=0.0, imperfections=flaws)
+    return Machine(**given, half_backlash=np.zeros(stiffness.size), imperfections=flaws)
 
 
 def mesh_frequency(layout: Layout, speed_rpm: float) -> float:

@@ -82,7 +82,7 @@ def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
     law = line_law(machine)
     law = law.mean() if cycles is None else law.at_phase(cycles)
     error = np.zeros(law.contacts) if cycles is None else machine.error(cycles - machine.error_phases)
-    half = np.full(law.contacts, machine.half_backlash)
+    half = machine.half_backlash
     # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
     lengths = np.ones(machine.linear.size)
     lengths[machine.layout.spins] = machine.layout.pinion_radius

@@ -34,6 +34,7 @@ from facegear.load_sharing.quantities import (
     quasi_static_quantities,
 )
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_names
+from facegear.poses.fixed_point import posed_machine
 from facegear.scenarios.chunks import identity
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.layout import Layout
@@ -203,8 +204,6 @@ def judge(
     orbit guides theirs.
     """
     ask = _ask(question)
-    if surface is not None:
-        from facegear.poses.fixed_point import posed_machine  # only poses need it
 
     def rubbed(
         teeth: "RubbedTeeth", lubrication: Values, built: Machine, speed: float, loads: FlankLoads

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from facegear.config.load import config_of
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.model import resolved
 from facegear.config.yaml_file import read_yaml
@@ -145,7 +145,7 @@ class Draft:
         for single in transmission["single_pinions"].values():
             if single["bearing_stiffness_n_per_m"] is not None:
                 single["bearing_stiffness_n_per_m"] |= self._spring_values(bearings.idlers)
-        return case_machine(values, Harmonics(np.zeros(1), np.array([self.stiffness])))
+        return MachineInputs.of_config(values, Harmonics(np.zeros(1), np.array([self.stiffness]))).build()
 
     @cached_property
     def values_of_config(self) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import pytest
 
 from facegear.config.cases import set_key
 from facegear.config.load import load_config
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.harmonics.series import Harmonics
 from paper.stored.sets import config_changes, set_cases
 from paper.stored.waveforms import Waveform
@@ -26,7 +26,7 @@ def test_error_in_the_config_of_a_row_has_the_stated_range_for_every_form(wavefo
     values = copy.deepcopy(VALUES)
     for key, value in config_changes(row).items():
         set_key(values, key, value)
-    machine = case_machine(values, Harmonics(np.zeros(2), np.array([4.1e8, 2e7])))
+    machine = MachineInputs.of_config(values, Harmonics(np.zeros(2), np.array([4.1e8, 2e7]))).build()
     assert np.ptp(machine.error(np.linspace(0, 1, 3601))) == pytest.approx(wanted, rel=1e-6)
     assert machine.torques[2] == pytest.approx(row["per_input_n_m"])
 

@@ -58,7 +58,7 @@ def make_machine(
         torques=balanced_torques(layout, pinion_torques(layout, torque, tail_share)),
         stiffness=stiffness,
         error=Harmonics(np.zeros(2), np.array([0.0, error])),
-        half_backlash=backlash / 2,
+        half_backlash=np.full(len(layout.meshes), backlash / 2),
         damping=Damping(mesh_damping, mass_damping, bearing_damping, open_flanks),
         imperfections=imperfections,
     )

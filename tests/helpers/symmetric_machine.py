@@ -6,7 +6,7 @@ from functools import cache
 import facegear
 from facegear.config.dynamics import sweep_plan
 from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.dynamics.steady_state.simulate import build_model
 
 
@@ -20,7 +20,9 @@ def build_symmetric_model():
     config, values = load_gearbox().config, load_gearbox().values
     teeth = ToothNumbers.of_config(values["tooth_pair"])
     harmonics = load_gearbox().stiffness().content["harmonics"]
-    return build_model(wired_machine(config.transmission, teeth, harmonics))
+    return build_model(
+        MachineInputs(transmission=config.transmission, teeth=teeth, harmonics=harmonics).build()
+    )
 
 
 def make_plan(direction, grid, chunks=1):

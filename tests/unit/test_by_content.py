@@ -93,7 +93,6 @@ def test_machines_of_a_series_have_one_machine_without_errors_and_no_other_machi
         flaws,
         error=flaws.error + 1e-6,
         position=flaws.position + 1e-6,
-        half_backlash=flaws.half_backlash + 1e-6,
         bearing_clearance=2.0 * flaws.bearing_clearance,
     )
     assert replace(first, half_backlash=2.0 * first.half_backlash, imperfections=moved).alike is first.alike

@@ -11,6 +11,10 @@ from facegear.questions import OPTIONS, QUESTIONS, flag
 
 ROOT = Path(__file__).parents[2]
 TEETH = ("limits", "--pinion-teeth", "25", "--face-gear-teeth", "160", "--module-mm", "6.35")
+POINTED = (
+    *("--gear-addendum-modules", "2", "--pressure-angle-deg", "30"),
+    *("--shaper-addendum-modules", "1.05"),
+)
 
 
 def test_limits_of_a_gear_are_reported_from_tooth_numbers_alone(capsys):
@@ -22,6 +26,10 @@ def test_limits_of_a_gear_are_reported_from_tooth_numbers_alone(capsys):
     ("arguments", "line"),
     [
         ((*TEETH, "--shaper-teeth", "40"), "shaper.teeth = 40: must be from 25 (line contact) to 28"),
+        (
+            (*TEETH, *POINTED),
+            "face_gear.addendum_modules = 2.0: must be less: the teeth are pointed where they are no longer",
+        ),
         ((*TEETH, "--gear-addendum-modules", "-3"), "gear_addendum_modules = -3.0: must be from 0.1 to 2"),
         (("check", "none.yaml"), "none.yaml: no such config file"),
         (("run", "none.yaml"), "none.yaml: no such config file"),

@@ -157,6 +157,13 @@ def test_snakemake_lint_is_clean(tmp_path):
     assert "Congratulations" in done.stdout + done.stderr
 
 
+def test_the_picture_of_the_rules_shows_the_rules_of_today(tmp_path):
+    """`snakemake --rulegraph dot | dot -Tsvg > docs/img/rules.svg` renews it."""
+    graph = Project(tmp_path).run("--rulegraph", "dot").stdout
+    drawn = re.findall(r"<text [^>]*>(\w+)</text>", (ROOT / "docs" / "img" / "rules.svg").read_text())
+    assert sorted(drawn) == sorted(re.findall(r'\[label = "(\w+)"', graph)) != []
+
+
 def test_scripts_only_adapt():
     for script in SCRIPTS:
         text = script.read_text()

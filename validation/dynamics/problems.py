@@ -40,7 +40,7 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
     """Contact kept (no backlash), contact lost on a stable orbit at 0.6 of the speed, and irregular motion at
     the first of FACTORS times the speed where there is any.
     """
-    regular = replace(machine, half_backlash=0.0)
+    regular = replace(machine, half_backlash=0.0 * machine.half_backlash)
     problems = [
         _problem("contact kept", regular, speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
         _problem("contact lost", machine, 0.6 * speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],

@@ -137,7 +137,12 @@ def _linear(pinion: Body, shaft: CondensedShaft) -> LinearModel:
     layout = _layout(pinion)
     constant = Harmonics(np.zeros(1), np.array([4.1e8]))
     machine = Machine(
-        layout, np.zeros(2), constant, Harmonics(np.zeros(1), np.zeros(1)), 5e-5, Damping(0.0, 0.0, 0.0)
+        layout,
+        np.zeros(2),
+        constant,
+        Harmonics(np.zeros(1), np.zeros(1)),
+        np.array([5e-5]),
+        Damping(0.0, 0.0, 0.0),
     )
     return DriveLine(layout, {0: Seat(shaft, DIAMETRAL)}, {})(machine.lumped)
 

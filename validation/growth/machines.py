@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from facegear.config.load import load_config
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
@@ -42,6 +42,7 @@ def resized(machine: Machine, count: int, harmonics: int) -> Machine:
         torques=balanced_torques(layout, torque),
         stiffness=falling(machine.stiffness, harmonics),
         error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
+        half_backlash=np.full(len(layout.meshes), machine.half_backlash.max()),
         imperfections=perfect(layout),
         forces=np.zeros((len(layout.bodies), 3)),
     )
@@ -57,7 +58,9 @@ def shipped(config: str, changes: Mapping[str, Any] | None = None) -> Machine:
     """The machine of a config with changes, rigid, with five harmonics of mesh stiffness."""
     values = load_config("config/harmonics_only.yaml").model_dump(mode="json")
     given = Harmonics(np.r_[0.0, 2e7], np.r_[values["mesh_stiffness"]["mean_n_per_m"], 0.0])
-    return case_machine(load_config(config, changes).model_dump(mode="json"), falling(given, 5))
+    return MachineInputs.of_config(
+        load_config(config, changes).model_dump(mode="json"), falling(given, 5)
+    ).build()
 
 
 def bending(body: ReducedBody | None) -> Machine:

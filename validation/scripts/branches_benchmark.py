@@ -1,8 +1,7 @@
 """Branches of periodic motions: error against tolerance, and cost of an orbit against settling."""
 
-from facegear.config.machine_layout import lumped_sections
-from facegear.config.machines import wired_machine
 from facegear.io import tables
+from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
@@ -11,7 +10,7 @@ from validation.dynamics.branches import DAMPING, ERRORS, TOLERANCES, accuracy, 
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = wired_machine(*lumped_sections(**params.machine), harmonics)
+    built = machine_inputs({**params.machine, "harmonics": harmonics}).build()
     errors = accuracy(built, params.speed_rpm, Progress("tolerances", 2 * len(TOLERANCES)).step)
     prices = costs(built, params.speed_rpm, Progress("dampings", len(ERRORS) * len(DAMPING)).step)
     tables.write(snakemake.output.table, errors)

@@ -3,13 +3,12 @@
 import pandas as pd
 
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.machine_layout import lumped_sections
-from facegear.config.machines import wired_machine
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
 from facegear.dynamics.sweeps.sweep import joined
 from facegear.dynamics.symmetries import mesh_images
 from facegear.io import arrays, tables
+from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
@@ -23,7 +22,7 @@ from validation.dynamics.convergence import (
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    model = build_model(wired_machine(*lumped_sections(**params.machine), harmonics))
+    model = build_model(machine_inputs({**params.machine, "harmonics": harmonics}).build())
     plan = sweep_plan(Sweep.of_config(params.sweep))
     files = iter(snakemake.input.chunks)
     progress = Progress("finer sweep", len(plan.directions) * plan.points)

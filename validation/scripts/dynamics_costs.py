@@ -1,9 +1,8 @@
 """Cost and error of sweeps against settings."""
 
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.machine_layout import lumped_sections
-from facegear.config.machines import wired_machine
 from facegear.io import tables
+from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
@@ -12,7 +11,7 @@ from validation.dynamics.costs import sweep_costs
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = wired_machine(*lumped_sections(**params.machine), harmonics)
+    built = machine_inputs({**params.machine, "harmonics": harmonics}).build()
     costs = sweep_costs(built, sweep_plan(Sweep.of_config(params.sweep)), Progress("settings", 20).step)
     tables.write(snakemake.output.sweep, costs)
     ratio = (costs["plain_seconds_per_speed"] / costs["seconds_per_speed"]).max()

@@ -3,9 +3,8 @@
 import pandas as pd
 
 import facegear
-from facegear.config.machine_layout import lumped_sections
-from facegear.config.machines import wired_machine
 from facegear.io import tables
+from facegear.pipeline.run import machine_inputs
 from facegear.plots.save import save_drawn
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -22,7 +21,7 @@ from validation.plots.work_precision import work_precision_diagram
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = wired_machine(*lumped_sections(**params.machine), harmonics)
+    built = machine_inputs({**params.machine, "harmonics": harmonics}).build()
     load_dependent = facegear.example()._machine()
     problems = [
         *machine_problems(built, params.speed_rpm),

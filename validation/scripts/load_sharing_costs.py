@@ -2,9 +2,8 @@
 
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.machine_layout import lumped_sections
-from facegear.config.machines import wired_machine
 from facegear.io import tables
+from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
@@ -14,7 +13,7 @@ with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     table = sharing_costs(
-        wired_machine(*lumped_sections(**params.machine), harmonics),
+        machine_inputs({**params.machine, "harmonics": harmonics}).build(),
         settings(Accuracy.of_config(params.accuracy)),
         sharing_options(LoadSharing.of_config(params.options)),
         step=Progress("random machines", COUNT).step,

@@ -16,5 +16,5 @@ def test_machines_with_more_or_fewer_pinions_have_phases_and_backlash_for_their_
     machine = make_machine()
     machine = replace(machine, error_lags=np.zeros(10) if in_step else None)
     found = resized(machine, count, 3)
-    assert len(found.error_phases) == len(found.half_backlashes) == len(found.layout.meshes) == 2 * count
+    assert len(found.error_phases) == len(found.half_backlash) == len(found.layout.meshes) == 2 * count
     assert build_model(found).system.size > 0

@@ -166,4 +166,4 @@ def length_scale(machine: Machine) -> float:
     layout = machine.layout
     forces = np.abs(machine.torques[: len(layout.pinions)]) / layout.pinion_arm
     loaded = float(forces.max()) / machine.stiffness.mean
-    return max(loaded, float(machine.half_backlashes.max()), float(machine.error.amplitudes[1:].sum()), 1e-12)
+    return max(loaded, float(machine.half_backlash.max()), float(machine.error.amplitudes[1:].sum()), 1e-12)

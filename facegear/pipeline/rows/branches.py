@@ -10,6 +10,7 @@ ROWS = (
     Stage(
         name="branches_starts",
         title="Where random starts end at one speed",
+        machine="machine",
         needs=BRANCHES,
         section="branches",
         upstream=MOVING,
@@ -21,6 +22,7 @@ ROWS = (
     Stage(
         name="branches",
         title="Branches of periodic motions",
+        machine="machine",
         needs={**BRANCHES, **SWEEP},
         section="branches",
         upstream={
@@ -66,6 +68,7 @@ ROWS = (
     Stage(
         name="branches_loci",
         title="Loci of folds and period doublings",
+        machine="machine",
         needs=BRANCHES,
         section="branches",
         upstream={**MOVING, "orbits": From("branches", "orbits")},

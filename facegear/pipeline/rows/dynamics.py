@@ -17,6 +17,7 @@ ROWS = (
     Stage(
         name="dynamics_response",
         title="Response at the nominal speed",
+        machine="machine",
         needs={**MACHINE, **ACCURACY, **SPEED},
         upstream=MOVING,
         files={
@@ -33,6 +34,7 @@ ROWS = (
     Stage(
         name="shaft_orders",
         title="Vibration at the orders of the gears' turns",
+        machine="machine",
         needs={
             **MACHINE,
             **SPEED,
@@ -72,6 +74,7 @@ ROWS = (
     Stage(
         name="dynamics_sweep_chunk",
         title="Speed sweep, one chunk",
+        machine="machine",
         needs={**MACHINE, **SWEEP},
         upstream=MOVING,
         files={
@@ -86,6 +89,7 @@ ROWS = (
     Stage(
         name="dynamics_sweep",
         title="Jumps and resonances",
+        machine="machine",
         needs={**MACHINE, **SWEEP},
         upstream={**MOVING, "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks)},
         files={

@@ -44,6 +44,7 @@ ROWS = (
     Stage(
         name="machine_loss",
         title="Loss and heat of the machine",
+        machine="inputs",
         needs={**PAIR, **MACHINE, **SPEED, "lubrication": "lubrication", "strength": "strength"},
         section="lubrication",
         upstream={

@@ -47,6 +47,7 @@ ROWS = (
     Stage(
         name="ratings",
         title="Gear ratio, speeds, torques and powers",
+        machine="machine",
         needs={**MACHINE, **SPEED},
         upstream={**HARMONICS, **BODIES},
         files={name: File(f"machine/{name}.csv") for name in ("ratings", "bodies", "meshes")},
@@ -63,6 +64,7 @@ ROWS = (
     Stage(
         name="shafts",
         title="Shafts of pinions, engines and rotors under load",
+        machine="inputs",
         needs=MACHINE,
         upstream={**HARMONICS, **BODIES},
         files={
@@ -87,6 +89,7 @@ ROWS = (
     Stage(
         name="operating_pose",
         title="Teeth where the machine's own forces put them",
+        machine="machine",
         needs={**MACHINE, **PAIR, "contact": "contact"},
         upstream={"surface": From("pose_surface", "surface"), **FLANKS, **MESHES, **BODIES},
         files={
@@ -109,6 +112,7 @@ ROWS = (
     Stage(
         name="gear_waves",
         title="Modes at the nominal speed and the waves of face gears that bend",
+        machine="machine",
         needs={**MACHINE, **SPEED, "last_rpm": "dynamics.sweep.to_rpm"},
         upstream={**HARMONICS, **BODIES},
         files={
@@ -131,6 +135,7 @@ ROWS = (
     Stage(
         name="modal",
         title="Natural frequencies and mode shapes",
+        machine="inputs",
         needs={
             **MACHINE,
             "mean_stiffness": "mesh_stiffness.mean_n_per_m",

@@ -20,6 +20,7 @@ ROWS = (
     Stage(
         name="load_sharing",
         title="Load sharing at the nominal speed",
+        machine="machine",
         needs=SHARING,
         upstream=MOVING,
         files={
@@ -82,6 +83,7 @@ ROWS = (
     Stage(
         name="load_sharing_reference",
         title="Load sharing at rest, running slowly and over a range of speeds",
+        machine="machine",
         needs={
             **MACHINE,
             **ACCURACY,
@@ -100,6 +102,7 @@ ROWS = (
     Stage(
         name="hunting",
         title="Quasi-static load sharing over the hunting cycle",
+        machine="machine",
         needs={**MACHINE, "positions": "load_sharing.hunting_positions"},
         upstream={**HARMONICS, **BODIES, **TOOTH_ERRORS},
         files={
@@ -137,6 +140,7 @@ ROWS = (
     Stage(
         name="sharing_map",
         title="Map of load sharing, and what to change",
+        machine="inputs",
         needs={
             **MACHINE,
             "sharing_map": "sharing_map",
@@ -182,6 +186,7 @@ ROWS = (
     Stage(
         name="following",
         title="Load sharing of the running machine while its runouts turn",
+        machine="machine",
         needs={
             **MACHINE,
             **ACCURACY,

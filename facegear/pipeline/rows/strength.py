@@ -56,6 +56,7 @@ LOAD_ROWS = (
     Stage(
         name="posed_stress",
         title="Pressure and root stress of every mesh where its teeth stand",
+        machine="machine",
         needs={**MACHINE, **PAIR, "contact": "contact", **GEARS},
         upstream={"surface": From("pose_surface", "surface"), **FLANKS, **STRESS, **MESHES, **BODIES},
         files={
@@ -72,6 +73,7 @@ LOAD_ROWS = (
     Stage(
         name="duty_poses",
         title="Where the load of every bin of the duty cycle puts the teeth",
+        machine="inputs",
         needs={**MACHINE, "strength": "strength"},
         section="strength",
         upstream={"surface": From("pose_surface", "surface"), **MESHES, **BODIES},
@@ -86,6 +88,7 @@ LOAD_ROWS = (
     Stage(
         name="duty_loads",
         title="Loads of the running machine in every bin of the duty cycle",
+        machine="inputs",
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
         section="strength",
         upstream={**MOVING, **TOOTH_ERRORS},
@@ -146,6 +149,7 @@ ROWS = (
     Stage(
         name="stress_over_speed",
         title="Root stress and pressure over the speed range",
+        machine="inputs",
         needs={**MACHINE, **PAIR, **GEARS},
         upstream={
             "sweep": From("dynamics_sweep", "sweep"),

@@ -33,7 +33,7 @@ def test_one_line_overrides_one_mesh():
     found = built(single_meshes={"two/lower": {"error_um": 12.0}}).imperfections
     np.testing.assert_allclose(found.error, [0, 12e-6, 0, 0, 0, 0])
     found = built(single_meshes={"tail/upper": {"backlash_um": 60, "stiffness_factor": 1.1}})
-    np.testing.assert_allclose(found.half_backlashes, [50e-6] * 5 + [30e-6])
+    np.testing.assert_allclose(found.half_backlash, [50e-6] * 5 + [30e-6])
     np.testing.assert_allclose(found.imperfections.stiffness, [1, 1, 1, 1, 1, 1.1])
     own = built(single_meshes={"one/upper": {"transmission_error": {"amplitude_um": 3}}}).imperfections
     assert own.series[3].amplitudes[1] == pytest.approx(3e-6)

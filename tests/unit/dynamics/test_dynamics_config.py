@@ -39,7 +39,7 @@ def section(**changes):
 
 def test_units_of_the_config_become_si():
     built = machine(parse(Transmission, section()), TEETH, STIFFNESS)
-    assert built.half_backlash == pytest.approx(50e-6)
+    assert built.half_backlash == pytest.approx(np.full(len(built.layout.meshes), 50e-6))
     assert built.error.amplitudes == pytest.approx([0.0, 50e-6])
     assert built.layout.pinion_radius == pytest.approx(39.0845e-3, abs=5e-8)
     assert built.layout.pinions[2].pitches == pytest.approx(245 / 360 * 143)

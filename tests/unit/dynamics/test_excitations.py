@@ -1,5 +1,6 @@
 """Periodic torques on bodies: motion and linear response, and what is refused."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -147,3 +148,51 @@ def test_printed_kinematics_take_no_excitation():
     shaken = [{"body": "upper", "order": 143, "torque_n_m": 5.0}]
     with pytest.raises(ConfigErrors, match="excitations"):
         config.with_values({"transmission.excitations": shaken})
+
+
+def test_an_fmu_refuses_an_order_that_its_motion_cannot_have(tmp_path):
+    with pytest.raises(ConfigError, match=r"transmission\.excitations = 5.*a multiple of 23"):
+        make_shaken(5).export(tmp_path / "machine.fmu")
+    assert not list(tmp_path.iterdir())
+
+
+def test_values_and_a_pickled_machine_keep_their_excitations():
+    gearbox = make_shaken(23)
+    copies = facegear.load(gearbox.values, None), pickle.loads(pickle.dumps(gearbox))
+    for copy in copies:
+        assert copy.config.transmission.excitations == gearbox.config.transmission.excitations
+        assert copy._machine().excitations == gearbox._machine().excitations
+
+
+def test_a_rexs_file_says_that_it_lost_the_excitations(tmp_path):
+    path = make_shaken(23).export(tmp_path / "machine.rexs")
+    assert "excitations" in path.read_text(encoding="utf-8").split("Lost")[1].split("-->")[0]
+
+
+SHAKEN = [{"body": "right input", "order": 23, "torque_n_m": 20.0, "phase_deg": 40.0}]
+COMBINED = {
+    "load-dependent law": {"mesh_stiffness.mesh_law": "load_dependent"},
+    "constant load": {"mesh_stiffness.mesh_law": "constant_load"},
+    "push only": {"transmission.damping.open_flanks": "push_only"},
+    "mesh deflection": {"transmission.damping.open_flanks": "mesh_deflection"},
+    "tilt": {"transmission.face_gear.tilt": {"stiffness_n_m_per_rad": 1e8, "inertia_kg_m2": 0.3}},
+}
+"""Changes of a config that may stand beside a periodic torque."""
+
+
+@pytest.mark.parametrize("name", list(COMBINED))
+def test_a_periodic_torque_shakes_each_kind_of_machine_as_its_linear_response(name):
+    """The mesh that moves most; varying stiffness makes the motion differ a little."""
+    calm = facegear.example().with_values(COMBINED[name])
+    machine = calm.with_values({"transmission.excitations": SHAKEN})._machine()
+    speed, meshes = calm.values["dynamics"]["speed_rpm"], len(machine.layout.meshes)
+    linear = loaded_machine(machine).excited_motion(machine, machine.excitations[0], speed)
+    expected = np.abs(machine.linear.rows[:meshes] @ linear).max()
+    moved = []
+    for model in (build_model(calm._machine()), build_model(machine)):
+        answer = simulate(model, speed)
+        assert (answer.motion, answer.period) == (Motion.PERIODIC, 1)
+        moved.append(model.displacements(answer) @ model.machine.linear.rows[:meshes].T)
+    change = moved[1] - moved[0]
+    found = np.abs(change - change.mean(axis=0)).max()
+    assert found == pytest.approx(expected, rel=0.05)

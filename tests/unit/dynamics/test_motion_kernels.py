@@ -1,5 +1,9 @@
 """The kernels of motion refuse arrays that do not fit, and read nothing beyond their ends."""
 
+import signal
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from oscillators import backlash_oscillator, meissner
@@ -111,13 +115,44 @@ def of_run(integrator, **changes):
         {"batches": 2},
         {"samples": -1},
         {"kept": -1},
+        {"periods": np.full(1, 2**40), "samples": 2**31},
+        {"turns": 2**62},
+        {"steps": 2**62},
     ],
 )
 def test_a_run_that_is_asked_for_what_does_not_fit_is_refused(change):
     integrator = Integrator(backlash_oscillator(0.75), 0.75)
     motion.run(integrator.work, [integrator.machine], **of_run(integrator))
-    with pytest.raises((TypeError, ValueError)):
+    with pytest.raises((TypeError, ValueError, MemoryError)):
         motion.run(integrator.work, [integrator.machine], **of_run(integrator, **change))
+
+
+STOPPED = """
+import signal, sys
+sys.path[:0] = {path!r}
+import numpy as np
+from oscillators import backlash_oscillator
+from test_motion_kernels import of_run
+from facegear._kernels import motion
+from facegear.dynamics.integrator.integrator import Integrator
+
+integrator = Integrator(backlash_oscillator(0.75), 0.75)
+signal.signal(signal.SIGALRM, signal.default_int_handler)
+signal.setitimer(signal.ITIMER_REAL, 0.2)
+try:
+    motion.run(integrator.work, [integrator.machine], **of_run(integrator, periods=np.full(1, 2**40)))
+except KeyboardInterrupt:
+    motion.run(integrator.work, [integrator.machine], **of_run(integrator))
+    print("stopped, and ran once more")
+"""
+"""A run of a million million periods, and the signal that Python's handler of Ctrl-C answers."""
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no interval timer")
+def test_ctrl_c_ends_a_run_of_any_length_and_leaves_its_runner_usable():
+    code = STOPPED.format(path=[path for path in sys.path if path])
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "stopped, and ran once more\n", done.stderr
 
 
 def test_machines_of_another_structure_do_not_fit_a_runner():

@@ -3,10 +3,12 @@
 from math import radians
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
+from facegear.geometry import face_gear
 from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.geometry.limits import face_range, radius_limits
+from facegear.geometry.limits import THINNEST_LAND, face_range, radius_limits
 from facegear.geometry.placement import rotation
 
 
@@ -32,3 +34,21 @@ def test_limits_are_found_where_the_flank_turns_back_at_the_tip_plane():
             design = PairDesign(m, angle, pinion, gear, Shaper(shaper, 1.25 * m))
             limits = radius_limits(design)
             assert face_range(design, limits).inner >= limits.inner
+
+
+@pytest.mark.parametrize(("teeth", "angle_deg"), [(60, 30.0), (120, 25.0), (200, 25.0), (400, 20.0)])
+def test_many_teeth_have_a_face_although_their_tips_are_pointed_at_tip_undercut(teeth, angle_deg):
+    m = 1e-3
+    pinion = PinionGeometry(teeth, 8 * m, m, 1.25 * m, 0.1 * m, 0.01)
+    gear = FaceGearGeometry(4 * teeth, m, m, m, 3 * m)
+    shaper = Shaper(teeth + 3, 1.15 * m, 0.1 * m)
+    design = PairDesign(m, radians(angle_deg), pinion, gear, shaper)
+    allowed = face_range(design, radius_limits(design))
+    assert allowed.inner < m * 2 * teeth < allowed.outer, "the pitch radius has a tooth"
+
+    radius = np.linspace(allowed.inner, allowed.outer, 50)
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    land = 2 * face_gear.flank_point(design, roll, psi)[..., 0]
+    assert land.min() >= THINNEST_LAND * m * (1 - 1e-6)
+    if allowed.inner_reason == "tips pointed further in":
+        assert land[0] == pytest.approx(THINNEST_LAND * m, rel=1e-6)

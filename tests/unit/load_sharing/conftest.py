@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from facegear.config.load import load_config
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.harmonics.series import Harmonics
 
 CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
@@ -16,4 +16,4 @@ def paper_machine():
     """The paper's machine with a made-up mesh stiffness of 10 % and 3 % harmonics."""
     values = load_config(CONFIG).model_dump(mode="json")
     stiffness = Harmonics(MEAN * np.array([0.0, 0.1, 0.0]), MEAN * np.array([1.0, 0.0, 0.03]))
-    return case_machine(values, stiffness)
+    return MachineInputs.of_config(values, stiffness).build()

@@ -14,7 +14,7 @@ from facegear.config.dynamics import Dynamics
 from facegear.config.dynamics import settings as accuracy
 from facegear.config.load import load_config
 from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.model import Config
 from facegear.config.stiffness import MeshStiffness, given_series
 from facegear.dynamics.response_tables import response_table
@@ -60,7 +60,9 @@ def values(places, gears, tail_share):
 def chain(own):
     """Modes, nominal response, load sharing: what the stages of the workflow compute and write."""
     (case,) = expand_cases(parse(Config, own)).values()
-    machine = case_machine(case, given_series(parse(MeshStiffness, case["mesh_stiffness"])))
+    machine = MachineInputs.of_config(
+        case, given_series(parse(MeshStiffness, case["mesh_stiffness"]))
+    ).build()
     vibrating = vibrating_machine(machine)
     modes = vibrating.modes
     frequencies = frequency_table(vibrating, name_modes(machine.layout, machine.linear, modes))

@@ -102,7 +102,7 @@ PLANETS = {
 
 @against(
     "external source",
-    "Ligata et al. 2009, planet load shares with one planet out of place",
+    "Singh 2010, four to six planets around a floating sun, one of them out of place",
     capability="sharing_map",
     module="facegear.transmission.statics",
 )

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from idler_machines import FLOATING, HELD, make_idlers
 from references import against, agrees
@@ -11,10 +12,12 @@ from test_closed_form import config_of
 import facegear
 from facegear.errors import ConfigErrors
 from facegear.harmonics.series import Harmonics
+from facegear.load_sharing.drawn_paths import LEVELS, draws
+from facegear.load_sharing.groups import GroupKind
+from facegear.load_sharing.mapped_machine import MappedMachine, groups_of_kind
 from facegear.load_sharing.options import MapOptions
 from facegear.load_sharing.path_changes import floated, with_half_backlash, with_scaled_bearings
-from facegear.load_sharing.sharing_map import LEVELS, MappedMachine, draws, idler_groups
-from facegear.report.sharing_map import sharing_map_text
+from facegear.report.sharing_map import sharing_map_tables, sharing_map_text
 from facegear.transmission.layout import Role, Side
 
 SPLIT = config_of(3, 1e8, 1e9, 30.0)
@@ -66,7 +69,7 @@ def test_curves_of_a_hundred_random_machines_collapse_where_paths_part_too(sides
     """Mesh and bearing stiffness, torque and number of samples late differ; the drawn errors are the same."""
     random, spread = np.random.default_rng(1), {}
     base = floated(make_idlers(5)._machine(), sides)
-    group = idler_groups(base)[0]
+    group = groups_of_kind(base, GroupKind.IDLERS)[0]
     drawn = draws(group, MapOptions(1.0, 1.0, 100, 2, 3, (1.0,)))
     for _ in range(100):
         factors = 10.0 ** random.uniform(-1.0, 1.0, 3)
@@ -127,7 +130,7 @@ def test_each_advice_is_what_statics_of_the_changed_config_find(words):
 def test_a_drawn_path_is_late_as_an_error_of_its_upper_mesh_is():
     gearbox = make_split()
     mapped = MappedMachine(gearbox._machine())
-    group = idler_groups(mapped.machine)[0]
+    group = groups_of_kind(mapped.machine, GroupKind.IDLERS)[0]
     late = 1e-6 * np.array([[7.0, -3.0, 4.0]])
     errors = {f"idler {n}/upper": {"error_um": um} for n, um in zip((1, 3, 4), 1e6 * late[0], strict=True)}
     table = gearbox.with_values({"transmission.single_meshes": errors}).statics().table().set_index("mesh")
@@ -148,6 +151,31 @@ def test_the_text_names_what_lowers_the_largest_factor_and_why_the_closed_form_f
     best = content["advice"].loc[content["advice"]["worst_found"].idxmin()]
     assert f"{best['change']} ({best['from_to']}), {best['worst_found']:.3f}" in text
     assert "bearings have clearance" in text and "uneven angles" in text
+
+
+def test_tables_of_advice_are_one_a_group_without_changes_that_do_nothing():
+    content = make_split().sharing_map().content
+    tables = sharing_map_tables({f"sharing_map_{name}": table for name, table in content.items()})
+    advice = content["advice"]
+    groups = list(advice["group"].unique())
+    assert [group in table.caption for group, table in zip(groups, tables, strict=False)] == [True] * 3
+    shown = pd.concat([table.frame for table in tables[: len(groups)]])
+    assert (shown["gain"] != 0.0).all() and len(shown) == (advice["gain"] != 0.0).sum()
+
+
+def test_the_advice_on_backlash_halves_that_of_each_mesh():
+    """A mean backlash on all meshes would even out meshes that differ."""
+    single = {"input 0/upper": {"backlash_um": 90.0}}
+    gearbox = make_split(**{"transmission.single_meshes": single})
+    words = "halve the backlash of all meshes"
+    advice = gearbox.sharing_map().table().set_index(["change", "group"])
+    half = {
+        "transmission.backlash_um": 15.0,
+        "transmission.single_meshes": {"input 0/upper": {"backlash_um": 45.0}},
+    }
+    forces = gearbox.with_values(half).statics().table().set_index("mesh")["force_n"].abs()
+    pair = forces[["input 0/lower", "input 0/upper"]]
+    assert advice.loc[(words, "input 0"), "found"] == pytest.approx(2.0 * pair.max() / pair.sum(), rel=1e-9)
 
 
 @pytest.mark.parametrize(

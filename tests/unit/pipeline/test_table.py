@@ -3,6 +3,7 @@
 import inspect
 import re
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import facegear
 from facegear.config.arguments import typed_arguments
 from facegear.config.cases import expand_cases
 from facegear.config.load import load_config
+from facegear.config.machines import MachineInputs
 from facegear.pipeline.listing import listing
 from facegear.pipeline.needs import resolved_needs, stage_needs, stages_before
 from facegear.pipeline.reported import REPORTED, table_name
@@ -22,6 +24,7 @@ from facegear.report.case import SHAFT_TABLES
 ROOT = Path(__file__).parents[3]
 DRAWN = [stage for stage in STAGES.values() if stage.figures]
 RESUMED = {"partial", "code"}
+MACHINE_FIELDS = {field.name for field in fields(MachineInputs)}
 """Arguments of a stage that goes on where it was killed."""
 
 
@@ -51,6 +54,11 @@ def test_sections_of_the_config_reach_a_stage_as_objects(stage):
     plain = resolved_needs(stage.needs, Case(cases["concentric"], cases))
     function = load(stage.function)
     passes_on = arguments(stage.function)[2]  # machines among many: keys of a section are changed by name
+    if stage.machine:
+        section = {name: value for name, value in plain.items() if name in MACHINE_FIELDS}
+        inputs = MachineInputs(**typed_arguments(MachineInputs, section))
+        assert not isinstance(inputs.transmission, Mapping) and not isinstance(inputs.teeth, Mapping)
+        plain = {name: value for name, value in plain.items() if name not in section}
     for name, value in typed_arguments(function, plain).items():
         assert passes_on or not isinstance(value, Mapping), name
 
@@ -66,7 +74,10 @@ def test_a_stage_is_given_what_its_function_asks_for(stage):
     assert len(offered) == len(stage.needs) + len(stage.upstream) + len(stage.wildcards) + (
         2 if stage.resumable else 0
     )
-    assert accepts(stage.function, offered, optional)
+    if stage.machine:
+        assert {"transmission", "teeth", "harmonics"} <= offered
+        offered = (offered - MACHINE_FIELDS) | {stage.machine}
+    assert accepts(stage.function, offered, optional - MACHINE_FIELDS)
 
 
 @pytest.mark.parametrize("stage", DRAWN, ids=lambda stage: stage.name)

@@ -12,8 +12,7 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 import facegear
-from facegear.config.machine_layout import lumped_sections
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.errors import ConfigErrors, InvalidInput
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.design import AssemblyErrors
@@ -57,7 +56,7 @@ def concentric():
     """The machine of config/concentric.yaml with the mean stiffness of its load."""
     values = facegear.load("config/concentric.yaml", results=None).values
     constant, none = Harmonics(np.zeros(1), np.array([4.1e8])), Harmonics(np.zeros(1), np.zeros(1))
-    return wired_machine(*lumped_sections(values["transmission"], values["tooth_pair"]), constant, none)
+    return replace(MachineInputs.of_config(values, constant), unloaded_error=none).build()
 
 
 def plain_machine(bearing=6.5e7, torque=1328.0, **more):

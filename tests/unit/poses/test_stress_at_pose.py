@@ -7,10 +7,9 @@ from references import against, agrees
 from test_operating_pose import MESHES, POSE_AND_LOAD
 
 import facegear
-from facegear.config.machine_layout import ToothNumbers
+from facegear.config.machines import MachineInputs
 from facegear.config.strength import Strength
 from facegear.config.tooth_pair import pair_design
-from facegear.config.transmission import Transmission
 from facegear.geometry.conjugate import contact_at
 from facegear.poses.surface import PoseSurface
 from facegear.poses.tables import MARGINS, margin_text
@@ -64,9 +63,7 @@ def test_in_a_bin_with_the_machine_s_own_load_its_meshes_carry_the_published_for
     duty = [{"torque_n_m": torque, "speed_rpm": 7500.0, "hours": 1.0} for torque in (663.8, 332.0)]
     outcome = duty_poses(
         arrays,
-        harmonics,
-        Transmission.of_config(values["transmission"]),
-        ToothNumbers.of_config(values["tooth_pair"]),
+        MachineInputs.of_config(values, harmonics),
         Strength.of_config({**values["strength"], "duty": duty}),
     )
     table = outcome.content["duty_poses"]

@@ -6,7 +6,7 @@ import pytest
 import facegear
 from facegear.config.base import parse
 from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
 from facegear.harmonics.series import Harmonics
@@ -66,7 +66,11 @@ def test_machine_among_many_stands_as_the_same_machine_alone(arrays, values, key
     assembled = judge(QUESTION, pair, "this")
     given = moved(values, key, number)
     section = parse(Transmission, given["transmission"])
-    alone = at_rest(wired_machine(section, numbers, K, NONE, poses=arrays))
+    alone = at_rest(
+        MachineInputs(
+            transmission=section, teeth=numbers, harmonics=K, unloaded_error=NONE, poses=arrays
+        ).build()
+    )
     expected, _ = quasi_static_quantities(alone, 1)
     found, nominal = judged(given), judged(values)
     assert found == pytest.approx(expected, rel=1e-9)

@@ -10,7 +10,7 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.tolerances import Tolerances, chunks
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.io import tables
@@ -51,7 +51,7 @@ def gearbox():
 
 
 def wired(gearbox):
-    return case_machine(gearbox.values, gearbox.stiffness().content["harmonics"])
+    return MachineInputs.of_config(gearbox.values, gearbox.stiffness().content["harmonics"]).build()
 
 
 def chunk(gearbox, first, last, design="samples", **others):

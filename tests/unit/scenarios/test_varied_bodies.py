@@ -11,7 +11,7 @@ import facegear
 from facegear.config.base import parse
 from facegear.config.load import load_config
 from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.model import resolved
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
@@ -83,7 +83,9 @@ def test_machine_among_many_shares_load_as_the_same_machine_alone(values, solved
         given = with_web(values, thickness)
         arrays = {**stiff(times).arrays("lower"), **stiff(times).arrays("upper")}
         section = parse(Transmission, given["transmission"])
-        alone = at_rest(wired_machine(section, numbers, K, bodies=arrays))
+        alone = at_rest(
+            MachineInputs(transmission=section, teeth=numbers, harmonics=K, bodies=arrays).build()
+        )
         expected, _ = quasi_static_quantities(alone, 1)
         found = judged(given)
         assert found == pytest.approx(expected, rel=1e-12)
@@ -97,7 +99,11 @@ def test_body_is_solved_once_for_every_section_and_not_for_what_it_does_not_depe
         given = with_web(values, thickness)
         given["transmission"]["face_gear"]["mass_kg"] = 40.0 + thickness
         section = parse(Transmission, given["transmission"])
-        joined = bodies.joined(wired_machine(section, numbers, K), section, given["tooth_pair"])
+        joined = bodies.joined(
+            MachineInputs(transmission=section, teeth=numbers, harmonics=K).build(),
+            section,
+            given["tooth_pair"],
+        )
         assert len(joined.softening) == 10
     assert solved == [10.0, 11.0]
 
@@ -118,7 +124,9 @@ def test_design_whose_mass_cannot_hold_its_web_is_refused_before_it_is_solved(va
     given = with_web(values, 12.0, at_hub=30.0)
     given["transmission"]["face_gear"]["mass_kg"] = 32
     section = parse(Transmission, given["transmission"])
-    machine = wired_machine(section, ToothNumbers.of_config(values["tooth_pair"]), K)
+    machine = MachineInputs(
+        transmission=section, teeth=ToothNumbers.of_config(values["tooth_pair"]), harmonics=K
+    ).build()
     with pytest.raises(ConfigError, match=r"transmission\.face_gear\.mass_kg = 32"):
         bodies_of(values).joined(machine, section, given["tooth_pair"])
     assert not solved

@@ -5,12 +5,10 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.config.arguments import typed_arguments
-from facegear.config.machines import wired_machine
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.simulate import build_model, static_start
-from facegear.stages.dynamics_response import dynamics_response
+from facegear.pipeline.run import machine_inputs
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.machine import mesh_frequency
 from facegear.transmission.matrices import flank_jacobian
@@ -35,8 +33,7 @@ def gearbox():
 
 def machine_at(gearbox, torque):
     loaded = gearbox.with_values({"transmission.torque": {"per_input_n_m": torque, "tail_share": 0}})
-    given = typed_arguments(dynamics_response, loaded._chain.arguments("dynamics_response"))
-    return wired_machine(given["transmission"], given["teeth"], given["harmonics"], law=given["law"])
+    return machine_inputs(loaded._chain.arguments("dynamics_response")).build()
 
 
 def moved(machine, speed):

@@ -7,7 +7,7 @@ from references import against, agrees
 
 import facegear
 from facegear.config.base import parse
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import simulate
@@ -71,9 +71,9 @@ def test_what_the_orders_kept_miss_is_reported():
 
 
 def test_the_error_of_the_pair_drives_a_machine_that_would_stand_still_without():
-    machine = case_machine(VALUES, found_for(curve(POSITIONS), swing=0.0).harmonics)
+    machine = MachineInputs.of_config(VALUES, found_for(curve(POSITIONS), swing=0.0).harmonics).build()
     np.testing.assert_allclose(1e6 * machine.error(POSITIONS), curve(POSITIONS), atol=1e-12)
-    quiet = case_machine(VALUES, found_for(np.full(32, -3.0), swing=0.0).harmonics)
+    quiet = MachineInputs.of_config(VALUES, found_for(np.full(32, -3.0), swing=0.0).harmonics).build()
     driven, still = (
         np.ptp(simulate(one, 1000.0, Settings(tolerance=1e-8)).deflections, axis=0).max()
         for one in (machine, quiet)

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 import facegear
-from facegear.config.machine_layout import lumped_sections
-from facegear.config.machines import wired_machine
+from facegear.config.loads import at_mesh_torque
+from facegear.config.machines import MachineInputs
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.load_sharing.even_shares import even_shares
@@ -19,7 +19,6 @@ from facegear.pipeline.table import STAGES
 from facegear.strength.duty import DutyBin, machine_duty
 from facegear.strength.passage_loads import classes, hardest_tooth
 from facegear.transmission.ratings import mesh_table
-from facegear.variants.loads import at_mesh_torque
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -51,8 +50,7 @@ def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
     agrees("dynamic factor", loads["dynamic_factor"], 1.0, relative=1e-6)
     assert loads["settled"].all()
     for number, torque in ((1, 600.0), (2, 900.0)):
-        section, teeth = lumped_sections(gearbox.values["transmission"], gearbox.values["tooth_pair"])
-        machine = wired_machine(at_mesh_torque(section, torque), teeth, harmonics)
+        machine = MachineInputs.of_config(gearbox.values, harmonics).at_torque(torque).build()
         at_rest = mesh_table(machine, 0.0).set_index("mesh")
         running = loads[loads["bin"] == number].set_index("mesh")
         assert running["flank"].to_dict() == at_rest["flank"].to_dict()

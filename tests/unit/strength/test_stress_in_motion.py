@@ -10,7 +10,7 @@ from references import against, agrees
 from root_readings import POSITIONS, TORQUES, passing
 
 import facegear
-from facegear.config.machines import case_machine
+from facegear.config.machines import MachineInputs
 from facegear.geometry.bodies import BODIES
 from facegear.geometry.flank_errors import FLANKS
 from facegear.harmonics.series import Harmonics
@@ -156,9 +156,8 @@ def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_eac
     module="facegear.transmission.flanks",
 )
 def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
-    machine = case_machine(
-        facegear.example().values, Harmonics(np.array([0, 3e7, 1e7]), np.array([4e8, 2e7, -1e7]))
-    )
+    stiffness = Harmonics(np.array([0, 3e7, 1e7]), np.array([4e8, 2e7, -1e7]))
+    machine = MachineInputs.of_config(facegear.example().values, stiffness).build()
     cycles = np.linspace(0.0, 2.0, 23)
     places = flank_places(machine.phases, cycles)
     found = flank_law(machine).stiffness(cycles)

@@ -45,7 +45,7 @@ def test_a_mesh_stands_where_its_table_has_the_force_at_every_phase(torque):
     found = equilibria(machine, cycles)
     force = torque / machine.layout.pinion_arm
     agrees("mesh force, N", found.forces[:, 0], force, relative=1e-10)
-    amounts = (found.displacements @ flank_jacobian(machine.layout).T)[:, 0] - machine.half_backlash
+    amounts = (found.displacements @ flank_jacobian(machine.layout).T)[:, 0] - machine.half_backlash[0]
     factor = 1.0 + 0.2 * np.cos(2.0 * np.pi * cycles)
     agrees("deflection, m", amounts, (force / (factor * C)) ** (1.0 / N), relative=1e-6)
 
@@ -55,7 +55,7 @@ def test_a_negative_torque_presses_the_back_flank_by_its_own_table():
     machine = made(PINIONS[:1], (Side.UPPER,), -600.0)
     machine = replace(machine, tables=(FlankTables(TABLE, softer),))
     found = static_equilibrium(machine)
-    amount = (flank_jacobian(machine.layout) @ found.displacements)[1] - machine.half_backlash
+    amount = (flank_jacobian(machine.layout) @ found.displacements)[1] - machine.half_backlash[0]
     force = 600.0 / machine.layout.pinion_arm
     assert amount == pytest.approx((force / (0.5 * C)) ** (1.0 / N), rel=1e-6)
 
@@ -122,7 +122,7 @@ def test_a_table_of_one_torque_gives_the_deflection_and_the_slope_of_that_torque
     table = ForceTable(levels, np.multiply.outer(forces, mean), np.multiply.outer(slopes, mean))
     machine = made(PINIONS[:1], (Side.UPPER,), table=table)
     found = static_equilibrium(machine)
-    pressed = (flank_jacobian(machine.layout) @ found.displacements)[0] - machine.half_backlash
+    pressed = (flank_jacobian(machine.layout) @ found.displacements)[0] - machine.half_backlash[0]
     assert pressed == pytest.approx(amount, rel=1e-9)
     assert loaded_contacts(machine).stiffness[0] == pytest.approx(1.3 * force / amount, rel=1e-6)
 

@@ -10,6 +10,7 @@ from ruamel.yaml import YAML
 import facegear
 from facegear.config.base import parse
 from facegear.config.machine_layout import ToothNumbers
+from facegear.config.machines import MachineInputs
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
@@ -44,7 +45,8 @@ STIFFNESS = Harmonics(np.zeros(1), np.array([4.1e8]))
 
 
 def outcome(**changes):
-    return shafts(STIFFNESS, parse(Transmission, {**YAML(typ="safe").load(TEXT), **changes}), TEETH)
+    section = parse(Transmission, {**YAML(typ="safe").load(TEXT), **changes})
+    return shafts(MachineInputs(transmission=section, teeth=TEETH, harmonics=STIFFNESS))
 
 
 @against(

@@ -155,7 +155,7 @@ def test_a_static_result_whose_forces_do_not_balance_is_refused(kinematics):
         forces = mean_equilibrium(machine).flank_forces
         gaps = (constant_errors(machine) + flank_gaps(machine))[None]
     else:
-        forces, gaps = found.forces[None], np.full((1, 10), machine.half_backlash)
+        forces, gaps = found.forces[None], machine.half_backlash[None]
     stiffness = np.full_like(gaps, K)
     right = balance(machine, found.displacements[None], forces, stiffness, gaps)
     right.require(1e-10, ["at rest"])

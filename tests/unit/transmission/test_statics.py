@@ -89,7 +89,9 @@ def test_torques_out_of_balance_are_refused_with_the_excess(machine_of):
     torques = machine.torques.copy()
     torques[-1] *= 0.9
     with pytest.raises(InvalidInput, match=r"torques = .*must balance"):
-        Machine(machine.layout, torques, machine.stiffness, machine.error, 5e-5, machine.damping)
+        Machine(
+            machine.layout, torques, machine.stiffness, machine.error, machine.half_backlash, machine.damping
+        )
 
 
 def test_a_single_face_gear_takes_the_sum_of_its_pinions(layout_of):

@@ -176,6 +176,12 @@ bool fits(const motion::System& made_for, const motion::System& other) {
            made_for.breaks() == other.breaks() && made_for.same_law(other);
 }
 
+// Whether Ctrl-C, or another signal whose handler raises, is to end a run. Python's lock is not held before.
+bool interrupted() {
+    nb::gil_scoped_acquire acquired;
+    return PyErr_CheckSignals() != 0;
+}
+
 std::unique_ptr<motion::Log> run(motion::AnyRunner& runner,
                                  const std::vector<std::shared_ptr<const motion::Machine>>& machines,
                                  const Doubles<3>& starts, const Integers& periods,
@@ -190,6 +196,7 @@ std::unique_ptr<motion::Log> run(motion::AnyRunner& runner,
     queue.longest = numbers_of<double>(longest, {count}, "longest");
     queue.drift = numbers_of<double>(drift, {static_cast<Index>(drift.shape(0)), m}, "drift");
     queue.begin = begin;
+    queue.stop = &interrupted;
     require(count > 0, "there must be a machine");
     require(static_cast<Index>(drift.shape(0)) <= runner.order(),
             "drift has more terms than the order of the steps");
@@ -214,8 +221,12 @@ std::unique_ptr<motion::Log> run(motion::AnyRunner& runner,
                               steps,   turns};
     auto log = std::make_unique<motion::Log>(asked, count, n, m, runner.order(), most);
     log->tangents = numbers_of<double>(tangents, {count, columns, 2, n}, "tangents");
-    nb::gil_scoped_release released;
-    runner.run(queue, *log);
+    bool is_done = false;
+    {
+        nb::gil_scoped_release released;
+        is_done = runner.run(queue, *log);
+    }
+    if (!is_done) throw nb::python_error();
     return log;
 }
 

@@ -1,6 +1,10 @@
 // What runs are asked for, and what they leave.
 #pragma once
 
+#include <algorithm>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "motion/constants.hpp"
@@ -21,6 +25,20 @@ struct Asked {
     Index steps = 0;      // of the first steps, whose polynomials are kept
     Index turns = 0;      // maxima and minima of each deflection that are kept
 };
+
+// Length of an array with the given lengths of its axes. Throws std::length_error where none can be so long:
+// a product that overflows would make a short array.
+inline std::size_t length_of(std::initializer_list<Index> axes) {
+    constexpr Index longest = std::numeric_limits<Index>::max() / static_cast<Index>(sizeof(double));
+    if (std::min(axes) == 0) return 0;
+    Index product = 1;
+    for (const Index axis : axes) {
+        if (axis > longest / product)
+            throw std::length_error("more numbers are asked for than an array can hold");
+        product *= axis;
+    }
+    return static_cast<std::size_t>(product);
+}
 
 // Arrays [machine][...] of n coordinates and m contacts; those that were not asked for are empty.
 struct Log {
@@ -51,30 +69,30 @@ struct Log {
         : asked(what), machines(count), n(of_n), m(of_m), order(of_order), longest(periods) {
         const Index summed = asked.batches > 0 ? count : 0;
         const bool shares = asked.batches > 0 || asked.per_period > 0 || asked.columns > 0;
-        ends.resize(count * asked.kept * 2 * n);
-        samples.resize(count * longest * asked.per_period * n);
-        tangents.resize(count * asked.columns * 2 * n);
-        growth.resize(asked.growth ? count * longest : 0);
+        ends.resize(length_of({count, asked.kept, 2, n}));
+        samples.resize(length_of({count, longest, asked.per_period, n}));
+        tangents.resize(length_of({count, asked.columns, 2, n}));
+        growth.resize(length_of({asked.growth ? count : 0, longest}));
         divergence.resize(count);
-        fractions.resize((shares ? count : 0) * 3 * m);
-        origin.resize(summed * n);
-        level.resize(summed * m);
-        coordinates.resize(summed * asked.batches * n);
-        products.resize(summed * asked.batches * n * n);
-        deflections.resize(summed * asked.batches * m);
-        squared.resize(summed * asked.batches * m);
-        forces.resize(summed * 2 * m);
-        minimum.assign(summed * m, infinity);
-        maximum.assign(summed * m, -infinity);
-        pull.resize(summed * m);
+        fractions.resize(length_of({shares ? count : 0, 3, m}));
+        origin.resize(length_of({summed, n}));
+        level.resize(length_of({summed, m}));
+        coordinates.resize(length_of({summed, asked.batches, n}));
+        products.resize(length_of({summed, asked.batches, n, n}));
+        deflections.resize(length_of({summed, asked.batches, m}));
+        squared.resize(length_of({summed, asked.batches, m}));
+        forces.resize(length_of({summed, 2, m}));
+        minimum.assign(length_of({summed, m}), infinity);
+        maximum.assign(length_of({summed, m}), -infinity);
+        pull.resize(length_of({summed, m}));
         taken.resize(count);
         status.resize(count);
         step_starts.resize(asked.steps);
         step_lengths.resize(asked.steps);
-        step_coordinates.resize(asked.steps * (order + 1) * n);
-        step_deflections.resize(asked.steps * (order + 1) * m);
-        step_states.resize(asked.steps * m);
-        turning_points.assign(2 * m * asked.turns, -infinity);
+        step_coordinates.resize(length_of({asked.steps, order + 1, n}));
+        step_deflections.resize(length_of({asked.steps, order + 1, m}));
+        step_states.resize(length_of({asked.steps, m}));
+        turning_points.assign(length_of({2, m, asked.turns}), -infinity);
         turning_counts.resize(asked.turns > 0 ? 2 * m : 0);
     }
 };

@@ -25,7 +25,12 @@ struct Queue {
     std::vector<double> longest; // step, rad, of each
     double begin = 0.0;          // phase at which the first period is entered; 0 where samples are asked for
     std::vector<double> drift;   // (terms, m) added to the error in every period, by powers of the phase
+    bool (*stop)() = nullptr;    // asked every `between_looks` steps: true ends the run
 };
+
+// Steps between two looks at Queue::stop: some 0.05 s, which no user notices, and so rare that it costs
+// nothing.
+constexpr Index between_looks = 16384;
 
 // What runs machines of one structure with a layout and a law.
 class AnyRunner {
@@ -34,7 +39,8 @@ class AnyRunner {
     virtual const System& system() const = 0;
     virtual Index order() const = 0;
     // Run every machine of a queue over its periods; log.tangents holds the disturbances, and is written.
-    virtual void run(const Queue& queue, Log& log) = 0;
+    // False if the run was stopped before its end.
+    virtual bool run(const Queue& queue, Log& log) = 0;
     // Second derivatives (n,) by phase of the first machine, at a phase and a state (2, n).
     virtual void accelerations(const Machine& machine, double phase, const double* state, double* out) = 0;
 };
@@ -53,7 +59,7 @@ class Runner final : public AnyRunner {
     const System& system() const override { return *work_.shape; }
     Index order() const override { return work_.order; }
 
-    void run(const Queue& queue, Log& log) override {
+    bool run(const Queue& queue, Log& log) override {
         queue_ = &queue;
         log_ = &log;
         make_tangents();
@@ -64,7 +70,11 @@ class Runner final : public AnyRunner {
         work_.choose_error();
         waiting_ = running_ = 0;
         for (int lane = 0; lane < L::machines; ++lane) refill(lane);
-        while (running_ > 0) step();
+        for (Index steps = 1; running_ > 0; ++steps) {
+            if (queue.stop && steps % between_looks == 0 && queue.stop()) return false;
+            step();
+        }
+        return true;
     }
 
     void accelerations(const Machine& machine, double phase, const double* state, double* out) override {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "statics/laws.hpp"
@@ -81,6 +82,37 @@ inline double balance(const Position<Law>& at, const Values& over, const Values&
         }
     }
     return largest;
+}
+
+// One rounding of the largest sum of forces on an unknown, N. A flank's force is known no better than its gap
+// and the displacements that close it.
+template <class Law>
+inline double rounding(const Position<Law>& at, const Values& over, const Values& displacement) {
+    const Springs& springs = at.springs;
+    const auto moved = [&](Index unknown) { return std::fabs(displacement[unknown]); };
+    Values terms(displacement.size());
+    for (Index i = 0; i < springs.pinions(); ++i) {
+        const double* stiffness = springs.pinion_bearing.row(i);
+        const double x = moved(3 * i), y = moved(3 * i + 1), cross = std::fabs(stiffness[1]);
+        terms[3 * i] += stiffness[0] * x + cross * y;
+        terms[3 * i + 1] += cross * x + stiffness[2] * y;
+    }
+    for (Index e = 0; e < springs.core_value.size; ++e) {
+        const Index a = springs.first() + springs.core_row[e], b = springs.first() + springs.core_column[e];
+        const double stiffness = std::fabs(springs.core_value[e]);
+        terms[a] += stiffness * moved(b);
+        if (a != b) terms[b] += stiffness * moved(a);
+    }
+    for (Index f = 0; f < springs.flanks(); ++f) {
+        if (!(over[f] > 0.0)) continue;
+        double length = std::fabs(at.gap[f]);
+        for (Index j = 0; j < springs.jacobian.columns; ++j)
+            length += std::fabs(springs.jacobian(f, j)) * moved(unknown_of(springs, f, j));
+        const double force = at.law.at(at.phase, f, over[f]).slope * length;
+        for (Index j = 0; j < springs.jacobian.columns; ++j)
+            terms[unknown_of(springs, f, j)] += std::fabs(springs.jacobian(f, j)) * force;
+    }
+    return std::numeric_limits<double>::epsilon() * *std::max_element(terms.begin(), terms.end());
 }
 
 // Adds stiffness J^T J of one flank to the block of its pinion and to the core.

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "statics/energy.hpp"
@@ -27,6 +28,10 @@ constexpr double TIE = 1e-10, FIRST_TIE = 1e-1;
 constexpr int MAX_STEPS = 200;
 // Part of a whole step's approach by which a flank that stopped the step may still be open.
 constexpr double JUST_CLOSED = 1e-9;
+// Residual from which a stalled search is looked at, and roundings of the largest sum of forces that count as
+// balance: backlash of some mm leaves more than the tolerance, and a free body would slide on to no end.
+// `facegear/transmission/balance.py` accepts 32 of them.
+constexpr double NEARLY = 1e-9, ROUNDINGS = 4.0;
 
 // Factorises the leading 3 x 3 (upper triangle) by Cholesky's method, and applies the factor to the columns
 // right of it.
@@ -117,13 +122,16 @@ class Search {
         const double stiffest =
             springs.flanks() > 0 ? *std::max_element(stiffness, stiffness + springs.flanks()) : 0.0;
         std::fill(stops.begin(), stops.end(), 0);
-        double residual = 0.0;
+        double residual = 0.0, least = std::numeric_limits<double>::infinity();
         for (int i = 0; i < MAX_STEPS; ++i) {
             penetrate(at, displacement, over);
             const double size = balance(at, over, displacement, gradient),
                          worst = largest_magnitude(gradient);
             residual = size > 0.0 ? worst / size : 0.0;
             if (worst <= tolerance * size) break;
+            const bool is_stalled = worst <= NEARLY * size && worst > 0.5 * least;
+            if (is_stalled && worst <= ROUNDINGS * rounding(at, over, displacement)) break;
+            least = std::min(least, worst);
             take_newton_step(at, tie * stiffest);
             tie = std::max(0.1 * tie, TIE);
             // Forces below the tolerance are no reason to go on: a free body would slide, the others with it.

@@ -8,7 +8,7 @@ from oscillators import one_degree
 
 import facegear
 from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import wired_machine
+from facegear.config.machines import MachineInputs
 from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.explore import explore, lies_on
 from facegear.dynamics.branches.family import Family, speed_family
@@ -75,7 +75,9 @@ def machine_survey():
     gearbox = facegear.load("config/harmonics_only.yaml")
     teeth = ToothNumbers.of_config(gearbox.values["tooth_pair"])
     harmonics = gearbox.stiffness().content["harmonics"]
-    model = build_model(wired_machine(gearbox.config.transmission, teeth, harmonics))
+    model = build_model(
+        MachineInputs(transmission=gearbox.config.transmission, teeth=teeth, harmonics=harmonics).build()
+    )
     period_map = PeriodMap(speed_family(model), 1, 1e-7)
     u = float(np.log(9400.0))
     response = simulate(model, 9400.0, Settings(tolerance=1e-7))
