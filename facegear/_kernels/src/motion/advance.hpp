@@ -27,15 +27,16 @@ typename L::S rest_of_period(Work<L, Law>& w) {
     return rest;
 }
 
-// The forces that the recurrence does not need, where steps or switches do.
+// The forces of contacts that the recurrence does not need, where steps, switches or sums do.
 template <class L, class Law>
 void expand_last_forces(Work<L, Law>& w) {
-    if (!w.all_forces || (!Law::curved && !w.shape->push_only)) return;
+    if (w.last_force < w.order - 1) return;
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
-        for (Index i = w.order - 1; i <= w.order; ++i) {
+        const auto touching = absolute(w.side.at(0, b));
+        if (positive_lanes(touching) == 0) continue;
+        for (Index i = w.order - 1; i <= w.last_force; ++i) {
             const auto force = w.law.force(w.deflection, i, b);
-            if (w.shape->push_only || w.friction.count() > 0)
-                w.elastic.put(i, b, absolute(w.side.at(0, b)) * force);
+            if (w.shape->push_only || w.friction.count() > 0) w.elastic.put(i, b, touching * force);
         }
     }
 }

@@ -63,8 +63,8 @@ class Runner final : public AnyRunner {
         queue_ = &queue;
         log_ = &log;
         make_tangents();
-        work_.all_forces =
-            log.asked.fine || (Law::ahead_by_forces && log.asked.batches > 0) || work_.shape->push_only;
+        const bool all = Law::curved && (log.asked.fine || (Law::ahead_by_forces && log.asked.batches > 0));
+        work_.last_force = work_.order - (all ? 0 : work_.shape->push_only ? 1 : 2);
         work_.drift_terms = static_cast<Index>(queue.drift.size()) / work_.m;
         work_.drift = queue.drift.data();
         work_.choose_error();

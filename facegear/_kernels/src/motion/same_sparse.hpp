@@ -72,8 +72,9 @@ class SameSparse {
         const auto shape = [&](const Group& group) {
             return std::pair(group.size(), pattern.starts[group[0] + 1] - pattern.starts[group[0]]);
         };
-        std::stable_sort(groups.begin(), groups.end(),
-                         [&](const Group& one, const Group& other) { return shape(one) < shape(other); });
+        std::sort(groups.begin(), groups.end(), [&](const Group& one, const Group& other) {
+            return std::pair(shape(one), one[0]) < std::pair(shape(other), other[0]);
+        });
         for (auto first = groups.begin(); first != groups.end();) {
             const auto rest = groups.end() - first;
             auto at_once = std::min<decltype(rest)>(4 / static_cast<int>(first->size()), rest);

@@ -138,7 +138,7 @@ struct Work {
     // zero now.
     Table<L> state, side, level, active, acting, edge, extent, parting;
     Table<L> known_state, known_begin, known_end; // pieces that were found last, and where they begin and end
-    bool all_forces = true; // whether the forces are needed up to the order of the steps
+    Index last_force = 0; // up to which coefficient the forces are needed: the recurrence finds order - 2
 
     Table<L> ways; // polynomials that may have a zero in the step of their machine, one in each lane
     int way_count = 0, way_machine[L::lanes] = {};
