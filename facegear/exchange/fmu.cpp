@@ -127,7 +127,8 @@ class Instance {
         work_.phase = Number::splat(phase_);
         work_.longest = Number::splat(infinity);
         start_step(work_);
-        recurrence(work_, 2, work_.y, work_.deflection, false); // the forces of the bearings with clearance
+        // The forces of the bearings with clearance.
+        recurrence(work_, 0, 1, work_.y, work_.deflection, false);
         const Index contacts = system_->contacts;
         const double newton = rate() * rate();
         for (Index c = 0; c < contacts; ++c) {

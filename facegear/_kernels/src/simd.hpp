@@ -73,6 +73,7 @@ struct Lanes {
 #ifdef FACEGEAR_VECTOR_EXTENSION
 
 typedef double FourDoubles __attribute__((vector_size(32)));
+typedef long long FourIntegers __attribute__((vector_size(32)));
 
 template <>
 struct Lanes<4> {
@@ -95,7 +96,9 @@ struct Lanes<4> {
     [[gnu::always_inline]] friend Lanes operator*(Lanes a, Lanes b) { return {a.lane * b.lane}; }
     [[gnu::always_inline]] friend Lanes operator/(Lanes a, Lanes b) { return {a.lane / b.lane}; }
     [[gnu::always_inline]] friend Lanes operator-(Lanes a) { return {-a.lane}; }
-    [[gnu::always_inline]] friend Lanes absolute(Lanes a) { return {a.lane < 0.0 ? -a.lane : a.lane}; }
+    [[gnu::always_inline]] friend Lanes absolute(Lanes a) {
+        return {(FourDoubles)((FourIntegers)a.lane & (0x7fffffffffffffffll))}; // without the bit of the sign
+    }
     [[gnu::always_inline]] friend Lanes smaller(Lanes a, Lanes b) {
         return {a.lane < b.lane ? a.lane : b.lane};
     }

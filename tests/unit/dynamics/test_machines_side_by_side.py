@@ -129,6 +129,16 @@ def test_any_lumped_machine_moves_beside_others_as_it_does_alone(machine, speed,
     assert apart(found, [one.by_phase(start) + kick for one in found], 2) < SAME
 
 
+@pytest.mark.parametrize("name", ["two flanks", "gears that bend"])
+def test_machines_whose_jacobians_differ_move_beside_each_other_as_alone(name):
+    """Values that all lanes share are read once: where one machine differs each must keep its own."""
+    (first, *_), starts = integrators(name)
+    jacobian = first.system.mesh_jacobian
+    systems = [replace(first.system, mesh_jacobian=factor * jacobian) for factor in (1.0, 1.02, 0.97)]
+    found = [Integrator(system, first.frequency) for system in systems]
+    assert apart(found, starts, 2) < SAME
+
+
 def test_more_machines_than_lanes_come_out_in_their_order_with_their_samples():
     count = 2 * WIDTH + 3
     speeds_of = np.linspace(0.5, 1.5, count)

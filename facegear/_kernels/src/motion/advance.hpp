@@ -27,15 +27,16 @@ typename L::S rest_of_period(Work<L, Law>& w) {
     return rest;
 }
 
-// The forces that the recurrence does not need, where steps or switches do.
+// The forces of contacts that the recurrence does not need, where steps, switches or sums do.
 template <class L, class Law>
 void expand_last_forces(Work<L, Law>& w) {
-    if (!w.all_forces || (!Law::curved && !w.shape->push_only)) return;
+    if (w.last_force < w.order - 1) return;
     for (Index b = 0; b < blocks_of<L>(w.shape->contacts); ++b) {
-        for (Index i = w.order - 1; i <= w.order; ++i) {
+        const auto touching = absolute(w.side.at(0, b));
+        if (positive_lanes(touching) == 0) continue;
+        for (Index i = w.order - 1; i <= w.last_force; ++i) {
             const auto force = w.law.force(w.deflection, i, b);
-            if (w.shape->push_only || w.friction.count() > 0)
-                w.elastic.put(i, b, absolute(w.side.at(0, b)) * force);
+            if (w.shape->push_only || w.friction.count() > 0) w.elastic.put(i, b, touching * force);
         }
     }
 }
@@ -57,19 +58,27 @@ typename L::S start_step(Work<L, Law>& w) {
     return rest;
 }
 
+// Correct contact states by the first coefficients of the motions; true if one changed.
+template <class L, class Law>
+bool correct(Work<L, Law>& w) {
+    bool changed = w.shape->opens && correct_states(w);
+    if (changed) w.law.expand_pieces(w.expansion, w.state, w.rows);
+    if (w.shape->push_only) changed = correct_parting(w) || changed;
+    return changed;
+}
+
 // Expand the motions from rows 0 and 1 of y at the phases, and find the lengths of the steps; y then holds
 // the polynomials valid over them. The contact states are found from the motions themselves.
 template <class L, class Law>
 void advance(Work<L, Law>& w) {
     using S = typename L::S;
     const S rest = start_step(w);
-    for (int guess = 0; guess < max_guesses; ++guess) {
-        recurrence(w, w.order, w.y, w.deflection, false);
-        bool changed = w.shape->opens && correct_states(w);
-        if (changed) w.law.expand_pieces(w.expansion, w.state, w.rows);
-        if (w.shape->push_only) changed = correct_parting(w) || changed;
-        if (!changed) break;
+    const Index decided = std::min(deciding, w.order - 1);
+    for (int guess = 1; guess <= max_guesses; ++guess) {
+        recurrence(w, 0, decided, w.y, w.deflection, false);
+        if (guess == max_guesses || !correct(w)) break;
     }
+    recurrence(w, decided, w.order - 1, w.y, w.deflection, false);
     expand_last_forces(w);
     const S length = step_length(w), half = S::splat(0.5) * rest;
     const S shared = where_positive(length - half, half, length);

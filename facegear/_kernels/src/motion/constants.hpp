@@ -22,8 +22,10 @@ constexpr double latest = 1e-4, still = 1e-14;
 constexpr double no_force = 1e-10;
 // A step that ends this close to the end of a period, or to a break of the law, ends there.
 constexpr double rounding = 1e-13;
-// How often contact states are corrected at the start of a step.
+// How often contact states are guessed at the start of a step, and the coefficients of the forces that
+// decide.
 constexpr int max_guesses = 4;
+constexpr Index deciding = 3;
 constexpr Index max_steps = 2000000;
 
 } // namespace facegear::motion

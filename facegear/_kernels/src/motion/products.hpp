@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motion/layout.hpp"
+#include "motion/same_sparse.hpp"
 #include "motion/system.hpp"
 
 namespace facegear::motion {
@@ -304,81 +305,6 @@ class Products<Coordinates<W>> {
     double* factors_ = nullptr;
 };
 
-// Rows of a sparse matrix with entries in the same columns, up to three: what they are multiplied by is read
-// once.
-struct RowGroup {
-    Index rows[3] = {};
-    int count = 0;
-    Index begin = 0, end = 0; // of the columns
-    Index values = 0;         // first of count values for each column
-};
-struct GroupedRows {
-    std::vector<RowGroup> groups;
-    std::vector<Index> columns, entries; // entries: which value of the Jacobian each value is
-
-    // entry: which of them each entry of the matrix is.
-    GroupedRows(const Sparse& matrix, const std::vector<Index>& entry) {
-        const Index rows = static_cast<Index>(matrix.starts.size()) - 1;
-        const auto length = [&](Index row) { return matrix.starts[row + 1] - matrix.starts[row]; };
-        const auto alike = [&](Index one, Index other) {
-            const auto begin = matrix.columns.begin();
-            return length(one) == length(other) &&
-                   std::equal(begin + matrix.starts[one], begin + matrix.starts[one + 1],
-                              begin + matrix.starts[other]);
-        };
-        std::vector<char> taken(rows, 0);
-        for (Index row = 0; row < rows; ++row) {
-            if (taken[row]) continue;
-            RowGroup group;
-            for (Index other = row; other < rows && group.count < 3; ++other) {
-                if (taken[other] || !alike(row, other)) continue;
-                group.rows[group.count++] = other;
-                taken[other] = 1;
-            }
-            group.begin = static_cast<Index>(columns.size());
-            group.values = static_cast<Index>(entries.size());
-            for (Index i = 0; i < length(row); ++i) {
-                columns.push_back(matrix.columns[matrix.starts[row] + i]);
-                for (int member = 0; member < group.count; ++member)
-                    entries.push_back(entry[matrix.starts[group.rows[member]] + i]);
-            }
-            group.end = static_cast<Index>(columns.size());
-            groups.push_back(group);
-        }
-    }
-};
-
-// Sums of Count rows over the same columns.
-template <class V, int Count>
-struct RowSums {
-    V sum;
-    RowSums<V, Count - 1> rest;
-    template <class Start>
-    void begin(Start start, const Index* rows) {
-        sum = start(rows[0]);
-        rest.begin(start, rows + 1);
-    }
-    template <class Values>
-    void add(V vector, Values values, Index at) {
-        sum = values(at) * vector + sum;
-        rest.add(vector, values, at + 1);
-    }
-    template <class Put>
-    void end(Put put, const Index* rows) const {
-        put(rows[0], sum);
-        rest.end(put, rows + 1);
-    }
-};
-template <class V>
-struct RowSums<V, 0> {
-    template <class Start>
-    void begin(Start, const Index*) {}
-    template <class Values>
-    void add(V, Values, Index) {}
-    template <class Put>
-    void end(Put, const Index*) const {}
-};
-
 template <int W>
 class Products<Machines<W>> {
     using L = Machines<W>;
@@ -389,63 +315,52 @@ class Products<Machines<W>> {
         : system_(&system),
           of_contacts_(system.by_contact, numbers(system.by_contact)),
           of_coordinates_(system.by_coordinate, system.entry),
-          contact_values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))),
-          coordinate_values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))),
+          coupling_(system.coupled_rows, numbers(system.coupled_rows)),
+          felt_(room_.table<L>(1, 2 * system.n)),
           along_(room_.table<L>(1, static_cast<Index>(system.along.columns.size()))),
-          coupling_(room_.table<L>(1, static_cast<Index>(system.coupled_rows.columns.size()))),
           values_(room_.table<L>(1, static_cast<Index>(system.by_contact.columns.size()))) {}
 
     void enter(const Machine& machine, int lane) {
         const System& system = *machine.system;
-        for (std::size_t e = 0; e < system.by_contact.values.size(); ++e) {
-            const Index at = static_cast<Index>(e);
-            values_.one(0, at, lane) = system.by_contact.values[e];
-            contact_values_.one(0, at, lane) = system.by_contact.values[of_contacts_.entries[e]];
-            coordinate_values_.one(0, at, lane) = system.by_contact.values[of_coordinates_.entries[e]];
-        }
+        const std::vector<double>& jacobian = system.by_contact.values;
+        for (std::size_t e = 0; e < jacobian.size(); ++e)
+            values_.one(0, static_cast<Index>(e), lane) = jacobian[e];
+        of_contacts_.enter(jacobian, lane);
+        of_coordinates_.enter(jacobian, lane);
         for (std::size_t e = 0; e < system.along.values.size(); ++e)
             along_.one(0, static_cast<Index>(e), lane) = system.along.values[e];
         if (!system.coupled) return;
+        std::vector<double> coupling;
         for (Index k = 0; k < system.n; ++k)
             for (Index e = system.coupled_rows.starts[k]; e < system.coupled_rows.starts[k + 1]; ++e) {
                 const Index column = system.coupled_rows.columns[e];
-                coupling_.one(0, e, lane) =
-                    column < system.n ? system.by_velocity(k, column, machine.frequency)
-                                      : system.by_displacement(k, column - system.n, machine.frequency);
+                coupling.push_back(column < system.n
+                                       ? system.by_velocity(k, column, machine.frequency)
+                                       : system.by_displacement(k, column - system.n, machine.frequency));
             }
+        coupling_.enter(coupling, lane);
     }
 
     void deflect(Table<L> y, Index row, const Series<L>* error, Table<L> deflection) const {
-        const V none = V::splat(0.0);
-        multiply(
-            of_contacts_, contact_values_,
-            [&](Index contact) { return error ? -error->at(row, contact) : none; },
-            [&](Index k) { return y.at(row, k); },
-            [&](Index contact, V sum) { deflection.put(row, contact, sum); });
+        for (Index contact = 0; contact < deflection.width; ++contact)
+            deflection.put(row, contact, error ? -error->at(row, contact) : V::splat(0.0));
+        of_contacts_.add_product(y.row(row), deflection.row(row));
     }
 
     void find_pressing(Table<L>, Table<L>) {}
 
     void push(Table<L> force, Table<L> y, Index row) const {
-        multiply(
-            of_coordinates_, coordinate_values_, [&](Index k) { return y.at(row, k); },
-            [&](Index contact) { return force.at(0, contact); }, [&](Index k, V sum) { y.put(row, k, sum); });
+        of_coordinates_.add_product(force.data, y.row(row));
     }
 
     void couple(Table<L> y, Index i) const {
         if (!system_->coupled) return;
-        const Sparse& rows = system_->coupled_rows;
+        const Index n = system_->n;
         const V by_rate = V::splat(-1.0 / static_cast<double>(i + 2));
         const V by_place = V::splat(-1.0 / static_cast<double>((i + 1) * (i + 2)));
-        for (Index k = 0; k < system_->n; ++k) {
-            V rates = V::splat(0.0), places = rates;
-            Index e = rows.starts[k];
-            for (; e < rows.starts[k + 1] && rows.columns[e] < system_->n; ++e)
-                rates = coupling_.at(0, e) * y.at(i + 1, rows.columns[e]) + rates;
-            for (; e < rows.starts[k + 1]; ++e)
-                places = coupling_.at(0, e) * y.at(i, rows.columns[e] - system_->n) + places;
-            y.add(i + 2, k, by_rate * rates + by_place * places);
-        }
+        for (Index k = 0; k < n; ++k) felt_.put(0, k, by_rate * y.at(i + 1, k));
+        for (Index k = 0; k < n; ++k) felt_.put(0, n + k, by_place * y.at(i, k));
+        coupling_.add_product(felt_.data, y.row(i + 2));
     }
 
     void rub(Index force, V size, Table<L> y, Index row) const {
@@ -477,35 +392,12 @@ class Products<Machines<W>> {
         return all;
     }
 
-    // Rows of a matrix times vectors, added to where each row starts, and put where it belongs.
-    template <class Start, class Vectors, class Put>
-    static void multiply(const GroupedRows& rows, Table<L> values, Start start, Vectors vectors, Put put) {
-        for (const RowGroup& group : rows.groups) {
-            if (group.count == 3)
-                multiply_group<3>(rows, group, values, start, vectors, put);
-            else if (group.count == 2)
-                multiply_group<2>(rows, group, values, start, vectors, put);
-            else
-                multiply_group<1>(rows, group, values, start, vectors, put);
-        }
-    }
-    template <int Count, class Start, class Vectors, class Put>
-    static void multiply_group(const GroupedRows& rows, const RowGroup& group, Table<L> values, Start start,
-                               Vectors vectors, Put put) {
-        const auto value = [&](Index at) { return values.at(0, at); };
-        RowSums<V, Count> sums;
-        sums.begin(start, group.rows);
-        Index at = group.values;
-        for (Index e = group.begin; e < group.end; ++e, at += Count)
-            sums.add(vectors(rows.columns[e]), value, at);
-        sums.end(put, group.rows);
-    }
-
     Room room_;
     const System* system_;
-    GroupedRows of_contacts_, of_coordinates_;
-    Table<L> contact_values_, coordinate_values_, along_, coupling_;
-    Table<L> values_; // entry by entry
+    SameSparse<W> of_contacts_, of_coordinates_, coupling_;
+    Table<L> felt_; // velocities and displacements with their factors, by which the coupling is multiplied
+    Table<L> along_;
+    Table<L> values_; // of the Jacobian, entry by entry
 };
 
 } // namespace facegear::motion

@@ -14,8 +14,8 @@ namespace facegear::motion {
 constexpr int max_depth = 48;
 // Part of an interval beside its end in which a zero may be that of the next one.
 constexpr double beside = 1e-12;
-// Newton's last step, over the interval: the error after it is of the order of its square.
-constexpr double close_enough = 1e-10;
+// Halley's last step, over the interval: the error after it is of the order of its cube.
+constexpr double close_enough = 1e-7;
 constexpr double never = 2.0;
 
 // Conversion from power to Bernstein coefficients on [0, 1], lower triangular: b_i = sum_k C(i, k) /
@@ -30,6 +30,39 @@ inline std::vector<double> bernstein_matrix(Index degree) {
         }
     }
     return matrix;
+}
+
+// The one zero between low and high of each polynomial that is pending (1), any number of the others:
+// Halley's method kept inside a shrinking bracket.
+template <class V, class Term>
+[[gnu::always_inline]] inline V refine_root(Term term, Index degree, V low, V high, V at_low, V at_high,
+                                            V pending) {
+    const V none = V::splat(0.0), one = V::splat(1.0), half = V::splat(0.5);
+    const V sign = where_positive(at_high, one, -one), width = high - low;
+    V t = low + width * at_low / (at_low - at_high), root = t;
+    // Another zero may lie at the end, to rounding.
+    t = where_positive(high - t - V::splat(beside) * width, t, half * (low + high));
+    for (int turn = 0; turn < 100 && positive_lanes(pending) != 0; ++turn) {
+        V value = term(degree), slope = none, bend = none; // bend: half the second derivative
+        for (Index i = degree - 1; i >= 0; --i) {
+            bend = bend * t + slope;
+            slope = slope * t + value;
+            value = value * t + term(i);
+        }
+        const V rise = sign * value, size = absolute(value);
+        high = where_positive(rise, t, high);
+        low = where_positive(rise, low, t);
+        const V step = t - value * slope / (slope * slope - value * bend);
+        const V inside = smaller(step - low, high - step),
+                close = V::splat(close_enough) - absolute(step - t);
+        const V met = where_positive(close, where_positive(-inside, none, one), none);
+        const V narrow = V::splat(4e-16) - (high - low);
+        const V next = where_positive(larger(inside, met), step, half * (low + high));
+        t = where_positive(size, next, t);
+        root = where_positive(pending, t, root);
+        pending = where_positive(where_positive(size, larger(met, narrow), one), none, pending);
+    }
+    return root;
 }
 
 // Scratch space for zeros of polynomials of one degree.
@@ -94,32 +127,14 @@ class RootFinder {
         return first_root();
     }
 
-    // The one zero between low and high: Newton's method kept inside a shrinking bracket.
+    // The one zero between low and high of one polynomial.
     static double refine_root(const double* c, Index degree, double low, double high, double at_low,
                               double at_high) {
         if (at_high == 0.0) return high;
-        const bool rising = at_high > at_low;
-        double t = low + (high - low) * at_low / (at_low - at_high);
-        if (high - t <= beside * (high - low))
-            t = 0.5 * (low + high); // another zero may lie at the end, to rounding
-        for (int i = 0; i < 100; ++i) {
-            double value = c[degree], slope = 0.0;
-            for (Index k = degree - 1; k >= 0; --k) {
-                slope = slope * t + value;
-                value = value * t + c[k];
-            }
-            if (value == 0.0) return t;
-            ((value > 0.0) == rising ? high : low) = t;
-            double step = slope != 0.0 ? t - value / slope : low - 1.0;
-            const bool inside = low < step && step < high;
-            if (inside && std::fabs(step - t) <= close_enough) return step;
-            if (!inside) {
-                step = 0.5 * (low + high);
-                if (high - low <= 4e-16) return step;
-            }
-            t = step;
-        }
-        return t;
+        using V = Lanes<1>;
+        const auto term = [&](Index i) { return V::splat(c[i]); };
+        return motion::refine_root(term, degree, V::splat(low), V::splat(high), V::splat(at_low),
+                                   V::splat(at_high), V::splat(1.0))[0];
     }
 
   private:

@@ -63,8 +63,8 @@ class Runner final : public AnyRunner {
         queue_ = &queue;
         log_ = &log;
         make_tangents();
-        work_.all_forces =
-            log.asked.fine || (Law::ahead_by_forces && log.asked.batches > 0) || work_.shape->push_only;
+        const bool all = Law::curved && (log.asked.fine || (Law::ahead_by_forces && log.asked.batches > 0));
+        work_.last_force = work_.order - (all ? 0 : work_.shape->push_only ? 1 : 2);
         work_.drift_terms = static_cast<Index>(queue.drift.size()) / work_.m;
         work_.drift = queue.drift.data();
         work_.choose_error();
@@ -86,7 +86,7 @@ class Runner final : public AnyRunner {
         for (Index row = 0; row < 2; ++row)
             for (Index k = 0; k < n; ++k) work_.y.one(row, k, 0) = state[row * n + k];
         start_step(work_);
-        recurrence(work_, 2, work_.y, work_.deflection, false);
+        recurrence(work_, 0, 1, work_.y, work_.deflection, false);
         for (Index k = 0; k < n; ++k) out[k] = 2.0 * work_.y.one(2, k, 0);
     }
 

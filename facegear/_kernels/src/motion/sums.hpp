@@ -133,11 +133,23 @@ V largest_over_step(const std::vector<V>& terms, Index order, double sign) {
 // Widen extremes that are known by those of polynomials over the step, which may reach past them.
 template <class V>
 void widen(const std::vector<V>& terms, Index order, V& minimum, V& maximum) {
-    const Reach<V> reach = reach_of(terms.data(), order);
+    const Reach<V> reach = reach_of(terms[0], order, [&](Index i) { return terms[i]; });
     if (positive_lanes(reach.top - maximum) != 0)
         maximum = larger(maximum, largest_over_step(terms, order, 1.0));
     if (positive_lanes(minimum - reach.bottom) != 0)
         minimum = smaller(minimum, -largest_over_step(terms, order, -1.0));
+}
+
+// Write the terms of a deflection in powers of the fraction of the step.
+template <class L, class Law>
+void put_down(Work<L, Law>& w, Index b) {
+    using V = typename L::V;
+    const V length = L::every(w.length);
+    V power = V::splat(1.0);
+    for (Index i = 0; i <= w.order; ++i) {
+        w.terms[i] = power * w.deflection.at(i, b);
+        power = power * length;
+    }
 }
 
 // Extremes of the deflections, or of those of meshes with two flanks.
@@ -148,9 +160,9 @@ void add_extremes(Work<L, Law>& w, Tally<L>& tally) {
     const Index pairs = w.shape->pairs;
     for (Index b = 0; pairs == 0 && b < w.deflection.width; ++b) {
         put_down(w, b);
-        w.scaled[0] = w.scaled[0] + w.edge.at(0, b);
+        w.terms[0] = w.terms[0] + w.edge.at(0, b);
         V minimum = tally.minimum.at(0, b), maximum = tally.maximum.at(0, b);
-        widen(w.scaled, w.order, minimum, maximum);
+        widen(w.terms, w.order, minimum, maximum);
         tally.minimum.put(0, b, minimum);
         tally.maximum.put(0, b, maximum);
     }

@@ -108,7 +108,7 @@ void move_tangent(Work<L, Law>& w, Index order, Table<L> table, Index column) {
         for (Index b = 0; b < w.turn.width; ++b) w.turn.put(row, b, table.at(2 * column + row, b));
         w.products.deflect(w.turn, row, nullptr, w.turned);
     }
-    recurrence(w, order, w.turn, w.turned, true);
+    recurrence(w, 0, order - 1, w.turn, w.turned, true);
     move_ahead(w.turn, order, w.length, table, 2 * column, 2 * column + 1);
 }
 

@@ -54,26 +54,31 @@ void push_contacts(Work<L, Law>& w, Table<L> deflection, Index i, bool disturbed
     const Series<L> slope = w.law.slope();
     for (Index b = 0; b < deflection.width; ++b) {
         V total = V::splat(0.0);
-        if (b < of_law) total = disturbed ? product(slope, deflection, i, b) : w.law.force(deflection, i, b);
+        const bool touching =
+            b < of_law &&
+            (L::machines == 1 || positive_lanes(kept ? absolute(w.side.at(0, b)) : w.active.at(0, b)));
+        if (touching) total = disturbed ? product(slope, deflection, i, b) : w.law.force(deflection, i, b);
         if (kept) w.elastic.put(i, b, absolute(w.side.at(0, b)) * total);
         total = w.active.at(0, b) * total + w.acting.at(0, b) * rate * deflection.at(i + 1, b);
         w.force.put(0, b, pushed * total);
     }
 }
 
-// Fill rows 2 .. order of y and of deflection from rows 0 and 1 of both. Row 0 of the deflections is counted
-// from the edge. A disturbance of the motion is moved by the slopes of the forces along it, which must be
-// known.
+// Fill rows first + 2 to last + 1 of y and of deflection from the rows before them. Row 0 of the deflections
+// is counted from the edge. A disturbance of the motion is moved by the slopes of the forces along it, which
+// must be known.
 template <class L, class Law>
-void recurrence(Work<L, Law>& w, Index order, Table<L> y, Table<L> deflection, bool disturbed) {
+void recurrence(Work<L, Law>& w, Index first, Index last, Table<L> y, Table<L> deflection, bool disturbed) {
     const auto expand_rings = [&](Index i) {
         if (w.rings.count() == 0) return;
         disturbed ? w.rings.expand_disturbed(deflection, i) : w.rings.expand(deflection, w.active, i);
     };
-    expand_rings(0);
-    expand_rings(1);
-    w.products.find_pressing(w.active, w.acting);
-    for (Index i = 0; i < order - 1; ++i) {
+    if (first == 0) {
+        expand_rings(0);
+        expand_rings(1);
+        w.products.find_pressing(w.active, w.acting);
+    }
+    for (Index i = first; i < last; ++i) {
         const double factor = 1.0 / static_cast<double>((i + 1) * (i + 2));
         push_contacts(w, deflection, i, disturbed);
         w.rings.push(w.active, i, -factor, w.force);

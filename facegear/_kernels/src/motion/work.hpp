@@ -36,7 +36,7 @@ struct Work {
           friction(*shape, rows),
           roots(steps_order),
           polynomial(rows),
-          scaled(rows),
+          powers(rows),
           terms(rows),
           finder(rows) {
         law.make_room(expansion.terms());
@@ -51,9 +51,7 @@ struct Work {
         error_of_kinds = room.table<L>(2 * shape->error.terms, shape->error.kinds);
         error_terms = room.table<L>(rows, std::max(m, shape->error.kinds));
         load_series = room.table<L>(2 * shape->load.terms, n);
-        ways = room.table<L>((order + 1) * ways_per_contact * m, 1);
-        way_changes = room.table<L>(ways_per_contact * m, 1);
-        way_ignores = room.table<L>(ways_per_contact * m, 1);
+        ways = room.table<L>(rows, 1);
         for (Index b = 0; b < lower.width; ++b) {
             lower.put(0, b, V::splat(-infinity)); // lanes behind the last contact stay open
             upper.put(0, b, V::splat(infinity));
@@ -105,9 +103,6 @@ struct Work {
         error = {{error_terms.data, shared ? kinds : width}, shared ? shape->error_kind.data() : nullptr};
     }
 
-    // A contact may pass an edge, or either end of a piece of its law, or lose its force.
-    static constexpr Index ways_per_contact = 3;
-
     std::shared_ptr<const System> shape;
     Index order, rows, n, m;
     Room room;
@@ -143,13 +138,15 @@ struct Work {
     // zero now.
     Table<L> state, side, level, active, acting, edge, extent, parting;
     Table<L> known_state, known_begin, known_end; // pieces that were found last, and where they begin and end
-    bool all_forces = true; // whether the forces are needed up to the order of the steps
+    Index last_force = 0; // up to which coefficient the forces are needed: the recurrence finds order - 2
 
-    Table<L> ways, way_changes, way_ignores; // polynomials that may have a zero in the step
-    Index way_counts[L::machines] = {};
+    Table<L> ways; // polynomials that may have a zero in the step of their machine, one in each lane
+    int way_count = 0, way_machine[L::lanes] = {};
+    bool way_ignores[L::lanes] = {};  // a zero at once, which was decided by the rates already
+    double first_switch[L::machines]; // fraction of the step
     RootFinder roots;
     std::vector<double> polynomial;
-    std::vector<V> scaled, terms;
+    std::vector<V> powers, terms; // powers of the length of the step
     std::vector<S> finder;
 
     Table<L> turn, turned, was_acting; // a disturbance, its deflections, damping of the last step

@@ -7,7 +7,7 @@
 //     enter(law, factor, machine)                     take the numbers of a machine, forces times the factor
 //     expand_phase(expansion, piece, ahead, rows)     coefficients of what depends on the phase alone
 //     expand_pieces(expansion, state, rows)           and of what depends on the pieces that contacts are in
-//     force(deflection, i, block)                     coefficient i of the forces, those before it known
+//     force(deflection, i, block)                     coefficient i of the forces, asked for after i - 1
 //     expand_slopes(deflection, order), slope()       the series of dF/dd along the motion
 //     look_ahead(order, step), force_ahead(...)       forces at a step ahead
 //     piece_of, begin_of, end_of                      pieces, from 1, between levels of the amount

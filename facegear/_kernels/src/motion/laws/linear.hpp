@@ -45,8 +45,9 @@ class LinearLaw::Motion {
         // Where lanes are machines, contacts of a kind share its series.
         : shared_(L::lanes == L::machines && law.pieces.empty()),
           series_(room_.table<L>(2 * law.terms(), shared_ ? law.fourier.kinds : law.contacts())),
-          slope_{room_.table<L>(rows, shared_ ? law.fourier.kinds : law.contacts()),
+          slope_{room_.table<L>(rows + 1, shared_ ? law.fourier.kinds : law.contacts()),
                  shared_ ? law.kind.data() : nullptr},
+          next_(room_.table<L>(1, law.contacts())),
           ahead_(room_.table<L>(1, law.contacts())),
           polynomial_(law.degrees) {}
 
@@ -72,8 +73,22 @@ class LinearLaw::Motion {
     // What depends on the pieces that contacts are in, too: nothing.
     void expand_pieces(Expansion<L>&, Table<L>, Index) {}
 
-    // F = k d: coefficient i of the force of a block of contacts.
-    V force(Table<L> deflection, Index i, Index block) { return product(slope_, deflection, i, block); }
+    // F = k d: coefficient i of the force of a block of contacts. Two coefficients share a pass over the
+    // series: an even one leaves the next one, but for the deflection's coefficient that is not known yet.
+    V force(Table<L> deflection, Index i, Index block) {
+        const double* k = slope_.begin(block);
+        V slope = V::load(k), force = V::splat(0.0), next = force;
+        if (i % 2 == 1) return slope * deflection.at(i, block) + next_.at(0, block);
+        for (Index j = 0; j <= i; ++j) {
+            const V own = deflection.at(i - j, block);
+            force = slope * own + force;
+            k += slope_.table.stride();
+            slope = V::load(k);
+            next = slope * own + next;
+        }
+        next_.put(0, block, next);
+        return force;
+    }
 
     void expand_slopes(Table<L>, Index) {}
     Series<L> slope() const { return slope_; }
@@ -105,6 +120,7 @@ class LinearLaw::Motion {
     bool shared_;
     Table<L> series_;
     Series<L> slope_;
+    Table<L> next_; // what is known of the next coefficient of the forces
     Table<L> ahead_;
     std::vector<double> polynomial_;
     const LinearLaw* law_[L::machines] = {};
