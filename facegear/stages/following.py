@@ -23,8 +23,9 @@ def following(
     Raises NotConverged naming the position or the mesh phase.
     """
     if not machine.layout.kinematics.flanks_apart:
-        allowed = "geometric where the running machine is followed"
-        raise ConfigError("transmission.mesh_kinematics", "printed", allowed)
+        raise ConfigError(
+            "transmission.mesh_kinematics", "printed", "geometric where the running machine is followed"
+        )
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
     moving = running(machine, speed_rpm, part, FINER * positions, settings(accuracy))
