@@ -106,7 +106,7 @@ class TiltSection(Section):
 
 
 def _elastic(value: object) -> object:
-    """What `rigid` stands for."""
+    """Return None for `rigid`, any other value as it is."""
     return None if value == "rigid" else value
 
 
@@ -155,7 +155,7 @@ class GearForce(Section):
 
 
 class SinglePinion(Section):
-    """What is different in one pinion; null keeps what all pinions have."""
+    """Values of one pinion that differ from the others; null keeps what all pinions have."""
 
     mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e5, description="mass; null: that of all pinions")
     inertia_kg_m2: float | None = Field(
@@ -194,7 +194,7 @@ class SinglePinion(Section):
 
 
 class SingleGear(Section):
-    """What is different in one face gear; null keeps what both have."""
+    """Values of one face gear that differ from the other; null keeps what both have."""
 
     torque_n_m: float = Field(
         0.0,

@@ -83,7 +83,13 @@ class ShaftBearing(Section):
             refuse("matrix", self.matrix, "such that it resists every motion: no negative eigenvalue")
 
     def stiffness(self) -> Array:
-        """(5, 5), SI units."""
+        """Return the stiffness matrix of the bearing.
+
+        Returns
+        -------
+        (5, 5) array
+            Stiffness in x, y, z, tilt_x and tilt_y, N/m, N/rad and N m/rad.
+        """
         if self.matrix is not None:
             return np.array(self.matrix, float)
         across, along, tilting = (
@@ -125,19 +131,19 @@ class ShaftSection(Section):
         for key in ("segments", "bearings"):
             if not getattr(self, key):
                 refuse(key, [], "one or more")
-        require_all(self._stations, self._held)
+        require_all(self._stations, self._check_support)
         return self
 
     def _stations(self) -> None:
         length = self.length_mm
-        allowed = f"on the shaft, from 0 to {length:g} mm"
+        requirement = f"on the shaft, from 0 to {length:g} mm"
         if self.pinion_mm > length:
-            refuse("pinion_mm", self.pinion_mm, allowed)
+            refuse("pinion_mm", self.pinion_mm, requirement)
         for number, bearing in enumerate(self.bearings):
             if bearing.at_mm > length:
-                refuse(f"bearings[{number}].at_mm", bearing.at_mm, allowed)
+                refuse(f"bearings[{number}].at_mm", bearing.at_mm, requirement)
 
-    def _held(self) -> None:
+    def _check_support(self) -> None:
         stations = [bearing.at_mm for bearing in self.bearings]
         if max(self.pinion_mm, *stations) > self.length_mm:
             return
@@ -169,8 +175,8 @@ class TurningMassSection(Section):
     @model_validator(mode="after")
     def _one_spring(self) -> "TurningMassSection":
         if (self.stiffness_n_m_per_rad is None) != bool(self.segments):
-            allowed = "given, or else segments, but not both"
-            refuse("stiffness_n_m_per_rad", self.stiffness_n_m_per_rad, allowed)
+            requirement = "given, or else segments, but not both"
+            refuse("stiffness_n_m_per_rad", self.stiffness_n_m_per_rad, requirement)
         if self.name in RESERVED:
             refuse("name", self.name, f"none of {', '.join(RESERVED)}, which name motions of the gear itself")
         return self

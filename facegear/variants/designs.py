@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from facegear.config.base import parse
-from facegear.config.changes import movable, moved, placed, variable_part
+from facegear.config.changes import add_changes, movable, set_numbers, variable_part
 from facegear.config.checks import check_positions
 from facegear.config.machine_layout import wired_layout
 from facegear.config.search import ObjectiveSection, Search, jump_range
@@ -79,11 +79,13 @@ def assessor(
 
     def assess(design: Sequence[float] | None) -> tuple[Quantities, Quantities]:
         numbers = zip(section.variables, design, strict=True) if design is not None else ()
-        chosen = placed(start, {key: float(number) for variable, number in numbers for key in variable.sets})
+        chosen = set_numbers(
+            start, {key: float(number) for variable, number in numbers for key in variable.sets}
+        )
         pair = parse(ToothPair, chosen["tooth_pair"], "this design")
         check_positions(pair, parse(Transmission, chosen["transmission"], "this design"))
         nominal = ask(chosen)
-        varied = [ask_varied(moved(chosen, added)) for added in drawn]
+        varied = [ask_varied(add_changes(chosen, added)) for added in drawn]
         goals = {}
         for goal in (*section.objectives, *section.constraints):
             goals[goal.name] = _goal(goal, names, nominal, varied)

@@ -14,7 +14,7 @@ from facegear.config.dynamics import Accuracy, settings
 from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lubrication import LubricationSection, limits_of
-from facegear.config.lumped_model import described, machine
+from facegear.config.lumped_model import lumped_parts, machine
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.mesh_law import tables_of
 from facegear.config.transmission import Transmission
@@ -217,7 +217,7 @@ def judge(
     def assembled(values: Values) -> tuple[PairExcitation, Machine]:
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
-        made = described(section, mesh.numbers, mesh.unloaded)
+        made = lumped_parts(section, mesh.numbers, mesh.unloaded)
         require_buildable(section, mesh.numbers, made)
         require_room(section, mesh.numbers, made)
         tables = None if mesh.tables is None else mesh.tables(made[0])

@@ -13,7 +13,7 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.config.base import parse
-from facegear.config.changes import movable, moved, variable_part
+from facegear.config.changes import add_changes, movable, variable_part
 from facegear.config.lubrication import LubricationSection
 from facegear.config.machine_layout import wired_layout
 from facegear.config.tolerances import Tolerances, population
@@ -123,7 +123,7 @@ class SampledMachine(VariedMachine):
 
     def sample(self, values: Sequence[float]) -> dict[str, Any]:
         """The variable part of the config of a sample with these values of its causes."""
-        return moved(self.start, changes(self.causes, values))
+        return add_changes(self.start, changes(self.causes, values))
 
     @cached_property
     def whole_judge(self) -> Judge:

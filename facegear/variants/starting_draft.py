@@ -14,7 +14,7 @@ import numpy as np
 from facegear.config.load import config_of
 from facegear.config.machines import MachineInputs
 from facegear.config.mesh import Mesh, mesh_sizes
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.config.yaml_file import read_yaml
 from facegear.contact.resolution import COARSEST, half_width
 from facegear.errors import FacegearError
@@ -157,7 +157,7 @@ class Draft:
             values = read_yaml(path)
         # Conjugate flanks have no e(t) without load, and no contact analysis is made for an estimate.
         values["transmission"]["transmission_error"] = {"amplitude_um": 0}
-        return resolved(config_of(values))
+        return resolved_values(config_of(values))
 
     def _spring_values(self, radial: float) -> dict[str, float]:
         axial = self.wishes.axial_bearing_n_per_m

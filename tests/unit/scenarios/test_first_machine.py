@@ -10,7 +10,7 @@ import pytest
 
 import facegear
 from facegear.config.load import config_of
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.config.tooth_pair import pair
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigError, FacegearError
@@ -105,7 +105,7 @@ def test_chosen_teeth_mesh_freely_at_more_positions_and_can_be_rated(known, tmp_
 
 @pytest.mark.parametrize("known", MACHINES, ids=lambda known: known.case)
 def test_what_a_user_knows_is_enough_for_a_config_without_mistakes(known, tmp_path):
-    values = resolved(config_of(values_of(first_machine(known).text, tmp_path)))
+    values = resolved_values(config_of(values_of(first_machine(known).text, tmp_path)))
     assert values["tooth_pair"]["face_gear_teeth"] == known.face_gear_teeth
     machine = values["transmission"]
     assert machine["torque"]["per_input_n_m"] == known.torque_n_m

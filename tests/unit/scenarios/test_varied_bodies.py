@@ -12,7 +12,7 @@ from facegear.config.base import parse
 from facegear.config.load import load_config
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import MachineInputs
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
@@ -39,7 +39,7 @@ def stiff(times: float) -> ReducedBody:
 @pytest.fixture(scope="module")
 def values():
     """Plain values without runouts: one mesh cycle is all of the hunting cycle."""
-    plain = resolved(FLEXIBLE)
+    plain = resolved_values(FLEXIBLE)
     for part in ("pinion", "face_gear"):
         plain["transmission"][part]["runout"] = None
     for single in plain["transmission"]["single_pinions"].values():
