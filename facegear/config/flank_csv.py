@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from facegear.config.csv_file import CsvFault, CsvTable, read_table
+from facegear.config.csv_file import CsvFault, read_table
 
 NUMBERS = ("face_mm", "profile_mm", "deviation_um")
 TEXTS = ("body", "tooth", "flank")
@@ -125,6 +125,3 @@ def _grid(tooth: int | None, flank: str, points: Mapping[tuple[float, float], _P
         "deviation_um": [[point.deviation for point in row] for row in rows],
         "nominal": nominal,
     }
-
-
-__all__ = ["CsvFault", "CsvTable", "read_flanks"]

@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from facegear.arrays import Array
 from facegear.config.base import Section, refuse
-from facegear.config.flank_csv import CsvFault, read_flanks
+from facegear.config.csv_file import CsvFault
+from facegear.config.flank_csv import read_flanks
 from facegear.geometry.design import DeviationGrid, Flanks
 from facegear.geometry.deviations import deviation
 from facegear.geometry.nominal import Face, nominal_points

@@ -6,8 +6,8 @@ from facegear.arrays import Arrays
 from facegear.config.lubrication import LubricationSection, lubrication_request
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.hertz import contact_modulus
+from facegear.lubrication.contact_points import LoadedContact, contact_points, loaded_contacts, stored_lines
 from facegear.lubrication.loss import hat_slip
-from facegear.lubrication.places import LoadedContact, loaded_contacts, places, stored_lines
 from facegear.lubrication.request import Lubrication
 
 
@@ -36,7 +36,7 @@ def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tup
     design = pair_design(section)
     unloaded_error = dict(zip(ltca["position"], 1e-6 * ltca["unloaded_ste_um"], strict=True))
     lines = stored_lines(design, pressure, unloaded_error)
-    contact_places = places(design, pressure, lines, contact_modulus(materials(section)))
+    contact_places = contact_points(design, pressure, lines, contact_modulus(materials(section)))
     return loaded_contacts(contact_places, hat_slip(design, pressure))
 
 

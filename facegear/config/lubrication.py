@@ -9,7 +9,7 @@ from facegear.config.base import Section, refuse
 from facegear.config.cards import read_card
 from facegear.config.oil_card import OIL_CARDS, OilCard, oil_of
 from facegear.lubrication import friction
-from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Heated, Limits, Lubrication
+from facegear.lubrication.request import BorrowedBulk, Cooling, FlankMaterial, GivenBulk, Limits, Lubrication
 
 LARGEST_RA_UM = 4.0
 """Roughest flank that the gear tests behind the friction models had."""
@@ -196,7 +196,7 @@ def lubrication_request(section: LubricationSection, modulus: float, pitch_radiu
     """
     oil, steel = oil_of(section.oil), section.steel
     rough = section.pinion, section.face_gear
-    thermal_properties = Heated(
+    thermal_properties = FlankMaterial(
         steel.conductivity_w_per_m_k, steel.density_kg_per_m3, steel.heat_capacity_j_per_kg_k
     )
     ra = [1e-6 * surface.ra_um for surface in rough]

@@ -19,8 +19,9 @@ def flank_tables(law: Arrays, layout: Layout) -> tuple[FlankTables, ...]:
     Parameters
     ----------
     law : mapping of arrays
-        Arrays `law` of stage mesh_law: levels (m), forces (N) and slopes (N/m) of each table (tables,
-        levels), and the numbers `flank_variant` of the tables of each gear (gears, 2).
+        Arrays `law` of stage mesh_law: `level_m`, `force_n` and `slope_n_per_m`, with the tables of
+        `ForceTable` along the first axis, and the numbers `flank_variant` (gears, 2) of the tables for
+        the drive and back flank of each gear.
     layout : Layout
         Layout of the machine.
 

@@ -1,4 +1,4 @@
-"""Friction, heat and film of machines among many: by the few places of the contact that decide them."""
+"""Friction, heat and film of machines among many, by the few points of the contact that decide them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from facegear.config.lubrication import LubricationSection
 from facegear.config.tooth_pair import ToothPair
 from facegear.load_sharing import quantity_names as names
 from facegear.load_sharing.quantities import FlankLoads
+from facegear.lubrication.contact_points import LoadedContact
 from facegear.lubrication.machine_loss import LoadedPair, MachineLoss, MeshLoads, Pair, machine_loss
-from facegear.lubrication.places import LoadedContact
-from facegear.lubrication.reduction import Condition, FewPlaces, ReducedPair, reduced
+from facegear.lubrication.reduction import Condition, FewPlaces, ReducedPair, reduce_contacts
 from facegear.lubrication.request import GivenBulk, Limits, Lubrication
 from facegear.lubrication.scuffing import temperature_safety
 from facegear.transmission.machine import Machine
@@ -29,67 +29,118 @@ State = tuple[LubricationSection, float]
 
 
 @dataclass(frozen=True, eq=False)
-class RubbedTeeth:
-    """The contact of a tooth pair at all its places, and at few."""
+class LubricatedTeeth:
+    """Contact of a tooth pair at all its points, and at few."""
 
     section: ToothPair
     contacts: tuple[LoadedContact, ...]
     few: FewPlaces
 
     def pair(self, lubrication: LubricationSection, every_place: bool) -> Pair:
-        """The pair with a lubrication."""
-        known = lubrication_of(lubrication, self.section)
-        return LoadedPair(self.contacts, known) if every_place else ReducedPair(self.few, known)
+        """Return the pair with a lubrication.
+
+        Parameters
+        ----------
+        lubrication : LubricationSection
+            Section `lubrication` of the config.
+        every_place : bool
+            Whether all points of the contact are taken, not the few that stand for them.
+
+        Returns
+        -------
+        Pair
+            The pair.
+        """
+        request = lubrication_of(lubrication, self.section)
+        return LoadedPair(self.contacts, request) if every_place else ReducedPair(self.few, request)
 
 
-Rub = Callable[[pd.DataFrame, Arrays, ToothPair], RubbedTeeth]
+ReduceTeeth = Callable[[pd.DataFrame, Arrays, ToothPair], LubricatedTeeth]
 """The teeth of a pair, given the table and the arrays of its contact."""
 
 
-def rubbing(states: Sequence[State]) -> Rub:
-    """Teeth by few places that are right over the range of some states."""
+def reduction_over(states: Sequence[State]) -> ReduceTeeth:
+    """Return a function that reduces contacts to few points, right over the range of some states.
 
-    def rubbed(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> RubbedTeeth:
+    Parameters
+    ----------
+    states : Sequence[State]
+        Lubrication and pinion speed (rpm) of each state.
+
+    Returns
+    -------
+    ReduceTeeth
+        Function from table and arrays of a contact and section tooth_pair to the lubricated teeth.
+    """
+
+    def reduce_contact(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> LubricatedTeeth:
         contacts = contacts_of(ltca, pressure, section)
         conditions = [
             _condition(lubrication_of(lubrication, section), speed_rpm, (GOLDEN * number) % 1.0)
             for number, (lubrication, speed_rpm) in enumerate(states)
         ]
-        return RubbedTeeth(section, contacts, reduced(contacts, conditions))
+        return LubricatedTeeth(section, contacts, reduce_contacts(contacts, conditions))
 
-    return rubbed
+    return reduce_contact
 
 
-def _condition(known: Lubrication, speed_rpm: float, part: float) -> Condition:
-    """A bulk temperature that is `part` of the way from the oil as supplied to its flash point, or the given
-    one."""
-    oil = known.oil_temperature
-    warm = oil + part * (known.oil.flash_point - oil)
-    given = known.bulk.temperature if isinstance(known.bulk, GivenBulk) else warm
-    return Condition(speed_rpm * pi / 30, known, given)
+def _condition(lubrication: Lubrication, speed_rpm: float, part: float) -> Condition:
+    """Return a state with the given bulk temperature, or `part` of the way from supplied oil to its flash
+    point.
+    """
+    oil = lubrication.oil_temperature
+    warm = oil + part * (lubrication.oil.flash_point - oil)
+    bulk_temperature = lubrication.bulk.temperature if isinstance(lubrication.bulk, GivenBulk) else warm
+    return Condition(speed_rpm * pi / 30, lubrication, bulk_temperature)
 
 
 def friction_quantities(
     machine: Machine, speed_rpm: float, loads: FlankLoads, pair: Pair, limits: Limits
 ) -> dict[str, float]:
-    """Columns FRICTION of a machine: loss of the mean loads of its flanks, heat and film of their largest.
+    """Compute the friction quantities of a machine: loss by the mean loads of its flanks, heat and film by
+    their largest.
 
-    Raises TooHot and NotConverged as `facegear.lubrication.machine_loss` does.
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Pinion speed, rpm.
+    loads : FlankLoads
+        Mean and largest force of each flank, N.
+    pair : Pair
+        Lubricated tooth pair.
+    limits : Limits
+        Limits of temperature and film.
+
+    Returns
+    -------
+    dict[str, float]
+        Columns FRICTION: W, %, C, K, um, and dimensionless ratios.
+
+    Raises
+    ------
+    TooHot
+        If a body passes the oil's flash point.
+    NotConverged
+        If bulk temperatures do not settle.
     """
     meshes = mesh_loads(machine, loads)
     losses = machine_loss(pair, meshes, speed_rpm * pi / 30)
     power_in = rated(machine, speed_rpm).power_in
     hottest, film_ratio = float(losses.contact_temperature.max()), float(losses.film_ratio.min())
-    allowed = limits.allowed_contact(pair.known.oil, pair.known.oil_temperature)
+    allowed_temperature = limits.allowed_contact(pair.lubrication.oil, pair.lubrication.oil_temperature)
     return {
         names.LOSS: losses.total,
         names.LOSS_PERCENT: 100 * losses.total / power_in if power_in > 0.0 else np.nan,
         names.BULK: float(losses.bulk.max()),
         names.FLASH: float(losses.flash.max()),
         names.CONTACT_TEMPERATURE: hottest,
-        names.SCUFFING: float(temperature_safety(allowed, pair.known.oil_temperature, hottest)),
-        names.SCUFFING_MARGIN: allowed - hottest,
-        names.FILM: 1e6 * film_ratio * pair.known.composite_rq,
+        names.SCUFFING: float(
+            temperature_safety(allowed_temperature, pair.lubrication.oil_temperature, hottest)
+        ),
+        names.SCUFFING_MARGIN: allowed_temperature - hottest,
+        names.FILM: 1e6 * film_ratio * pair.lubrication.composite_rq,
         names.FILM_RATIO: film_ratio,
         names.MICROPITTING: float(losses.micropitting.min()),
         names.UNSOLVED: _unsolved(losses),
@@ -97,7 +148,20 @@ def friction_quantities(
 
 
 def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
-    """The flanks that carry anything, with the torques on their pinions."""
+    """Return the flanks that carry a load, with the torques on their pinions.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    loads : FlankLoads
+        Mean and largest force of each flank, N.
+
+    Returns
+    -------
+    MeshLoads
+        Loaded flanks; torques in N m.
+    """
     layout = machine.layout
     on = np.flatnonzero(loads.largest > 0.0)
     bodies = np.array(layout.meshes)[on % len(layout.meshes)]
