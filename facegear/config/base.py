@@ -71,7 +71,7 @@ def require_all(*checks: Callable[[], None]) -> None:
 
     Parameters
     ----------
-    checks : Callable[[], None]
+    *checks : Callable[[], None]
         Functions without arguments that raise for a value they refuse.
     """
     refusals: list[tuple[str, object, str]] = []
@@ -324,6 +324,7 @@ def _is_union_tag(part: int | str) -> bool:
 
 
 _TYPE_NAMES = {"float", "int", "str", "bool"}
+"""Names of types that pydantic adds to the location of a mistake."""
 
 
 def _dotted(location: list[int | str]) -> str:

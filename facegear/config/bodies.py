@@ -43,6 +43,7 @@ DIAMETRAL = (
     "clearance from side to side, as catalogues give it (radial internal clearance, ISO 5753): "
     "twice clearance_um"
 )
+"""Description of the keys of a diametral clearance."""
 
 
 def _one_sided(one_side: float | None, diametral: float | None) -> float | None:

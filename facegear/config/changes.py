@@ -10,6 +10,7 @@ SPEED = "dynamics.speed_rpm"
 MACHINE = "transmission."
 PAIR = "tooth_pair."
 LUBRICATION = "lubrication."
+"""Dotted key of the nominal speed, and beginnings of the dotted keys of three sections."""
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
 """Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 GAPS = (
@@ -29,6 +30,7 @@ START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0,
 ONE_SIDE, DIAMETRAL = "clearance_um", "clearance_diametral_um"
 """Two ways in which a config gives the clearance of pinions; the second number is twice the first."""
 PLAIN = {"error_um": 0.0, "stiffness_factor": 1.0, "clocking_deg": 0.0}
+"""Values of a single mesh or pinion without an entry of its own, of keys that no shared section has."""
 
 
 def variable_part(

@@ -38,6 +38,7 @@ MAX_POINTS = 200
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
 CONTACT_ASKED = "where machines among many differ in their teeth, or are judged by them"
+"""Reason in words why a config needs the contact analysis."""
 STRAIN, STEEL, WIDEST = 0.02, 206e9, 40.0
 """Force over module, face width and Young's modulus that no tooth stands; Pa; face width in modules."""
 STRAIN_REASON = "beyond it the tooth force is 2 % of Young's modulus times module and face width"

@@ -7,7 +7,9 @@ from facegear.config.load import read_layers
 from facegear.errors import ConfigErrors
 
 OPTIONS = ("--configfile", "--configfiles")
+"""Options of Snakemake that name config files."""
 ENDINGS = (".yaml", ".yml", ".json")
+"""Endings of the names of config files."""
 
 
 def check_configfiles(arguments: Sequence[str]) -> None:

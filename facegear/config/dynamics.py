@@ -10,6 +10,7 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.sweeps.plan import SweepPlan
 
 MAX_SPEED_RPM = 200_000
+"""Largest pinion speed that a config may give, rpm."""
 SECOND_LOOKS = 3
 """Other starts from which a class of motion that is in doubt must come out again."""
 CARRIED_STATE_OFFSET = 1e-2
@@ -60,6 +61,7 @@ SWEPT_TEXT = (
     f"extensions {SWEEP_ACCURACY.extensions}, samples_per_period {SWEEP_ACCURACY.samples_per_period}; "
     "else each key's own default"
 )
+"""Description of the keys with the default SWEEP_ACCURACY."""
 
 
 class Sweep(Section):

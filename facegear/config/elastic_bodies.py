@@ -18,6 +18,7 @@ from facegear.gear_body.patch import Patch
 from facegear.mesh.tooth_volume import tooth_fill
 
 THINNEST = "thinnest wall of the section"
+"""Name of the quantity by which `facegear.gear_body` refuses a thin wall."""
 KEYS = {
     "outer radius of the hub": "hub.outer_radius_mm",
     "bore radius of the hub": "hub.bore_radius_mm",
@@ -32,6 +33,7 @@ KEYS = {
 MASS_ROUNDING = 1e-6
 """Largest part of the mass of a section by which the mass of the config may lie below it, from rounding."""
 ON_LINE = 1e-9
+"""Distance (m) up to which a corner counts as lying on a line: rounding."""
 
 
 def body_of(section: Transmission, side: str) -> BodySection | None:

@@ -7,12 +7,17 @@ from typing import Any, NamedTuple
 from facegear.config.csv_file import CsvFault, read_table
 
 NUMBERS = ("face_mm", "profile_mm", "deviation_um")
+"""Columns of numbers of a csv of flanks."""
 TEXTS = ("body", "tooth", "flank")
+"""Columns of texts of a csv of flanks."""
 NOMINAL = ("x_mm", "y_mm", "z_mm", "nx", "ny", "nz")
 """Columns that may stand beside the others: the nominal point and its outward normal."""
 BODIES = ("pinion", "face_gear")
+"""Texts allowed in column `body`."""
 SIDES = ("right", "left")
+"""Texts allowed in column `flank`."""
 HEADER = "pitch and thickness"
+"""Name of the remark that says whether pitch and thickness are included."""
 PITCH_REMARKS = {"included": "included", "left out": "left_out"}
 """Values of the remark `pitch and thickness`, each with the value of the config's key."""
 LARGEST = 300.0

@@ -19,6 +19,7 @@ GRID_SHAPE = 11, 9
 INSET = 0.02
 """Part of face and profile left out at their ends, where no probe measures."""
 COLUMNS = ("body", "tooth", "flank", "face_mm", "profile_mm", "deviation_um", *NOMINAL)
+"""Columns of `flank_table`."""
 
 
 def flank_table(section: ToothPair) -> pd.DataFrame:

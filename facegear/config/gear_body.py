@@ -11,7 +11,9 @@ from facegear.config.material import MaterialSection
 from facegear.number_format import count_noun
 
 COLUMNS = ("r_mm", "height_mm")
+"""Columns of a csv of corners: distance from the axis and height."""
 MAX_CORNERS = 200
+"""Largest number of corners of a section."""
 Corner = Annotated[float, Field(ge=-1e5, le=1e5)]
 DAMPING_RATIO = 0.002
 """Damping ratio of a body's modes without a value: that of solid steel without joints."""

@@ -56,6 +56,7 @@ from facegear.contact.resolution import (
 from facegear.errors import ConfigError
 
 SAME_ELASTICITY = 1e-6
+"""Relative difference up to which elastic constants of tooth pair and material card count as equal."""
 
 
 class Config(Section):

@@ -19,6 +19,7 @@ Required keys are required where their section is given.
 A file's name counts from the folder of the config that holds it.
 The page is made from the models that check a config (`python -m facegear.config.reference`).
 """
+"""Beginning of the page."""
 
 
 def reference() -> str:

@@ -12,6 +12,7 @@ from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, of_jum
 RESERVED_COLUMNS = ("design", "error", "generation", "seed")
 """Columns beside those of variables, objectives and constraints."""
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
+"""Pattern of the names of variables, objectives and constraints, which are columns of tables."""
 BoundedNumber = Annotated[float, Field(ge=-1e15, le=1e15)]
 """Value of a free number or a limit, in the unit of any quantity."""
 

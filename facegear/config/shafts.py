@@ -13,11 +13,18 @@ from facegear.shafts.beam import Elasticity, Segment
 from facegear.shafts.condensed import Bearing, Shaft
 
 SOFTEST_BEARING, STIFFEST_BEARING = 1e6, 1e14
+"""Limits of a bearing's stiffness across and along the shaft, N/m."""
 SHORTEST_MM, LONGEST_MM = 0.5, 1e4
+"""Limits of the length of a segment, mm."""
 STEEL = MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3)
+"""Material of a shaft that gives none."""
 MOTIONS_KEPT = "x, y, z, tilt_x, tilt_y"
+"""Order of rows and columns of a bearing's stiffness matrix."""
 SYMMETRIC = 1e-9
+"""Relative size up to which the skew part and a negative eigenvalue of a bearing's matrix count as rounding.
+"""
 RESERVED = ("x", "y", "z", "theta", "tilt_x", "tilt_y")
+"""Names that no turning mass may have: those of motions."""
 OUTPUT = "output"
 """Key of the masses behind the face gear that gives the power out."""
 

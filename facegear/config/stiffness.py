@@ -14,6 +14,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.stiffness.request import StiffnessRequest
 
 MAX_ORDER = 512
+"""Largest order of the mesh frequency in the series of k(t)."""
 SOFTEST = 1e5
 """Mean stiffness (N/m) below which no pair of gears is: a pinion of 1 mm in plastic has ten times as much."""
 SAME_MEAN = 1e-6
@@ -41,6 +42,7 @@ class HarmonicSection(Section):
 
 
 COLUMNS = tuple(HarmonicSection.model_fields)
+"""Columns of a csv of harmonics."""
 UNREAD = (
     *("amplitude_n_per_m", "truncation_error_n_per_m", "sampling_error_n_per_m"),
     *("e_sin_um", "e_cos_um", "e_peak_to_peak_um", "e_truncation_error_um"),

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
+"""Columns of a csv of the duty cycle."""
 
 
 class DutySection(Section):

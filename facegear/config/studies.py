@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, refuse
 
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
+"""Pattern of the names of cases and studies, which are names of folders and files."""
 FigureNumber = Annotated[int, Field(ge=1, le=999)]
 
 

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from facegear.scenarios.sampling import Population
 
 MAX_SAMPLES = 2**24
+"""Largest number of samples, and of blocks of the design for Sobol indices."""
 MAX_CHUNKS = 500
+"""Largest number of chunks, each of which is a job."""
 FARTHEST_CUT, NO_CUT = 6.0, 20.0
 """Standard deviations: beyond the first 1e-9 of a normal distribution is left, beyond the second nothing."""
 MAX_MAPPED = 200_000

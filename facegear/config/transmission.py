@@ -11,6 +11,7 @@ from facegear.config.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.config.transmission_error import TransmissionError
 
 MAX_PINIONS = 60
+"""Largest number of pinions of a config."""
 
 GEAR_NAMES = ("lower face gear", "upper face gear")
 """Names of the face gears among the bodies of every table; no pinion may share one of them."""

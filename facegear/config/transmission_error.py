@@ -11,6 +11,7 @@ from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 
 FROM_CONTACT = "numbers, where mesh_stiffness.source is harmonics: no contact analysis gives e(t)"
+"""Requirement on a transmission error from contact where nothing computes the contact."""
 
 
 Lag = Annotated[float, Field(ge=0, lt=1)]

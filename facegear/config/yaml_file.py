@@ -28,6 +28,7 @@ MAX_VALUES = 50_000
 """Values of a file, what its aliases (`*name`) stand for counted as often as they are used."""
 
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+"""Text that stands for a decimal number."""
 
 
 def read_yaml(path: str | Path) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from facegear.lubrication.request import Limits, Lubrication
 from facegear.lubrication.scuffing import integral_temperature, temperature_safety
 
 RPM = pi / 30
+"""Angular speed of one revolution a minute, rad/s."""
 
 
 def by_torque_table(

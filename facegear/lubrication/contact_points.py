@@ -21,6 +21,7 @@ from facegear.lubrication.kinematics import line_kinematics
 from facegear.lubrication.loss import HatSlip
 
 INSIDE = EDGES.index("inside")
+"""Number of the planes without an edge near in array `line_where`."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,9 @@ HERTZ = 1.1115483781
 """C for heat spread as Hertz's pressure over the width; hottest 0.65223 b behind its middle."""
 
 POINTS = 120
+"""Number of Gauss points on each part of Jaeger's integral."""
 SLOWEST, FASTEST = 1e-3, 1e3
+"""Peclet numbers between which `slow_factor` is interpolated; it is constant below and 1 above."""
 
 
 def flash(

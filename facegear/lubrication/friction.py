@@ -22,7 +22,9 @@ LARGEST_SPEED = 50.0
 """Largest pitch line velocity, m/s, of the same gear tests."""
 
 LINE_LOAD, PITCH_SPEED = "line load at least 150 N/mm", "pitch line velocity at most 50 m/s"
+"""Limits of the gear tests in words."""
 SLIDING, SLIDE_TO_ROLL = "sliding above 0.1 % of the rolling velocities", "slide to roll ratio at most 1"
+"""Limits of the models of Benedict and Kelley and of Xu in words."""
 LIMIT_SOURCES = {
     ("schlenk", LINE_LOAD): "ISO/TR 14179-2, unverified: the document was not at hand",
     ("schlenk", PITCH_SPEED): "ISO/TR 14179-2, unverified: the document was not at hand",

@@ -16,6 +16,7 @@ from facegear.lubrication.oil import Oil
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication
 
 STEPS = 60
+"""Largest number of steps of the iteration of loss and bulk temperature."""
 BULK_TOLERANCE = 1e-6
 """Change (K) of the bulk temperatures at which they have settled."""
 

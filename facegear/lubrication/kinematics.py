@@ -17,6 +17,7 @@ from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.placement import AXIS, RigidMotion, pinion_angle, pinion_to_gear
 
 FILLET_SAMPLES = 4001
+"""Number of points of the fillet between which its normal is interpolated."""
 
 
 @dataclass(frozen=True, eq=False)

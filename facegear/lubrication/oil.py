@@ -13,6 +13,7 @@ from facegear.arrays import Array
 from facegear.errors import FacegearError
 
 ZERO = 273.15
+"""Temperature 0 C in K."""
 SHIFT = 0.7
 """Shift of the kinematic viscosity in ASTM D341, mm2/s."""
 

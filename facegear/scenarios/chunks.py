@@ -16,6 +16,7 @@ Evaluate = Callable[[int], Mapping[str, float]]
 """Results by column name of one sample, given its number. Raises FacegearError where it has none."""
 
 SAMPLE, ERROR = "sample", "error"
+"""Columns of the sample's number and of the text of its error."""
 SAMPLES_PER_COLLECTION = 1000
 """Number of samples after which garbage is collected.
 
@@ -90,7 +91,7 @@ def identity(*parts: object) -> str:
 
     Parameters
     ----------
-    parts : object
+    *parts : object
         Plain values.
 
     Returns

@@ -21,6 +21,7 @@ Evaluate = Callable[[tuple[float, ...]], Mapping[str, float]]
 Raises FacegearError for a design without results.
 """
 GENERATION, ERROR = "generation", "error"
+"""Columns of the generation's number and of the text of a design's error."""
 
 
 @dataclass(frozen=True)

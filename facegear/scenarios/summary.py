@@ -10,6 +10,9 @@ from facegear.scenarios.chunks import ERROR, SAMPLE
 from facegear.scenarios.statistics import Estimate, fraction_of, percentile, sobol_indices
 
 PERCENTILES, LOW_PERCENTILES = (0.5, 0.95, 0.99), (0.5, 0.05, 0.01)
+"""Levels (fractions) of the percentiles of quantities that are better small, and of those that are better
+large.
+"""
 INDEX_COLUMNS = (
     "quantity",
     "cause",
@@ -22,6 +25,7 @@ INDEX_COLUMNS = (
     "blocks",
     "blocks_failed",
 )
+"""Columns of `index_table`."""
 
 
 def quantities_of(samples: pd.DataFrame, causes: Sequence[str]) -> list[str]:

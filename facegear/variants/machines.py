@@ -198,7 +198,7 @@ class VariedMachine:
 
         Parameters
         ----------
-        parts : object
+        *parts : object
             Plain values.
 
         Returns
