@@ -33,7 +33,7 @@ from facegear.strength.passing_tension import PassingTension
 from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
-    from facegear.variants.rubbed_teeth import ReduceTeeth
+    from facegear.variants.lubricated_teeth import ReduceTeeth
 
 Tensions = Mapping[str, PassingTension]
 """By body."""

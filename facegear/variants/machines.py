@@ -44,7 +44,7 @@ from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
     from facegear.poses.surface import PoseSurface
-    from facegear.variants.rubbed_teeth import LubricatedTeeth, ReduceTeeth
+    from facegear.variants.lubricated_teeth import LubricatedTeeth, ReduceTeeth
     from facegear.variants.varied_bodies import VariedBodies
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
@@ -317,7 +317,7 @@ def judge(
         speed: float,
         loads: FlankLoads,
     ) -> dict[str, float]:
-        from facegear.variants.rubbed_teeth import friction_quantities  # only friction needs it
+        from facegear.variants.lubricated_teeth import friction_quantities  # only friction needs it
 
         section = parse(LubricationSection, lubrication, label)
         pair = teeth.pair(section, question.every_place)

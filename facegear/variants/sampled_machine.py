@@ -64,7 +64,7 @@ class SampledMachine(VariedMachine):
         """The mesh of each one's tooth pair, lubricated where friction is asked for."""
         if self.lubrication_sections is None:
             return super().meshes
-        from facegear.variants.rubbed_teeth import reduction_over  # only friction needs it
+        from facegear.variants.lubricated_teeth import reduction_over  # only friction needs it
 
         rub = reduction_over(self.lubricated_states)
         lubricated_teeth = None

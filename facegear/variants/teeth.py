@@ -12,7 +12,7 @@ from facegear.strength.pair_answers import PairAnswers
 
 if TYPE_CHECKING:
     from facegear.contact.gear_flank import GearFlank
-    from facegear.variants.rubbed_teeth import LubricatedTeeth
+    from facegear.variants.lubricated_teeth import LubricatedTeeth
 
 Values = Mapping[str, Any]
 Flanks = Mapping[str, "GearFlank"]
