@@ -113,7 +113,7 @@ def test_line_contact_pair_slides_as_its_closed_form_says():
         "along": s * (RATIO * cosine * c + k),
         "u1": rho * c,
         "u2": rho * c - s * (c - RATIO * cosine * k),
-        "entrained": rho * k - 0.5 * s * (RATIO * cosine * c + k),
+        "line_entrainment": rho * k - 0.5 * s * (RATIO * cosine * c + k),
     }
     for name, expected in exact.items():
         agrees(
