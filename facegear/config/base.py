@@ -50,7 +50,7 @@ SectionType = TypeVar("SectionType", bound=Section)
 def refuse(key: str, value: object, requirement: str) -> NoReturn:
     """Refuse a value inside a validator.
 
-    Raises an error that the loader prints as `section.key = value: must be requirement`.
+    Raises an error that the loader prints as `section.key = value: must be <requirement>`.
 
     Parameters
     ----------
