@@ -15,7 +15,7 @@ from validation.contact.iso import mesh_stiffness
 from validation.contact.twin import analyse_twin, twin_model
 
 TEETH = 13
-"""Number of teeth of both sectors: the loaded teeth next to the middle one must not feel the free cut faces."""
+"""Number of teeth of both sectors: the loaded teeth next to the middle one must not feel the cut faces."""
 POSITIONS = (0.0, 0.3, 0.6)
 LINE_LOADS = (1e5, 3e5, 6e5)
 STEEL = Material(206e9, 0.3)
@@ -66,8 +66,8 @@ def twin_study(
 ) -> pd.DataFrame:
     """Compare the average stiffness of ours and of brute force.
 
-    Facets are halved `HALVINGS` times more where the flanks touch. Errors are those of the twin in percent of
-    brute force on the finest mesh.
+    Facets are halved `HALVINGS` times more where the flanks touch. Differences are in percent of the
+    finest brute force, whose own last change is given, too.
 
     Parameters
     ----------
