@@ -19,7 +19,7 @@ def cut_out():
 
 
 def volumes(nodes, cubes):
-    """Of hexahedra (c, 8), by the six pyramids from each one's middle over its faces."""
+    """Volumes of hexahedra (c, 8), by the six pyramids from each one's middle over its faces."""
     corner = nodes[cubes]
     centre = corner.mean(axis=1)
     faces = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))

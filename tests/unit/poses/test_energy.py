@@ -76,7 +76,9 @@ def test_approach_and_reactions_are_the_derivatives_of_the_energy(surface, torqu
 @settings(max_examples=10, deadline=None)
 @given(st.floats(-2.5e-4, 2e-4), st.floats(-1e-4, 1e-4), angles)
 def test_slopes_of_the_exact_unloaded_contact_are_its_differences(surface, offset, shift, angle):
-    """Of transmission error and path; the errors of differences are those of 2 um and 2e-6 rad."""
+    """The slopes are of transmission error and path; the errors of differences are those of 2 um and 2e-6
+    rad.
+    """
     errors = np.array([offset, shift, angle])
 
     def contact(moved):
@@ -127,7 +129,7 @@ def model_of(machine, surface):
 
 
 def generalized_forces(machine, surface, displacements):
-    """Of drive flanks on all coordinates, with the force of the law where each stands; and their energy."""
+    """Return the forces of drive flanks on all coordinates, by the law of each contact, and their energy."""
     meshes, model = len(machine.layout.meshes), model_of(machine, surface)
     logs, misses = [np.full(meshes, 9.0)], []
     for _ in range(20):
@@ -273,7 +275,7 @@ PARTS = ["offset", "axial_shift", "shaft_angle_error"]
 
 @pytest.fixture(scope="module")
 def tilting_surface():
-    """The same pair with two errors of the shaft angle, solved at default accuracy."""
+    """Surface of the pair with two errors of the shaft angle, solved at default accuracy."""
     with np.load(TILTING) as stored:
         return PoseSurface.of_arrays(dict(stored))
 

@@ -124,7 +124,7 @@ def test_at_its_nodes_the_surface_is_what_was_solved_there(surface, path, torque
 
 @pytest.mark.parametrize("order", [2, 3])
 def test_splines_over_nodes_left_out_miss_a_cubic_in_nothing(surface, order):
-    """What is left out is known exactly where the quantity is a polynomial in both coordinates."""
+    """Nodes that are left out are known exactly where the quantity is a polynomial in both coordinates."""
     logs = np.log(surface.nodes.torques / 100.0)
     along = (surface.nodes.paths[:, None] - 0.268) / 0.01
     values = {STIFFNESS: np.exp(20.0 + along**order - 0.1 * logs)[None]}
