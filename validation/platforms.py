@@ -21,8 +21,8 @@ import pandas as pd
 
 from validation.references import ROOT, declarations
 
-MEASURED = ROOT / "docs" / "measured" / "platforms.csv"
-STORED = ROOT / "results" / "platforms"
+DIFFERENCES = ROOT / "docs" / "measured" / "platforms.csv"
+RUN_FOLDER = ROOT / "results" / "platforms"
 """Numbers and messages of each platform, written as soon as its process has ended."""
 OUTCOMES = ROOT / "docs" / "measured" / "platform_tests.csv"
 AVX2 = {
@@ -93,7 +93,7 @@ Numbers = dict[str, list[tuple[str, list[float], list[float], list[float]]]]
 
 def run_on(name: str) -> None:
     """Run the tests on a platform; store their numbers, outcomes and how the process ended, at once."""
-    STORED.mkdir(parents=True, exist_ok=True)
+    RUN_FOLDER.mkdir(parents=True, exist_ok=True)
     path = numbers_of(name)
     for stored in (path, path.with_suffix(".end"), path.with_suffix(".xml")):
         stored.unlink(missing_ok=True)
@@ -121,7 +121,7 @@ def _pytest(name: str, ending: str, *options: str) -> int:
 
 def numbers_of(name: str) -> Path:
     """The file of a platform's numbers; logs, outcomes of tests and how it ended stand beside it."""
-    return STORED / f"{name.replace(', ', '-').replace(' ', '_')}.json"
+    return RUN_FOLDER / f"{name.replace(', ', '-').replace(' ', '_')}.json"
 
 
 def end_of(code: int) -> str:
@@ -131,24 +131,24 @@ def end_of(code: int) -> str:
     return {0: "all passed", 1: "some failed"}.get(code, f"exit code {code}")
 
 
-def differences(base: Numbers, other: Numbers) -> pd.DataFrame:
+def differences(base: Numbers, other_numbers: Numbers) -> pd.DataFrame:
     """How far each comparison moved, over its largest value and over its tolerance."""
-    capability = {test: declared.capability.split()[0] for test, declared in declarations().items()}
+    capability = {test: declaration.capability.split()[0] for test, declaration in declarations().items()}
     rows = [
         (capability[test.partition("[")[0]], *moved)
         for test in base
-        if test in other
-        for moved in _moved(base[test], other[test])
+        if test in other_numbers
+        for moved in _changed_numbers(base[test], other_numbers[test])
     ]
     return pd.DataFrame(rows, columns=["capability", "numbers", "relative", "of_tolerance"])
 
 
-def _moved(base: list, other: list) -> Iterator[tuple[int, float, float]]:
-    for (_, first, expected, allowed), (_, second, _, _) in zip(base, other, strict=True):
+def _changed_numbers(base: list, other_numbers: list) -> Iterator[tuple[int, float, float]]:
+    for (_, first, reference, tolerance), (_, second, _, _) in zip(base, other_numbers, strict=True):
         apart = np.abs(np.subtract(first, second))
-        scale = np.abs(expected).max()
+        scale = np.abs(reference).max()
         largest = np.divide(
-            apart, allowed, out=np.where(apart == 0.0, 0.0, np.nan), where=np.array(allowed) > 0.0
+            apart, tolerance, out=np.where(apart == 0.0, 0.0, np.nan), where=np.array(tolerance) > 0.0
         )
         yield len(first), apart.max() / scale if scale > 0.0 else np.nan, np.nanmax(largest)
 
@@ -265,7 +265,7 @@ def main(names: list[str]) -> int:
         if row["failed"]:
             print(f"  {row['failed_tests']}", flush=True)
         if numbers_of(next(iter(PLATFORMS))).exists():
-            table_of_platforms().to_csv(MEASURED, index=False, float_format="%.3g", lineterminator="\n")
+            table_of_platforms().to_csv(DIFFERENCES, index=False, float_format="%.3g", lineterminator="\n")
         table.to_csv(OUTCOMES, index=False, lineterminator="\n")
     ends = [numbers_of(name).with_suffix(".end").read_text(encoding="utf-8") for name in names or PLATFORMS]
     return int(bool(table_of_outcomes()["failed"].sum()) or any(end != end_of(0) for end in ends))

@@ -40,7 +40,7 @@ Path("rules.json").write_text(json.dumps({rule.name: record(rule) for rule in wo
 
 @pytest.fixture(scope="module")
 def rules(tmp_path_factory):
-    """Return Snakemake's attributes of every rule that writes files, with the profile that loads by itself."""
+    """Return Snakemake's attributes of every rule that writes files, with the profile that is the default."""
     folder = tmp_path_factory.mktemp("rules")
     sources = copy_sources(folder)
     with open(sources / "workflow" / "Snakefile", "a") as stream:

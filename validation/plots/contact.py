@@ -37,8 +37,8 @@ def speed_against_error(table: pd.DataFrame, growth: pd.DataFrame, default: str)
                 minor_formatter=NullFormatter(),
             )
             axis.set(xlabel="Whole time (s)", ylabel=f"Error against {finest} (%)", title=title)
-        for varied, rows in growth.groupby("varied", sort=False):
-            axes[2].plot(rows[varied], rows["contact_s"], "o-", label=f"{varied}")
+        for quantity, rows in growth.groupby("varied", sort=False):
+            axes[2].plot(rows[quantity], rows["contact_s"], "o-", label=f"{quantity}")
         axes[2].set(xlabel="Number", ylabel="Contact (s)", title="Growth with positions and loads")
         axes[2].set(xlim=(0, None), ylim=(0, None))
         axes[2].legend()

@@ -23,14 +23,14 @@ def growth_figure(table: pd.DataFrame, texts: Mapping[str, tuple[str, str]]) -> 
 
     texts: what the sizes of each curve are, and what is timed. The dashed line is the fitted power law.
     """
-    fitted = exponents(table).set_index("curve")
-    curves = list(fitted.index)
+    fits = exponents(table).set_index("curve")
+    curves = list(fits.index)
     rows = -(-len(curves) // COLUMNS)
     with styled():
         figure, axes = plt.subplots(rows, COLUMNS, figsize=(7.5, 2.7 * rows), squeeze=False)
         for axis, name in zip(axes.flat, curves, strict=False):
             curve, (size, timed) = table[table["curve"] == name], texts[name]
-            exponent = fitted.loc[name, "exponent"]
+            exponent = fits.loc[name, "exponent"]
             unit, factor = ("us", 1e6) if curve["seconds"].max() < BRIEF else ("s", 1.0)
             times = factor * curve["seconds"]
             middle = times.prod() ** (1 / len(curve))

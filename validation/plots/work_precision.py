@@ -21,11 +21,11 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
         for axis, problem in zip(axes.flat, problems, strict=False):
             chance = table.loc[table["problem"] == problem, "interval"].median()
             for method, curve in table[table["problem"] == problem].groupby("method", sort=False):
-                known = curve.dropna(subset="error")
+                has_error = curve.dropna(subset="error")
                 number, own = methods.index(method), method.startswith("facegear")
                 axis.loglog(
-                    known["error"].clip(lower=1e-15),
-                    known["seconds"],
+                    has_error["error"].clip(lower=1e-15),
+                    has_error["seconds"],
                     MARKERS[number % len(MARKERS)],
                     # Chance decides on the order of the errors where motion is irregular.
                     linestyle="" if chance > 0.0 else "-" if number == 0 else "--",

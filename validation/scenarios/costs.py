@@ -26,10 +26,10 @@ def costs(machine: SampledMachine, samples: int) -> pd.DataFrame:
     """
     rows, samples = [], samples if machine.pair is None else max(samples // FEWER, 1)
     for model in MODELS:
-        given = replace(machine, tolerances={**machine.tolerances, "model": model})
-        chunk_of(given, "samples", samples, samples)
+        arguments = replace(machine, tolerances={**machine.tolerances, "model": model})
+        chunk_of(arguments, "samples", samples, samples)
         start = time.process_time()
-        chunk = chunk_of(replace(given), "samples", 0, samples - 1).content["chunk"]
+        chunk = chunk_of(replace(arguments), "samples", 0, samples - 1).content["chunk"]
         seconds = (time.process_time() - start) / samples
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         minutes = seconds * WANTED / CORES / 60.0

@@ -28,8 +28,8 @@ def statistics_errors(sizes: Sequence[int]) -> pd.DataFrame:
             population = _population(seed)
             values = samples(population, 0, size) @ WEIGHTS
             for level in (95, 99):
-                closed = spread * NormalDist().inv_cdf(level / 100.0)
-                estimates[f"p{level}"].append(percentile(values, level / 100.0).value / closed - 1.0)
+                exact_value = spread * NormalDist().inv_cdf(level / 100.0)
+                estimates[f"p{level}"].append(percentile(values, level / 100.0).value / exact_value - 1.0)
             design = index_samples(population, 0, size * (WEIGHTS.size + 2)) @ WEIGHTS
             indices = sobol_indices(design, WEIGHTS.size, resamples=1)
             estimates["total_index"].append(indices.total[0].value / exact[0] - 1.0)

@@ -1,4 +1,4 @@
-"""Material taken off the face gear's flanks opens gaps like a displaced flank, and like that of the pinion."""
+"""Material taken off the face gear's flanks opens gaps like a displaced flank, and like the pinion's."""
 
 from dataclasses import replace
 
