@@ -92,7 +92,13 @@ Numbers = dict[str, list[tuple[str, list[float], list[float], list[float]]]]
 
 
 def run_on(name: str) -> None:
-    """Run the tests on a platform; store their numbers, outcomes and how the process ended, at once."""
+    """Run the tests on a platform; store their numbers, outcomes and how the process ended, at once.
+
+    Parameters
+    ----------
+    name : str
+        Name of the platform.
+    """
     RUN_FOLDER.mkdir(parents=True, exist_ok=True)
     path = numbers_of(name)
     for stored in (path, path.with_suffix(".end"), path.with_suffix(".xml")):
@@ -120,19 +126,54 @@ def _pytest(name: str, ending: str, *options: str) -> int:
 
 
 def numbers_of(name: str) -> Path:
-    """The file of a platform's numbers; logs, outcomes of tests and how it ended stand beside it."""
+    """Return the file of a platform's numbers; logs, outcomes of tests and how it ended stand beside it.
+
+    Parameters
+    ----------
+    name : str
+        Name of the platform.
+
+    Returns
+    -------
+    Path
+        Path of the file.
+    """
     return RUN_FOLDER / f"{name.replace(', ', '-').replace(' ', '_')}.json"
 
 
 def end_of(code: int) -> str:
-    """How a process of pytest ended, in words."""
+    """Say how a process of pytest ended, in words.
+
+    Parameters
+    ----------
+    code : int
+        Exit code of the process.
+
+    Returns
+    -------
+    str
+        The words.
+    """
     if code < 0:
         return f"ended by {signal.Signals(-code).name}"
     return {0: "all passed", 1: "some failed"}.get(code, f"exit code {code}")
 
 
 def differences(base: Numbers, other_numbers: Numbers) -> pd.DataFrame:
-    """How far each comparison moved, over its largest value and over its tolerance."""
+    """Measure how far each comparison moved, over its largest value and over its tolerance.
+
+    Parameters
+    ----------
+    base : Numbers
+        Numbers of the first platform by test.
+    other_numbers : Numbers
+        Numbers of another platform by test.
+
+    Returns
+    -------
+    DataFrame
+        Columns capability, numbers, relative and of_tolerance.
+    """
     capability = {test: declaration.capability.split()[0] for test, declaration in declarations().items()}
     rows = [
         (capability[test.partition("[")[0]], *moved)
@@ -154,7 +195,13 @@ def _changed_numbers(base: list, other_numbers: list) -> Iterator[tuple[int, flo
 
 
 def table_of_platforms() -> pd.DataFrame:
-    """COLUMNS, a row for each platform that has run, but the first, and each capability."""
+    """Tabulate the largest differences of each platform that has run, but the first, and each capability.
+
+    Returns
+    -------
+    DataFrame
+        Columns as COLUMNS.
+    """
     first, *others = PLATFORMS
     base = json.loads(numbers_of(first).read_text(encoding="utf-8"))
     tables = []
@@ -216,7 +263,18 @@ def table_of_outcomes() -> pd.DataFrame:
 
 
 def platforms_table(measured: pd.DataFrame) -> str:
-    """Markdown: a row a platform, with the largest differences of all its numbers."""
+    """Write the largest differences of each platform in Markdown.
+
+    Parameters
+    ----------
+    measured : DataFrame
+        Table of `table_of_platforms`.
+
+    Returns
+    -------
+    str
+        A table of Markdown, a row a platform.
+    """
     lines = [
         "| platform | tests | numbers | largest difference | in tolerances | in the references of |",
         "|---|---|---|---|---|---|",
@@ -250,6 +308,11 @@ def outcomes_table(table: pd.DataFrame) -> str:
 
 def main(names: list[str]) -> int:
     """Run on the platforms named, or on all, and write the tables after each.
+
+    Parameters
+    ----------
+    names : list[str]
+        Names of platforms, none for all.
 
     Returns
     -------

@@ -50,7 +50,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Declaration:
-    """What a test says of its reference in the decorator `against`.
+    """Declaration of a test's reference in the decorator `against`.
 
     Attributes
     ----------
@@ -73,7 +73,18 @@ class Declaration:
 
 
 def declarations(root: Path = ROOT) -> dict[str, Declaration]:
-    """All tests of the repository that compare with a reference, by name, read from their source."""
+    """Read all tests of the repository that compare with a reference from their source.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict[str, Declaration]
+        Declarations by name of the test.
+    """
     files = [file for folder in TESTS for file in sorted((root / folder).rglob("test_*.py"))]
     return {
         declaration.test: declaration
@@ -95,12 +106,31 @@ def _declared_in(file: Path, name: str) -> Iterator[Declaration]:
 
 
 def read(path: Path = REFERENCES) -> pd.DataFrame:
-    """The stored references, COLUMNS, one row for each quantity that a test compares."""
+    """Read the stored references.
+
+    Parameters
+    ----------
+    path : Path
+        Path of the table.
+
+    Returns
+    -------
+    DataFrame
+        Columns as COLUMNS, one row for each quantity that a test compares.
+    """
     return pd.read_csv(path, dtype={"commit": str}, keep_default_na=False)
 
 
 def write(rows: pd.DataFrame, path: Path = REFERENCES) -> None:
-    """Store references, ordered by test and quantity."""
+    """Store references, ordered by test and quantity.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        References, COLUMNS.
+    path : Path
+        Path of the table.
+    """
     sorted_rows = rows[list(COLUMNS)].sort_values(["test", "quantity"])
     sorted_rows.to_csv(path, index=False, lineterminator="\n")
 

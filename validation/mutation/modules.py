@@ -9,7 +9,8 @@ EXPLANATIONS = Path(__file__).with_name("survivors.csv")
 """Survivors that no test can or should notice: file, before, after, and the reason in one line."""
 TABLE = Path(__file__).parents[2] / "docs/measured/mutation.csv"
 COLUMNS = ("module", "file", "mutants", "line", "operator", "occurrence", "before", "after", "end", "reason")
-"""Of the table: one row a mutant; `mutants`: how many the module has, of which the table holds a sample."""
+"""Columns of the table: one row a mutant; `mutants`: how many the module has, of which the table holds a
+sample."""
 SURVIVED, KILLED_END, ENDLESS = "survived", "killed", "endless"
 """How a mutant ends: no test fails, one does, or the tests take far longer than usual."""
 
@@ -53,19 +54,42 @@ MODULES = {
 
 
 def reasons() -> dict[tuple[str, str, str], str]:
-    """Why survivors may survive, by file and the line before and after."""
+    """Read why survivors may survive.
+
+    Returns
+    -------
+    dict[tuple[str, str, str], str]
+        Reason by file and the line before and after.
+    """
     with EXPLANATIONS.open(newline="", encoding="utf-8") as stream:
         return {(row["file"], row["before"], row["after"]): row["reason"] for row in csv.DictReader(stream)}
 
 
 def rows() -> list[dict[str, str]]:
-    """The stored table."""
+    """Read the stored table.
+
+    Returns
+    -------
+    list[dict[str, str]]
+        Values by column, one dict a row.
+    """
     with TABLE.open(newline="", encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
 
 
 def mutation_tables(table: list[dict[str, str]]) -> str:
-    """Markdown: how the mutants of each module ended, and all survivors with their reasons."""
+    """Write how the mutants of each module ended, and all survivors with their reasons.
+
+    Parameters
+    ----------
+    table : list[dict[str, str]]
+        Rows of the table.
+
+    Returns
+    -------
+    str
+        Two tables of Markdown.
+    """
     ends = (KILLED_END, ENDLESS, SURVIVED)
     lines = ["| module | mutants | tried | " + " | ".join(ends) + " |", "|---" * (3 + len(ends)) + "|"]
     for name in MODULES:

@@ -26,7 +26,20 @@ WITHOUT_MUTANT = 600.0
 
 
 def attempt(tests: list[str], limit: float) -> tuple[str, float]:
-    """How the tests end in a forked process, and after how much processor time (s)."""
+    """Run the tests in a forked process.
+
+    Parameters
+    ----------
+    tests : list[str]
+        Options and names of the tests for pytest.
+    limit : float
+        Largest processor time, s.
+
+    Returns
+    -------
+    str, float
+        How the tests end, and their processor time, s.
+    """
     child = get_context("fork").Process(target=_run, args=(tests, limit))
     child.start()
     _, status, usage = os.wait4(child.pid or 0, 0)

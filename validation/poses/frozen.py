@@ -27,9 +27,23 @@ FARTHER = 1.3
 def frozen_reactions(
     model: ContactModel, torque: float, positions: int, options: ContactOptions
 ) -> tuple[Array, Array]:
-    """Means over a pitch of gap_p . f and of f . C_p f / 2, (3,) each, by offset, axial shift, shaft angle.
+    """Return the means over a pitch of gap_p . f and of f . C_p f / 2, by offset, axial shift, shaft angle.
 
-    N and N m, of a pair under a torque (N m) on its pinion.
+    Parameters
+    ----------
+    model : ContactModel
+        Contact of the pair.
+    torque : float
+        Torque on the pinion, N m.
+    positions : int
+        Number of positions in a pitch.
+    options : ContactOptions
+        Options of contact.
+
+    Returns
+    -------
+    (3,) array, (3,) array
+        Both means, N, N and N m.
     """
     results = loaded_contact(model, even_positions(positions), [torque], options)
     phi1 = pinion_angle(model.design, [result.position for result in results])

@@ -29,6 +29,7 @@ HERE = Path(__file__).parent
 SURFACE, LOADED = HERE / "concentric_surface.npz", HERE / "loaded.csv"
 TILTING, TOUCHING, FROZEN = HERE / "tilting_surface.npz", HERE / "touching.csv", HERE / "frozen.csv"
 TORQUE = 550.0
+"""Torque on the pinion, N m."""
 TORQUES = (80.0, 420.0, TORQUE, 930.0)
 ASSEMBLIES = {
     "nominal": AssemblyErrors(),
@@ -48,7 +49,13 @@ def main() -> None:
 
 
 def store_reactions(arrays) -> None:  # type: ignore[no-untyped-def]
-    """What the energy's derivatives are held against, from the arrays of both bodies."""
+    """Compute and store the references for the energy's derivatives.
+
+    Parameters
+    ----------
+    arrays
+        Arrays of both bodies.
+    """
     config = facegear.load("config/concentric.yaml", results=None).config
     teeth, flanks = pair(config.tooth_pair), (from_arrays(arrays[0]), from_arrays(arrays[1]))
     plan = replace(contact_plan(config.contact), torques=TORQUES, root_stress=False)
@@ -72,7 +79,13 @@ def store_reactions(arrays) -> None:  # type: ignore[no-untyped-def]
 
 
 def store_loaded(flanks) -> None:  # type: ignore[no-untyped-def]
-    """Contact in ASSEMBLIES with the flanks of both bodies."""
+    """Solve and store contact in ASSEMBLIES.
+
+    Parameters
+    ----------
+    flanks
+        Flanks of both bodies.
+    """
     config = facegear.load("config/concentric.yaml", results=None).config
     teeth, plan = pair(config.tooth_pair), replace(contact_plan(config.contact), torques=(TORQUE,))
     rows = []

@@ -1,4 +1,4 @@
-"""What a sample costs: time of a core, bytes on disk, memory of a job."""
+"""Cost of a sample: time of a core, bytes on disk, memory of a job."""
 
 import resource
 import time
@@ -18,11 +18,23 @@ FEWER = 40
 
 
 def costs(machine: SampledMachine, samples: int) -> pd.DataFrame:
-    """One row a model, from `samples` of them in this process, compiled before; a fortieth of them where each
-    has a contact analysis of its own.
+    """Measure the cost of samples, one row a model.
 
-    `minutes_extrapolated` is what WANTED samples would take on CORES idle cores, start-up of the jobs left
-    out.
+    They are computed in this process, compiled before; a fortieth of them where each has a contact analysis
+    of its own. `minutes_extrapolated` is the time of WANTED samples on CORES idle cores, start-up of the jobs
+    left out.
+
+    Parameters
+    ----------
+    machine : SampledMachine
+        The machine and its tolerances.
+    samples : int
+        Number of samples.
+
+    Returns
+    -------
+    DataFrame
+        One row for each model.
     """
     rows, samples = [], samples if machine.pair is None else max(samples // FEWER, 1)
     for model in MODELS:

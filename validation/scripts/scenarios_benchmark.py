@@ -1,4 +1,4 @@
-"""What samples cost, and the error of their statistics against their number."""
+"""Cost of samples, and the error of their statistics against their number."""
 
 from facegear.contact.gear_flank import STORED
 from facegear.io import arrays, tables
