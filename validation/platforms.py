@@ -101,8 +101,8 @@ def run_on(name: str) -> None:
     """
     RUN_FOLDER.mkdir(parents=True, exist_ok=True)
     path = numbers_of(name)
-    for stored in (path, path.with_suffix(".end"), path.with_suffix(".xml")):
-        stored.unlink(missing_ok=True)
+    for old_file in (path, path.with_suffix(".end"), path.with_suffix(".xml")):
+        old_file.unlink(missing_ok=True)
     code = _pytest(name, ".log", "-n", "0", "-m", "reference", f"--numbers={path}", *CASES)
     path.with_suffix(".end").write_text(end_of(code), encoding="utf-8")
     _pytest(name, ".tests.log", f"--junitxml={path.with_suffix('.xml')}", *TESTS)
@@ -176,10 +176,10 @@ def differences(base: Numbers, other_numbers: Numbers) -> pd.DataFrame:
     """
     capability = {test: declaration.capability.split()[0] for test, declaration in declarations().items()}
     rows = [
-        (capability[test.partition("[")[0]], *moved)
+        (capability[test.partition("[")[0]], *change)
         for test in base
         if test in other_numbers
-        for moved in _changed_numbers(base[test], other_numbers[test])
+        for change in _changed_numbers(base[test], other_numbers[test])
     ]
     return pd.DataFrame(rows, columns=["capability", "numbers", "relative", "of_tolerance"])
 
@@ -202,10 +202,10 @@ def table_of_platforms() -> pd.DataFrame:
     DataFrame
         Columns as COLUMNS.
     """
-    first, *others = PLATFORMS
+    first, *other_platforms = PLATFORMS
     base = json.loads(numbers_of(first).read_text(encoding="utf-8"))
     tables = []
-    for name in others:
+    for name in other_platforms:
         path = numbers_of(name)
         if not path.with_suffix(".end").exists():
             continue
@@ -262,12 +262,12 @@ def table_of_outcomes() -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
 
 
-def platforms_table(measured: pd.DataFrame) -> str:
+def platforms_table(table: pd.DataFrame) -> str:
     """Write the largest differences of each platform in Markdown.
 
     Parameters
     ----------
-    measured : DataFrame
+    table : DataFrame
         Table of `table_of_platforms`.
 
     Returns
@@ -279,11 +279,11 @@ def platforms_table(measured: pd.DataFrame) -> str:
         "| platform | tests | numbers | largest difference | in tolerances | in the references of |",
         "|---|---|---|---|---|---|",
     ]
-    for name, rows in measured.groupby("platform", sort=False):
+    for name, rows in table.groupby("platform", sort=False):
         part = rows["largest_of_tolerance"]
-        where = rows.loc[part.idxmax(), "capability"] if part.notna().any() else "-"
-        moved = f"{rows['largest_relative'].max():.1e} | {part.max():.1e} | {where}"
-        lines.append(f"| {name} | {rows['end'].iloc[0]} | {rows['numbers'].sum()} | {moved} |")
+        capability = rows.loc[part.idxmax(), "capability"] if part.notna().any() else "-"
+        differences_text = f"{rows['largest_relative'].max():.1e} | {part.max():.1e} | {capability}"
+        lines.append(f"| {name} | {rows['end'].iloc[0]} | {rows['numbers'].sum()} | {differences_text} |")
     return "\n".join(lines)
 
 

@@ -32,7 +32,7 @@ class Kind(StrEnum):
 
 
 INDEPENDENT = tuple(kind for kind in Kind if kind is not Kind.CONVERGENCE)
-DECLARED = ("kind", "source", "capability", "module")
+DECLARED_COLUMNS = ("kind", "source", "capability", "module")
 """Columns that a test declares in its decorator `against`."""
 METHOD_TITLES = {
     "displaced_contact": "Contact of two displaced bodies",
@@ -99,7 +99,7 @@ def _declared_in(file: Path, name: str) -> Iterator[Declaration]:
             continue
         for call in node.decorator_list:
             if isinstance(call, ast.Call) and getattr(call.func, "id", "") == "against":
-                keywords = dict(zip(DECLARED, call.args, strict=False))
+                keywords = dict(zip(DECLARED_COLUMNS, call.args, strict=False))
                 keywords |= {str(keyword.arg): keyword.value for keyword in call.keywords}
                 texts = {key: ast.literal_eval(value) for key, value in keywords.items()}
                 yield Declaration(f"{name}::{node.name}", **texts)

@@ -22,15 +22,15 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
             chance = table.loc[table["problem"] == problem, "interval"].median()
             for method, curve in table[table["problem"] == problem].groupby("method", sort=False):
                 has_error = curve.dropna(subset="error")
-                number, own = methods.index(method), method.startswith("facegear")
+                number, is_ours = methods.index(method), method.startswith("facegear")
                 axis.loglog(
                     has_error["error"].clip(lower=1e-15),
                     has_error["seconds"],
                     MARKERS[number % len(MARKERS)],
                     # Chance decides on the order of the errors where motion is irregular.
                     linestyle="" if chance > 0.0 else "-" if number == 0 else "--",
-                    color="black" if own else f"C{number}",
-                    lw=2 if own else 1,
+                    color="black" if is_ours else f"C{number}",
+                    lw=2 if is_ours else 1,
                     ms=4,
                     label=method,
                 )

@@ -13,7 +13,7 @@ from facegear.stages.tolerances_chunk import chunk_of
 from facegear.variants.sampled import SampledMachine
 
 MODELS = ("quasi_static", "dynamic")
-WANTED, CORES = 10_000, 2
+SAMPLES_EXTRAPOLATED, CORES = 10_000, 2
 FEWER = 40
 
 
@@ -44,7 +44,7 @@ def costs(machine: SampledMachine, samples: int) -> pd.DataFrame:
         chunk = chunk_of(replace(arguments), "samples", 0, samples - 1).content["chunk"]
         seconds = (time.process_time() - start) / samples
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-        minutes = seconds * WANTED / CORES / 60.0
+        minutes = seconds * SAMPLES_EXTRAPOLATED / CORES / 60.0
         rows.append((model, samples, 1e3 * seconds, minutes, _bytes(chunk) / samples, memory))
     return pd.DataFrame(
         rows,

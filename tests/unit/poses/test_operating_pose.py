@@ -24,7 +24,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.statics import mean_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
-from validation.poses.measure import ASSEMBLIES, LOADED, SURFACE, TORQUE
+from validation.poses.measure import ASSEMBLIES, LOADED_CONTACT, SURFACE, TORQUE
 
 MESHES = [
     f"{name}/{side}"
@@ -90,7 +90,7 @@ def test_forces_with_teeth_where_they_stand_are_the_published_ones(concentric, s
 @pytest.mark.parametrize("assembly", PUBLISHED)
 def test_loaded_contact_in_given_assemblies_is_the_published_one(assembly):
     """A measurement at default accuracy, stored by `python -m validation.poses.measure`."""
-    row = pd.read_csv(LOADED).set_index("assembly").loc[assembly]
+    row = pd.read_csv(LOADED_CONTACT).set_index("assembly").loc[assembly]
     for key, known, digit in zip(KEYS, PUBLISHED[assembly], DIGITS, strict=True):
         agrees(f"{key} at {TORQUE:g} N m", row[key], known, absolute=digit)
 

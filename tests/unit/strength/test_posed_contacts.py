@@ -28,7 +28,7 @@ from facegear.strength.posed_contacts import (
     stress_ratio,
 )
 from facegear.strength.root_stress import RootStress
-from validation.poses.measure import ASSEMBLIES, LOADED, SURFACE, TORQUE
+from validation.poses.measure import ASSEMBLIES, LOADED_CONTACT, SURFACE, TORQUE
 
 TORQUES = np.array([300.0, 600.0, 1000.0])
 REST = ContactPose(0.268125, 0.0)
@@ -71,7 +71,7 @@ def duty(torques, bins, meshes=(), flank="drive", gear="face_gear"):
 )
 def test_what_a_pose_changes_of_stress_is_what_contact_solved_in_both_assemblies_says(surface):
     """Between the surface's nodes; contact at default accuracy, stored by `validation.poses.measure`."""
-    rows = pd.read_csv(LOADED).set_index("assembly")
+    rows = pd.read_csv(LOADED_CONTACT).set_index("assembly")
     ends = [
         ContactPose(contact_at(surface.pair, ASSEMBLIES[name]).y, 0.0)
         for name in ("nominal", "offset -120 um")
