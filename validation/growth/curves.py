@@ -1,4 +1,4 @@
-"""What is measured against what: each curve prepares points of several sizes."""
+"""Curves of time and memory against size: each prepares points of several sizes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ from validation.contact.benchmark import Level, compliances, level
 from validation.growth.machines import PERIODS, Running, bending, resized, shipped_machine
 
 Call = Callable[[], Any]
-Prepared = tuple[float | None, Call]
+PreparedPoint = tuple[float | None, Call]
 """The size of a point, or None if the call itself returns it, and the call to be measured."""
 LEVEL, COARSER = "coarse_1x1x1", 1.5
 """Resolution of the contact, and by what its elements are larger: growth shows at any."""
@@ -40,9 +40,9 @@ class Curve:
     """
 
     size: str
-    timed: str
+    timed_task: str
     values: Sequence[Any]
-    prepare: Callable[[Any], Prepared]
+    prepare: Callable[[Any], PreparedPoint]
     bent_by: str
     times: int = 1
 
@@ -73,7 +73,7 @@ def _bodies(design: Any, base: Level, materials: Any) -> Call:
     return lambda: compliances(design, base, materials)
 
 
-def _teeth(teeth: int) -> Prepared:
+def _teeth(teeth: int) -> PreparedPoint:
     """The gear alone grows, with its radii."""
     design, base, materials = _pair()
     gear, scale = design.face_gear, teeth / design.face_gear.teeth
@@ -84,7 +84,7 @@ def _teeth(teeth: int) -> Prepared:
     return teeth, _bodies(replace(design, face_gear=new_teeth), base, materials)
 
 
-def _width(millimetres: float) -> Prepared:
+def _width(millimetres: float) -> PreparedPoint:
     """Both faces, about the gear's mean radius."""
     design, base, materials = _pair()
     gear, half = design.face_gear, 0.5e-3 * millimetres
@@ -95,20 +95,20 @@ def _width(millimetres: float) -> Prepared:
     return millimetres, _bodies(replace(design, face_gear=wider, pinion=pinion), base, materials)
 
 
-def _elements(factor: float) -> Prepared:
+def _elements(factor: float) -> PreparedPoint:
     design, base, materials = _pair()
     return 1.0 / factor**3, _bodies(design, _finer(base, factor), materials)
 
 
-def _pinions(count: int) -> Prepared:
+def _pinions(count: int) -> PreparedPoint:
     return count, Running(resized(shipped_machine("config/paper.yaml"), count, 5), SWEEP_QUANTITIES)
 
 
-def _harmonics(count: int) -> Prepared:
+def _harmonics(count: int) -> PreparedPoint:
     return count, Running(resized(shipped_machine("config/paper.yaml"), 5, count), SWEEP_QUANTITIES)
 
 
-def _solved(max_frequency: float, diameters: int) -> tuple[SolvedBody, Any, Any]:
+def _solve_gear_body(max_frequency: float, diameters: int) -> tuple[SolvedBody, Any, Any]:
     values = load_config("config/flexible.yaml").model_dump(mode="json")
     teeth = ToothPair.of_config(values["tooth_pair"])
     section = BodySection.of_config(values["transmission"]["face_gear"]["body"])
@@ -116,28 +116,28 @@ def _solved(max_frequency: float, diameters: int) -> tuple[SolvedBody, Any, Any]
     return body, section, contact_patch(section, teeth)
 
 
-def _coordinates(max_frequency: float | None) -> Prepared:
-    """Of the whole machine; None: rigid gears."""
+def _coordinates(max_frequency: float | None) -> PreparedPoint:
+    """Prepare the whole machine, with rigid gears for None."""
     body = None
     if max_frequency is not None:
-        solution, section, patch = _solved(max_frequency, 12)
+        solution, section, patch = _solve_gear_body(max_frequency, 12)
         body = reduced_body(solution, patch, *section.damping)
     running = Running(bending(body), TIGHT)
     return running.integrator.size, running
 
 
-def _body_modes(max_frequency: float) -> Prepared:
+def _body_modes(max_frequency: float) -> PreparedPoint:
     def count() -> int:
-        return sum(modes.frequencies.size for modes in _solved(max_frequency, 8)[0].orders)
+        return sum(modes.frequencies.size for modes in _solve_gear_body(max_frequency, 8)[0].orders)
 
     return None, count
 
 
-def _diameters(last: int) -> Prepared:
-    return last, lambda: _solved(MODES_TO_HZ, last)
+def _diameters(last: int) -> PreparedPoint:
+    return last, lambda: _solve_gear_body(MODES_TO_HZ, last)
 
 
-def _samples(count: int) -> Prepared:
+def _samples(count: int) -> PreparedPoint:
     import facegear
 
     tolerances = load_config("config/tolerances.yaml").model_dump(mode="json")
@@ -161,7 +161,7 @@ def _samples(count: int) -> Prepared:
     return count, lambda: chunk_of(sampled_machine, "samples", 0, count - 1)
 
 
-def _speeds(count: int) -> Prepared:
+def _speeds(count: int) -> PreparedPoint:
     model = build_model(shipped_machine("config/paper.yaml"))
     speeds = np.linspace(6000.0, 12000.0, count)
     settings = Settings(tolerance=SWEEP_QUANTITIES, extensions=0)

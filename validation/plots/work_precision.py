@@ -11,7 +11,18 @@ MARKERS = "osv^<>Dp*Xh"
 
 
 def work_precision_diagram(table: pd.DataFrame) -> Figure:
-    """Error against time in logarithms, one panel for each problem and one curve for each method."""
+    """Draw error against time in logarithms, one panel for each problem and one curve for each method.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `work_precision`.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     problems = list(dict.fromkeys(table["problem"]))
     methods = list(dict.fromkeys(table["method"]))
     columns = 2

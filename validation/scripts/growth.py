@@ -15,11 +15,11 @@ with stage(snakemake) as run:
     table = growth_table(sizes, Progress("sizes", sum(sizes.values())).step)
     exponent_table = round_numbers(exponents(table))
     exponent_table.insert(1, "size", [CURVES[name].size for name in exponent_table["curve"]])
-    exponent_table.insert(2, "timed", [CURVES[name].timed for name in exponent_table["curve"]])
+    exponent_table.insert(2, "timed", [CURVES[name].timed_task for name in exponent_table["curve"]])
     exponent_table["bent_by"] = [CURVES[name].bent_by for name in exponent_table["curve"]]
     tables.write(snakemake.output.table, table)
     tables.write(snakemake.output.exponents, exponent_table)
-    texts = {name: (curve.size, curve.timed) for name, curve in CURVES.items()}
+    texts = {name: (curve.size, curve.timed_task) for name, curve in CURVES.items()}
     save_drawn(growth_figure(table, texts), snakemake.output.svg, snakemake.output.png)
     steepest = exponent_table.loc[exponent_table["exponent"].idxmax()]
     run.summary(
