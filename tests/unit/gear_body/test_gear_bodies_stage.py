@@ -1,4 +1,4 @@
-"""What the stage writes of a machine whose face gears bend."""
+"""Tables and arrays that the stage writes for a machine whose face gears bend."""
 
 from dataclasses import replace
 from pathlib import Path
