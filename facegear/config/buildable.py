@@ -10,7 +10,7 @@ from facegear.config.machine_errors import half_backlash
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
-from facegear.transmission.assembly import Assembly, assembly, squeezed
+from facegear.transmission.assembly import Assembly, assembly, interference_depths
 from facegear.transmission.layout import Layout
 
 
@@ -70,7 +70,7 @@ def _require_assembly(section: Transmission, shape: Layout, built: Assembly) -> 
         allowed = (
             f"where the teeth fit, such as {built.below[i] * unit:.6g} and {built.above[i] * unit:.6g} "
             f"(or clocking_deg): {1e6 * built.misfit[i]:.0f} um are left between this pinion's meshes and "
-            f"their backlash takes up {1e6 * built.room[i]:.0f} um"
+            f"their backlash takes up {1e6 * built.clearance[i]:.0f} um"
         )
         raise ConfigError(f"transmission.pinions[{i}].{key}", value, allowed)
 
@@ -81,10 +81,12 @@ def _pressed(section: Transmission, made: Described) -> Iterator[tuple[str, str,
     half = half_backlash(section, shape)
     built = assembly(shape, half, flaws.clocking, flaws)
     for i in np.flatnonzero(~built.fits):
-        allowed = f"errors of this pinion and its meshes within the {1e6 * built.room[i]:.0f} um they leave"
+        allowed = (
+            f"errors of this pinion and its meshes within the {1e6 * built.clearance[i]:.0f} um they leave"
+        )
         amount = f"{1e6 * built.misfit[i]:.0f} um between its two meshes"
         yield f"transmission.single_pinions.{shape.pinions[i].name}", amount, allowed
-    squeeze = squeezed(shape, half, flaws)
+    squeeze = interference_depths(shape, half, flaws)
     for mesh in np.flatnonzero(squeeze > 0.0):
         pinion = shape.pinions[shape.meshes[mesh][0]].name
         amount = f"{1e6 * squeeze[mesh]:.1f} um too deep in {shape.mesh_names[mesh]}"

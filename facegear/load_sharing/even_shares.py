@@ -3,7 +3,7 @@
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.layout import Layout, Role, Side
 from facegear.transmission.machine import Machine
 
@@ -18,7 +18,7 @@ def even_shares(machine: Machine) -> Array:
     """
     layout = machine.layout
     own = machine.torques[: len(layout.pinions)] / layout.pinion_arm
-    size = np.abs(carried(_even_forces(layout, own, machine.torques[len(layout.pinions) :])))
+    size = np.abs(significant_forces(_even_forces(layout, own, machine.torques[len(layout.pinions) :])))
     return np.where(size > 0.0, size, np.nan)
 
 

@@ -14,7 +14,7 @@ from facegear.dynamics.steady_state.simulate import build_model
 from facegear.load_sharing.groups import LoadGroup
 from facegear.load_sharing.hunting import HuntingCycle, LoadHistory, largest
 from facegear.load_sharing.hunting_tables import mesh_table
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.machine import Machine
 
 
@@ -41,7 +41,7 @@ def running(
         machine=machine,
         positions=positions,
         cycles=following.cycles,
-        flank_forces=carried(following.flank_forces),
+        flank_forces=significant_forces(following.flank_forces),
         speed_rpm=speed_rpm,
         lead=following.lead,
         memory=following.memory,

@@ -10,7 +10,7 @@ from facegear.arrays import Array, Integers
 from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.groups import LoadGroup, load_groups
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.machine import Machine
 from facegear.transmission.statics import Equilibria, bearing_forces, equilibria
 
@@ -125,4 +125,4 @@ def at_cycles(machine: Machine, whole: Integers, positions: int) -> HuntingCycle
     """Equilibrium at `positions` of each of some mesh cycles (n,). Raises NotConverged."""
     cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
     at_rest = equilibria(machine, cycles)
-    return HuntingCycle(machine, positions, cycles, carried(at_rest.flank_forces), at_rest)
+    return HuntingCycle(machine, positions, cycles, significant_forces(at_rest.flank_forces), at_rest)

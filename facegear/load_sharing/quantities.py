@@ -48,7 +48,7 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
     """
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // cycles, 1))
     hard = hardest_cycles(run)
-    groups, shared, even, names = _counted(machine.alike, dynamic=False)
+    groups, shared, even, names = _counted(machine.without_errors, dynamic=False)
     counted, hardest = (tally(motion.flank_forces.T, POSITIONS, groups) for motion in (run, hard))
     largest_mean = np.maximum(counted.largest_mean, hardest.largest_mean)
     largest = np.maximum(counted.largest, hardest.largest)
@@ -80,7 +80,7 @@ def dynamic_quantities(
     """
     model = build_model(machine)
     motion = measured_motion(model, speed_rpm, settings, options, guide)
-    groups, shared, even, names = _counted(machine.alike, dynamic=True)
+    groups, shared, even, names = _counted(machine.without_errors, dynamic=True)
     counted = tally(motion.flank_loads, motion.per_period, groups)
     loaded = np.where(counted.largest_mean > 0.0, counted.largest_mean, np.nan)
     values = (

@@ -18,7 +18,7 @@ from facegear.load_sharing.sampling import densely_sampled
 from facegear.load_sharing.statics import mean_equilibrium_forces, static_forces
 from facegear.load_sharing.statistics import average
 from facegear.progress import Progress
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.machine import Machine
 
 SHARES = ("maximum", "lost_fraction", "undefined_fraction")
@@ -36,7 +36,7 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
     `no_error_no_backlash`: the static one without errors (e(t), constant ones of single meshes, pinions out
     of place) and without backlash. Runouts and pitch deviations are in none of them. Raises NotConverged.
     """
-    machine = replace(machine, imperfections=machine.imperfections.standing)
+    machine = replace(machine, imperfections=machine.imperfections.without_slow_errors)
     given = machine.imperfections
     quiet = replace(
         given, series={}, error=np.zeros_like(given.error), position=np.zeros_like(given.position)
@@ -63,7 +63,7 @@ def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> Array
         settings, samples=POSITIONS, dwell=SLOW_PERIODS, settle=SLOW_PERIODS, window=1, refine=False
     )
     response = simulate(build_model(machine), speed_rpm, slow)
-    forces = carried(response.forces).reshape(response.periods, response.per_period, -1)[-1:]
+    forces = significant_forces(response.forces).reshape(response.periods, response.per_period, -1)[-1:]
     return forces[:, :: forces.shape[1] // POSITIONS]
 
 

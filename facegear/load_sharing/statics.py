@@ -3,7 +3,7 @@
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.machine import Machine
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_equilibrium
@@ -16,9 +16,9 @@ def static_forces(machine: Machine, positions: int) -> Array:
     stiffness, backlash and transmission error alone. Raises NotConverged naming the position.
     """
     standing, cycles = at_rest(machine), np.arange(positions) / positions
-    return carried(np.array([[static_equilibrium(standing, float(at)).forces for at in cycles]]))
+    return significant_forces(np.array([[static_equilibrium(standing, float(at)).forces for at in cycles]]))
 
 
 def mean_equilibrium_forces(machine: Machine) -> Array:
     """Elastic mesh forces at mean stiffness without transmission error, shape (1, 1, meshes), N."""
-    return carried(static_equilibrium(at_rest(machine)).forces[None, None, :])
+    return significant_forces(static_equilibrium(at_rest(machine)).forces[None, None, :])

@@ -26,7 +26,7 @@ from facegear.poses.posed_flanks import (
     unloaded_contacts,
 )
 from facegear.poses.surface import STIFFNESS, PoseSurface
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.machine import Machine
 from facegear.transmission.static_gears import at_rest as static
@@ -102,7 +102,7 @@ def operating_pose(
         result = pose_at(machine, surface, forces, load, ideal)
         posed, before = result.machine, result.forces
         forces = mean_equilibrium(static(posed))
-        now = carried(forces.forces[0])
+        now = significant_forces(forces.forces[0])
         change = float(np.abs(now - before).max() / max(np.abs(now).max(), 1e-300))
         if change < TOLERANCE:
             last = pose_at(machine, surface, forces, load, ideal)
@@ -138,7 +138,7 @@ def pose_at(
     machine = prepared(machine, surface)
     layout, names = machine.layout, machine.layout.mesh_names
     meshes = len(names)
-    forces = carried(at_rest.forces[0])
+    forces = significant_forces(at_rest.forces[0])
     linear, moved = _whole(machine, at_rest)
     poses = _poses(machine, surface, linear, moved)
     carrying = np.arange(meshes) + meshes * (forces < 0.0)
@@ -182,7 +182,7 @@ def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
     resting, line = static(machine), machine.drive_line
     if line is None or resting.drive_line is not None:
         return resting.linear, at_rest.displacements[0]
-    moved = line.extended(machine.lumped, at_rest.displacements)[0]
+    moved = line.extend_displacements(machine.lumped_model, at_rest.displacements)[0]
     return replace(resting, drive_line=line).linear, moved
 
 

@@ -144,7 +144,7 @@ def _linear(pinion: Body, shaft: CondensedShaft) -> LinearModel:
         np.array([5e-5]),
         Damping(0.0, 0.0, 0.0),
     )
-    return DriveLine(layout, {0: Seat(shaft, DIAMETRAL)}, {})(machine.lumped)
+    return DriveLine(layout, {0: Seat(shaft, DIAMETRAL)}, {})(machine.lumped_model)
 
 
 def condensed_shaft(given: dict[str, Any]) -> CondensedShaft:

@@ -10,7 +10,7 @@ import facegear
 from facegear.config.machine_layout import ToothNumbers, layout
 from facegear.config.tooth_pair import pair_design
 from facegear.errors import FacegearError, NotConverged
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 
 CENTRE = {"inertia_kg_m2": 0.3, "stiffness_n_m_per_rad": 1e7, "centre_below_pitch_plane_mm": 1.875}
 """The gears tilt 45 mm above the pinions' axes."""
