@@ -84,8 +84,8 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
     for order in sorted({*range(last_order + 1), *sampled_orders(last_static)}):
         solve = held_solver(body, order)
         if order <= last_order:
-            expected = modes[-1].frequencies.size if modes else FIRST_TRY
-            modes.append(order_modes(body, order, max_frequency, solve, expected))
+            expected_count = modes[-1].frequencies.size if modes else FIRST_TRY
+            modes.append(order_modes(body, order, max_frequency, solve, expected_count))
         if order <= last_static:
             compliances[order] = mean_compliance(body, solve)
             slopes[order] = slope_compliance(body, solve)
@@ -117,6 +117,6 @@ def _changes(section: Section, fine: list[OrderModes]) -> tuple[Array, ...]:
         if not count:
             changes.append(np.zeros(0))
             continue
-        other = order_modes(coarse, modes.order, np.inf, expected=count - 1).frequencies
-        changes.append(np.abs(other - modes.frequencies) / modes.frequencies)
+        coarse_frequencies = order_modes(coarse, modes.order, np.inf, expected_count=count - 1).frequencies
+        changes.append(np.abs(coarse_frequencies - modes.frequencies) / modes.frequencies)
     return tuple(changes)

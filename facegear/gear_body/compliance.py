@@ -22,8 +22,8 @@ def mean_compliance(body: BodyMatrices, solve: Solve) -> Array:
 def slope_compliance(body: BodyMatrices, solve: Solve) -> Array:
     """<W>, <V>, <W / r> and the slope dW/dr by a unit moment on that slope, (1, 4), hub held."""
     slope = body.slope_on_teeth
-    moved = solve(slope)
-    return np.array([[*(mean @ moved for mean in body.on_teeth), slope @ moved]])
+    displacements = solve(slope)
+    return np.array([[*(mean @ displacements for mean in body.on_teeth), slope @ displacements]])
 
 
 def modal_compliance(modes: OrderModes) -> Array:
@@ -31,17 +31,17 @@ def modal_compliance(modes: OrderModes) -> Array:
     return np.asarray((modes.teeth / (2.0 * np.pi * modes.frequencies) ** 2) @ modes.teeth.T)
 
 
-def over_orders(computed: Sequence[int], values: Array, last: int) -> Array:
+def over_orders(computed_orders: Sequence[int], values: Array, last: int) -> Array:
     """Compliances (orders, i, j) of all orders from 0 to `last` from those (n, i, j) computed of some.
 
     They change smoothly with the order beyond the first few: cubic splines of n times the compliance.
     """
-    orders = np.array(computed)
+    orders = np.array(computed_orders)
     result = np.empty((last + 1, *values.shape[1:]))
-    wanted = np.arange(last + 1)
+    all_orders = np.arange(last + 1)
     scale = np.maximum(orders, 1)[:, None, None]
     smooth = CubicSpline(orders[1:], (scale * values)[1:])
-    result[1:] = smooth(wanted[1:]) / wanted[1:, None, None]
+    result[1:] = smooth(all_orders[1:]) / all_orders[1:, None, None]
     result[0] = values[0]
     return result
 

@@ -57,7 +57,7 @@ class Elements:
         return 3 * int(self.basis.N)
 
     @property
-    def places(self) -> Array:
+    def shape_points(self) -> Array:
         """r and height (2, shapes) of every scalar shape, at which its own value is 1."""
         return np.asarray(self.basis.doflocs)
 
@@ -122,10 +122,10 @@ def operator(rows: Rows) -> Array:
 
 def form(elements: Elements, left: Array, tensor: Array, right: Array) -> sp.csr_matrix:
     """Integral of left^T tensor right over the section; tensor (i, j, elements, points or 1)."""
-    weighed = np.einsum("ijeq,jbeq->eiqb", tensor * elements.weight, right, optimize=True)
-    count, rows, points, shapes = weighed.shape
+    weighted_terms = np.einsum("ijeq,jbeq->eiqb", tensor * elements.weight, right, optimize=True)
+    count, rows, points, shapes = weighted_terms.shape
     flat = left.transpose(2, 1, 0, 3).reshape(count, shapes, rows * points)
-    blocks = flat @ weighed.reshape(count, rows * points, shapes)
+    blocks = flat @ weighted_terms.reshape(count, rows * points, shapes)
     row = np.repeat(elements.dofs.T[:, :, None], shapes, axis=2)
     column = np.repeat(elements.dofs.T[:, None, :], shapes, axis=1)
     size = elements.size

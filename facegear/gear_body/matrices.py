@@ -127,10 +127,10 @@ def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> P
 
 
 def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array) -> Polynomial:
-    mixed = form(elements, plain, tensor, by_order)
+    cross_terms = form(elements, plain, tensor, by_order)
     parts = (
         form(elements, plain, tensor, plain),
-        mixed + mixed.T,
+        cross_terms + cross_terms.T,
         form(elements, by_order, tensor, by_order),
     )
     return Polynomial(parts)
@@ -156,14 +156,14 @@ def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Ar
 
 def _free(section: Section, elements: Elements) -> Integers:
     """Degrees of freedom of the shapes that stand on no held edge."""
-    held = np.zeros(elements.places.shape[1], bool)
-    places = elements.places.T
-    for (first, last), fixed in zip(section.edges, section.held, strict=True):
-        if fixed:
+    is_held = np.zeros(elements.shape_points.shape[1], bool)
+    points = elements.shape_points.T
+    for (first, last), is_fixed in zip(section.edges, section.is_edge_held, strict=True):
+        if is_fixed:
             way = last - first
-            fraction = np.clip((places - first) @ way / (way @ way), 0.0, 1.0)
-            held |= np.linalg.norm(places - first - fraction[:, None] * way, axis=1) < ON_EDGE
-    return np.flatnonzero(np.repeat(~held, 3))
+            fraction = np.clip((points - first) @ way / (way @ way), 0.0, 1.0)
+            is_held |= np.linalg.norm(points - first - fraction[:, None] * way, axis=1) < ON_EDGE
+    return np.flatnonzero(np.repeat(~is_held, 3))
 
 
 def _centrifugal_stresses(
@@ -178,11 +178,11 @@ def _centrifugal_stresses(
     outward = np.zeros(elements.size)
     loads = (elements.value * density * elements.r * elements.weight).sum(axis=2)
     np.add.at(outward, elements.dofs[U::3].ravel(), loads.ravel())
-    moving = free[free % 3 != V]
+    active_dofs = free[free % 3 != V]
     if free.size == elements.size:
-        moving = moving[moving != W]  # it floats: one point keeps its height
+        active_dofs = active_dofs[active_dofs != W]  # it floats: one point keeps its height
     motion = np.zeros(elements.size)
-    motion[moving] = solver(stiffness.parts[0][moving][:, moving])(outward[moving])
+    motion[active_dofs] = solver(stiffness.parts[0][active_dofs][:, active_dofs])(outward[active_dofs])
     strained = np.einsum("ibeq,be->ieq", strain, motion[elements.dofs])
     stress = np.einsum("ijeq,jeq->ieq", np.broadcast_to(elasticity, (6, 6, *strained.shape[1:])), strained)
     tensor = np.zeros((3, 3, *stress.shape[1:]))
@@ -195,7 +195,7 @@ def rigid_motions(elements: Elements, order: int) -> Array:
     """Motions (dofs, 2) of the body as a rigid whole: in order 0 along and round the axis, in order 1
     sideways and tilting about a diameter at height 0, each by 1 m or 1 rad.
     """
-    r, height = elements.places
+    r, height = elements.shape_points
     motions = np.zeros((elements.size, 2))
     if order == 0:
         motions[W::3, 0] = 1.0
@@ -217,10 +217,12 @@ def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Arr
     return means[0], means[1], means[2]
 
 
-def along_teeth(section: Section, elements: Elements, weigh: Callable[[Array, Array], Array]) -> Array:
+def along_teeth(
+    section: Section, elements: Elements, convert_weights: Callable[[Array, Array], Array]
+) -> Array:
     """Mean (shapes,) of each shape times a function of r along height 0 between the radii of the teeth.
 
-    weigh: what makes of the parts that points have in a plain mean, and of their r, those in this one.
+    convert_weights: what makes of the parts that points have in a plain mean, and of their r, those in this one.
     Along a straight edge of an element the shapes are the quadratic ones of its two ends and its middle.
     """
     mesh, dofs, (inner, outer) = elements.basis.mesh, elements.basis.dofs, section.teeth
@@ -233,6 +235,6 @@ def along_teeth(section: Section, elements: Elements, weigh: Callable[[Array, Ar
     shapes = np.stack([0.5 * at * (at - 1.0), 0.5 * at * (at + 1.0), 1.0 - at**2])
     weights = 0.5 * GAUSS[1][:, None] * np.abs(last - first) / (outer - inner)
     r = 0.5 * (first + last) + 0.5 * at * (last - first)
-    mean = np.zeros(elements.places.shape[1])
-    np.add.at(mean, numbers, (shapes * weigh(weights, r)).sum(axis=1))
+    mean = np.zeros(elements.shape_points.shape[1])
+    np.add.at(mean, numbers, (shapes * convert_weights(weights, r)).sum(axis=1))
     return mean

@@ -15,11 +15,11 @@ with extras_named():
 
 CORNER = 100.0
 """How many times smaller the elements at a reentrant corner are."""
-ROUNDED = np.radians(8.0)
+ROUNDING_ANGLE = np.radians(8.0)
 """Angle below which a reentrant corner belongs to a rounded line and needs no smaller elements."""
 REACH = 2.0
 """Distance from a reentrant corner, in elements, at which they have their whole size."""
-MERGED = 1e-9
+MERGE_DISTANCE = 1e-9
 QUADRANGLE = 3
 
 
@@ -54,21 +54,21 @@ def body_mesh(section: Section, across: int = ACROSS, finer: float = CORNER) -> 
     """
     require_meshable(section.corners, across)
     with gmsh_session("gear body"):
-        gmsh.option.setNumber("Geometry.Tolerance", MERGED)
+        gmsh.option.setNumber("Geometry.Tolerance", MERGE_DISTANCE)
         body, layer = _surfaces(section)
         _sizes(section, element_size(section, across), finer)
         gmsh.option.setNumber("Mesh.RecombineAll", 1)
         gmsh.option.setNumber("Mesh.Algorithm", 8)
         gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)
         gmsh.model.mesh.generate(2)
-        tags, places, _ = gmsh.model.mesh.getNodes()
+        tags, coordinates, _ = gmsh.model.mesh.getNodes()
         position = np.zeros(int(tags.max()) + 1, np.int64)
         position[tags] = np.arange(tags.size)
         parts = [[_quads(surface) for surface in surfaces] for surfaces in (body, layer)]
     quads = position[np.concatenate([quads for part in parts for quads in part])]
     in_layer = np.repeat([False, True], [sum(len(quads) for quads in part) for part in parts])
-    used, quads = np.unique(quads, return_inverse=True)
-    return BodyMesh(places.reshape(-1, 3)[used, :2], quads.reshape(-1, 4), in_layer)
+    used_nodes, quads = np.unique(quads, return_inverse=True)
+    return BodyMesh(coordinates.reshape(-1, 3)[used_nodes, :2], quads.reshape(-1, 4), in_layer)
 
 
 def _surfaces(section: Section) -> tuple[list[int], list[int]]:
@@ -79,9 +79,9 @@ def _surfaces(section: Section) -> tuple[list[int], list[int]]:
     inner, outer = section.teeth
     ends = [gmsh.model.occ.addPoint(r, 0.0, 0.0) for r in (inner, outer)]
     line = (1, gmsh.model.occ.addLine(*ends))
-    _, made = gmsh.model.occ.fragment(solids, [line])
+    _, fragments = gmsh.model.occ.fragment(solids, [line])
     gmsh.model.occ.synchronize()
-    surfaces = [[tag for dimension, tag in part if dimension == 2] for part in made[: len(solids)]]
+    surfaces = [[tag for dimension, tag in part if dimension == 2] for part in fragments[: len(solids)]]
     return surfaces[0], surfaces[1] if len(surfaces) > 1 else []
 
 
@@ -105,7 +105,7 @@ def _sizes(section: Section, size: float, finer: float) -> None:
     points = [
         tag
         for _, tag in gmsh.model.getEntities(0)
-        if np.linalg.norm(corners - gmsh.model.getValue(0, tag, [])[:2], axis=1).min() < MERGED
+        if np.linalg.norm(corners - gmsh.model.getValue(0, tag, [])[:2], axis=1).min() < MERGE_DISTANCE
     ]
     distance = gmsh.model.mesh.field.add("Distance")
     gmsh.model.mesh.field.setNumbers(distance, "PointsList", points)
@@ -125,7 +125,7 @@ def reentrant(corners: Array) -> Array:
     """Corners (m, 2) of an anticlockwise polygon at which its inner angle exceeds half a turn by ROUNDED."""
     before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return corners[np.arctan2(cross, np.sum(before * after, axis=1)) < -ROUNDED]
+    return corners[np.arctan2(cross, np.sum(before * after, axis=1)) < -ROUNDING_ANGLE]
 
 
 def _quads(surface: int) -> Integers:

@@ -86,9 +86,9 @@ def order_modes(
     order: int,
     max_frequency: float,
     solve: Solve | None = None,
-    expected: int = FIRST_TRY,
+    expected_count: int = FIRST_TRY,
 ) -> OrderModes:
-    """All modes of an order up to `max_frequency` (Hz), or where it is infinite the first `expected` + 1.
+    """All modes of an order up to `max_frequency` (Hz), or where it is infinite the first `expected_count` + 1.
 
     Raises NotConverged.
 
@@ -104,7 +104,7 @@ def order_modes(
         whole[free] = loads
         return solve(whole)[free]
 
-    count = expected + 1
+    count = expected_count + 1
     while True:
         squared, vectors = _smallest(stiffness, mass, inverse, min(count, free.size - 2), order)
         if (
@@ -114,10 +114,10 @@ def order_modes(
         ):
             break
         count += FIRST_TRY
-    kept = squared <= (2.0 * np.pi * max_frequency) ** 2
-    shapes = np.zeros((body.elements.size, int(kept.sum())))
-    shapes[free] = vectors[:, kept]
-    return _reduced(body, order, np.sqrt(squared[kept]) / (2.0 * np.pi), _signed(shapes))
+    is_in_range = squared <= (2.0 * np.pi * max_frequency) ** 2
+    shapes = np.zeros((body.elements.size, int(is_in_range.sum())))
+    shapes[free] = vectors[:, is_in_range]
+    return _reduce_matrices(body, order, np.sqrt(squared[is_in_range]) / (2.0 * np.pi), _fix_signs(shapes))
 
 
 def _smallest(
@@ -136,7 +136,7 @@ def _smallest(
     return squared[ascending], vectors[:, ascending]
 
 
-def _signed(shapes: Array) -> Array:
+def _fix_signs(shapes: Array) -> Array:
     """Shapes whose largest entry is positive."""
     if not shapes.size:
         return shapes
@@ -144,7 +144,7 @@ def _signed(shapes: Array) -> Array:
     return shapes * np.sign(largest)
 
 
-def _reduced(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
+def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
     factor = around(order)
     rigid = rigid_motions(body.elements, order) if order < 2 else np.zeros((body.elements.size, 2))
     return OrderModes(
@@ -182,10 +182,10 @@ def resonant_speeds(modes: OrderModes, teeth: int, harmonic: int) -> tuple[Array
     """
     w = 2.0 * np.pi * modes.frequencies
     c = modes.gyroscopic_factors if modes.order else np.zeros(w.size)
-    added = modes.stiffening_factors + c**2
-    met = []
+    stiffening = modes.stiffening_factors + c**2
+    speeds = []
     for sign in (1.0, -1.0):
         slope = harmonic * teeth - sign * ((modes.order + c) if modes.order else 0.0 * c)
-        below = slope**2 - added
-        met.append(np.where((below > 0.0) & (slope > 0.0), w / np.sqrt(np.maximum(below, 1e-300)), np.nan))
-    return met[0], met[1]
+        below = slope**2 - stiffening
+        speeds.append(np.where((below > 0.0) & (slope > 0.0), w / np.sqrt(np.maximum(below, 1e-300)), np.nan))
+    return speeds[0], speeds[1]

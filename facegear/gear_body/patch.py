@@ -40,10 +40,10 @@ class Patch:
         lever = order * self.height
         return self.factor(order) * (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, lever]]) @ teeth)
 
-    def leaning(self, order: int, given: Array) -> Array:
+    def leaning(self, order: int, responses: Array) -> Array:
         """W_p, V_p and slope (3,) by a unit moment on the slope, from <W>, <V>, <W / r> and slope (4,)."""
         factor = self.factor(order)
-        return factor * np.append(self.rows(order, given[:3]), factor * given[3])
+        return factor * np.append(self.rows(order, responses[:3]), factor * responses[3])
 
     def compliance(self, order: int, below: Array) -> Array:
         """H_n (2, 2), m/N: motions W_p and V_p by unit loads on them, from that of the means (3, 3)."""

@@ -72,7 +72,7 @@ class ReducedBody:
         """`slope` of every mode, (m,), 1/m."""
         return np.broadcast_to(self.slope, self.order.shape)
 
-    def joined(self, length: float) -> Array:
+    def compliance_with_slope(self, length: float) -> Array:
         """Static compliance of W_p, V_p and `length` (m) times the slope, (orders, 3, 3), m/N."""
         whole = np.zeros((len(self.static), 3, 3))
         whole[:, :2, :2] = self.static
@@ -83,10 +83,10 @@ class ReducedBody:
     @property
     def modal(self) -> Array:
         """The part of `static` that the modes hold, (orders, 2, 2), m/N."""
-        held = np.zeros((max(len(self.static), 1 + self.order.max(initial=0)), 2, 2))
-        given = self.mesh / (2.0 * np.pi * self.frequency)
-        np.add.at(held, self.order, np.einsum("im,jm->mij", given, given))
-        return held[: len(self.static)]
+        compliances = np.zeros((max(len(self.static), 1 + self.order.max(initial=0)), 2, 2))
+        scaled_motions = self.mesh / (2.0 * np.pi * self.frequency)
+        np.add.at(compliances, self.order, np.einsum("im,jm->mij", scaled_motions, scaled_motions))
+        return compliances[: len(self.static)]
 
     @property
     def residual(self) -> Array:
@@ -96,11 +96,11 @@ class ReducedBody:
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, AnyArray], gear: str) -> Self:
         """From what `arrays` gave for a gear."""
-        return cls(**{own.name: arrays[f"{gear}_{own.name}"] for own in fields(cls)})
+        return cls(**{entry.name: arrays[f"{gear}_{entry.name}"] for entry in fields(cls)})
 
     def arrays(self, gear: str) -> dict[str, AnyArray]:
         """All of it by names that begin with the gear's."""
-        return {f"{gear}_{own.name}": getattr(self, own.name) for own in fields(self)}
+        return {f"{gear}_{entry.name}": getattr(self, entry.name) for entry in fields(self)}
 
     def residual_of_flanks(self, directions: Array) -> Array:
         """Return the compliance (f, f) between flanks of one mesh that the modes leave out, m/N.

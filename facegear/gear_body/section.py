@@ -16,7 +16,7 @@ from facegear.geometry.design import Material
 GAUSS = np.polynomial.legendre.leggauss(4)
 OPPOSITE = 0.5
 """Cosine of the angle between the normals of two edges beyond which they bound a wall."""
-SAME = 1e-9
+COINCIDENCE = 1e-9
 """Distance (m) below which two points of a section are one."""
 
 
@@ -95,7 +95,7 @@ class Section:
     ----------
     corners : (n, 2)
         r and height, anticlockwise (r to the right, height upwards).
-    held : (n,)
+    is_edge_held : (n,)
         Whether the edge from each corner to the next is held.
     teeth
         Inner and outer radius of the teeth.
@@ -108,7 +108,7 @@ class Section:
     """
 
     corners: Array
-    held: tuple[bool, ...]
+    is_edge_held: tuple[bool, ...]
     teeth: tuple[float, float]
     material: Material
     density: float
@@ -169,7 +169,7 @@ def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
     for part, body, (low, high) in (("hub", hub, at_hub), ("rim", rim, at_rim)):
         if body.back >= body.front:
             raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * body.front:g} mm")
-        if low < body.back - SAME or high > body.front + SAME:
+        if low < body.back - COINCIDENCE or high > body.front + COINCIDENCE:
             limit = (
                 f"such that the web, {1e3 * low:.4g} to {1e3 * high:.4g} mm at the {part}, stays between the "
                 f"{part}'s faces, {1e3 * body.back:g} and {1e3 * body.front:g} mm"
@@ -179,7 +179,7 @@ def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
 
 def distinct(corners: Array) -> Array:
     """Corners without those that repeat the one before."""
-    apart = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1) > SAME
+    apart = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1) > COINCIDENCE
     return corners[apart]
 
 
@@ -189,8 +189,8 @@ def anticlockwise(corners: Array) -> Array:
 
 
 def _area(corners: Array) -> float:
-    following = np.roll(corners, -1, axis=0)
-    return float(0.5 * np.sum(corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]))
+    next_corners = np.roll(corners, -1, axis=0)
+    return float(0.5 * np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0]))
 
 
 def require_simple(corners: Array) -> None:
@@ -202,21 +202,21 @@ def require_simple(corners: Array) -> None:
     for i, j in combinations(range(count), 2):
         if (j - i) % count == 1 or (i - j) % count == 1:
             continue
-        if distance_between(ends[i], ends[j]) <= SAME:
-            allowed = f"a line that does not cross itself; edges {i + 1} and {j + 1} meet"
-            raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), allowed)
-    if abs(_area(corners)) < SAME**2 or _folds(ends):
-        allowed = "a line that does not fold back on itself"
-        raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), allowed)
+        if distance_between(ends[i], ends[j]) <= COINCIDENCE:
+            requirement = f"a line that does not cross itself; edges {i + 1} and {j + 1} meet"
+            raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), requirement)
+    if abs(_area(corners)) < COINCIDENCE**2 or _folds(ends):
+        requirement = "a line that does not fold back on itself"
+        raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), requirement)
 
 
 def _folds(ends: Array) -> bool:
     """Whether two edges after one another lie on one another."""
     ways = ends[:, 1] - ends[:, 0]
-    following = np.roll(ways, -1, axis=0)
-    cross = ways[:, 0] * following[:, 1] - ways[:, 1] * following[:, 0]
-    lengths = np.linalg.norm(ways, axis=1) * np.linalg.norm(following, axis=1)
-    return bool(((np.abs(cross) <= 1e-9 * lengths) & ((ways * following).sum(axis=1) < 0.0)).any())
+    next_edges = np.roll(ways, -1, axis=0)
+    cross = ways[:, 0] * next_edges[:, 1] - ways[:, 1] * next_edges[:, 0]
+    lengths = np.linalg.norm(ways, axis=1) * np.linalg.norm(next_edges, axis=1)
+    return bool(((np.abs(cross) <= 1e-9 * lengths) & ((ways * next_edges).sum(axis=1) < 0.0)).any())
 
 
 def distance_between(first: Array, second: Array) -> float:
@@ -264,8 +264,8 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
     """
     first, last = corners, np.roll(corners, -1, axis=0)
     double = first[:, 0] * last[:, 1] - first[:, 1] * last[:, 0]
-    places = 0.5 * (GAUSS[0] + 1.0)[:, None, None]
-    r, height = np.moveaxis(first + places * (last - first), -1, 0)
+    points = 0.5 * (GAUSS[0] + 1.0)[:, None, None]
+    r, height = np.moveaxis(first + points * (last - first), -1, 0)
 
     def integral(values: Array, degree: int) -> float:
         return float(double @ (0.5 * GAUSS[1] @ values)) / (degree + 2)
@@ -278,15 +278,15 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
 
 def section_properties(section: Section) -> tuple[float, float, float, float]:
     """Mass, moments of inertia and static moment as `mass_properties`, teeth included."""
-    own = np.array(mass_properties(section.corners, section.density))
+    properties = np.array(mass_properties(section.corners, section.density))
     if section.layer is not None:
         layer = section.layer
-        own += mass_properties(layer.corners, layer.density * section.density)
+        properties += mass_properties(layer.corners, layer.density * section.density)
         area = np.pi * (layer.outer_radius**2 - layer.inner_radius**2)
-        moved = area * layer.depth**2 * (layer.back + layer.front) / 6.0
-        own[2] -= layer.taper * layer.density * section.density * moved
-        own[3] -= layer.taper * layer.density * section.density * area * layer.depth**2 / 6.0
-    return float(own[0]), float(own[1]), float(own[2]), float(own[3])
+        volume_moment = area * layer.depth**2 * (layer.back + layer.front) / 6.0
+        properties[2] -= layer.taper * layer.density * section.density * volume_moment
+        properties[3] -= layer.taper * layer.density * section.density * area * layer.depth**2 / 6.0
+    return float(properties[0]), float(properties[1]), float(properties[2]), float(properties[3])
 
 
 def inertia_about(section: Section, height: float) -> float:

@@ -33,7 +33,7 @@ def body_table(
     """
     mass, polar, diametral, _ = section_properties(body.section)
     drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
-    missing = body.static(patch) - body.modal(patch)
+    residual = body.static(patch) - body.modal(patch)
     whole = influence(body.static(patch), 0.0, drive, drive)
     changes = np.concatenate([*body.changes, np.zeros(1)])
     waves = sum(modes.frequencies.size * (2 if modes.order else 1) for modes in body.orders)
@@ -47,21 +47,23 @@ def body_table(
             "coordinates": [waves],
             "own_compliance_m_per_n": [whole],
             "modal_fraction": [influence(body.modal(patch), 0.0, drive, drive) / whole],
-            "left_out_between_flanks_m_per_n": [abs(influence(missing, 0.0, drive, back))],
-            "left_out_between_meshes_m_per_n": [_left_out(missing, drive, back, angles)],
+            "left_out_between_flanks_m_per_n": [abs(influence(residual, 0.0, drive, back))],
+            "left_out_between_meshes_m_per_n": [_left_out(residual, drive, back, angles)],
             "frequency_change": [float(changes.max())],
         }
     )
 
 
-def _left_out(missing: Array, drive: Array, back: Array, angles: Array) -> float:
+def _left_out(residual: Array, drive: Array, back: Array, angles: Array) -> float:
     """Return the largest influence (m/N) between flanks of two meshes by compliances (orders, 2, 2).
 
     drive, back (2,): directions of a force on either flank; angles (n,) of the meshes, rad.
     """
     apart = (angles[:, None] - angles)[~np.eye(angles.size, dtype=bool)]
-    pairs = [(angle, other) for angle in apart.tolist() for other in (drive, back)]
-    return max((abs(influence(missing, angle, drive, other)) for angle, other in pairs), default=np.nan)
+    pairs = [(angle, direction) for angle in apart.tolist() for direction in (drive, back)]
+    return max(
+        (abs(influence(residual, angle, drive, direction)) for angle, direction in pairs), default=np.nan
+    )
 
 
 def mode_table(
@@ -81,7 +83,7 @@ def mode_table(
     parts = []
     for modes, changes in zip(body.orders, body.changes, strict=True):
         forward, backward = wave_frequencies(modes, speed)
-        met = [ratio * RPM * speeds for speeds in resonant_speeds(modes, teeth, 1)]
+        resonances_rpm = [ratio * RPM * speeds for speeds in resonant_speeds(modes, teeth, 1)]
         parts.append(
             pd.DataFrame(
                 {
@@ -97,8 +99,8 @@ def mode_table(
                     "speed_rpm": ratio * RPM * speed,
                     "forward_hz": forward,
                     "backward_hz": backward,
-                    "forward_met_rpm": met[0],
-                    "backward_met_rpm": met[1],
+                    "forward_met_rpm": resonances_rpm[0],
+                    "backward_met_rpm": resonances_rpm[1],
                     "frequency_change": changes,
                 }
             )
@@ -134,8 +136,8 @@ def crossing_table(
         for harmonic in HARMONICS:
             speeds = resonant_speeds(modes, teeth, harmonic)
             factors = phase_factors(modes.order, harmonic, teeth, angles)
-            for wave, met, factor in zip(waves, speeds, factors, strict=False):
-                for number, speed in enumerate(met):
+            for wave, wave_speeds, factor in zip(waves, speeds, factors, strict=False):
+                for number, speed in enumerate(wave_speeds):
                     frequency = harmonic * teeth * speed / (2.0 * np.pi)
                     rpm = ratio * RPM * speed
                     if rpm <= last_rpm:
@@ -170,20 +172,20 @@ def influence_table(
     rows = []
     for first, second in combinations_with_replacement(meshes, 2):
         angle = sign * (meshes[first] - meshes[second])
-        for own, other in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
-            value = influence(static, angle, flanks[own], flanks[other])
-            rows.append((gear, first, own, second, other, value))
+        for first_flank, second_flank in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
+            value = influence(static, angle, flanks[first_flank], flanks[second_flank])
+            rows.append((gear, first, first_flank, second, second_flank, value))
     columns = ["gear", "first", "first_flank", "second", "second_flank", "compliance_m_per_n"]
     return pd.DataFrame(rows, columns=columns)
 
 
 def shape_arrays(gear: str, body: SolvedBody) -> dict[str, Array]:
     """Nodes, quadrilaterals and displacements (U, V, W) at the nodes of the first modes, for pictures."""
-    places = body.elements.basis.dofs.nodal_dofs[0]
+    node_shapes = body.elements.basis.dofs.nodal_dofs[0]
     shapes, labels = [], []
     for modes in body.orders[:DRAWN_ORDERS]:
         for number in range(min(DRAWN_MODES, modes.frequencies.size)):
-            shapes.append(modes.shapes[:, number].reshape(-1, 3)[places])
+            shapes.append(modes.shapes[:, number].reshape(-1, 3)[node_shapes])
             labels.append((modes.order, number + 1))
     return {
         f"{gear}_nodes": body.mesh.nodes,

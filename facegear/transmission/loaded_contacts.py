@@ -31,8 +31,8 @@ class Contact(StrEnum):
     """State of a flank or of a bearing's ring under the mean torques."""
 
     OPEN = "open"
-    CLOSED = "closed"
-    UNDECIDED = "undecided"
+    IN_CONTACT = "closed"
+    UNCERTAIN = "undecided"
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,13 +90,13 @@ class LoadedContacts:
         bool
             True if a flank or a bearing is undecided.
         """
-        return Contact.UNDECIDED in [*self.flank_states(), *self.ring_states()]
+        return Contact.UNCERTAIN in [*self.flank_states(), *self.ring_states()]
 
     def _state(self, force: float) -> Contact:
         largest = self.flanks.max()
         if force <= OPEN_SHARE * largest:
             return Contact.OPEN
-        return Contact.CLOSED if force >= CLOSED_SHARE * largest else Contact.UNDECIDED
+        return Contact.IN_CONTACT if force >= CLOSED_SHARE * largest else Contact.UNCERTAIN
 
 
 def loaded_contacts(machine: Machine) -> LoadedContacts:

@@ -89,10 +89,10 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
         modes = modes_of(machine.linear, meshes, speed)
         return VibratingMachine(modes, None, np.ones(modes.frequencies.size, bool))
     contacts = loaded_contacts(machine)
-    modes = _modes(machine, contacts, (Contact.CLOSED,), speed)
+    modes = _modes(machine, contacts, (Contact.IN_CONTACT,), speed)
     if not contacts.any_undecided():
         return VibratingMachine(modes, contacts, np.ones(modes.frequencies.size, bool))
-    closed_states = (Contact.CLOSED, Contact.UNDECIDED)
+    closed_states = (Contact.IN_CONTACT, Contact.UNCERTAIN)
     other_frequencies = _modes(machine, contacts, closed_states, speed).frequencies
     return VibratingMachine(
         modes,
@@ -141,7 +141,7 @@ def _wedged_meshes(machine: Machine) -> list[int]:
     if machine.softening is None or not machine.softening[:, 0, 1].any():
         return []
     contacts = loaded_contacts(machine)
-    contact_mask = np.array([state is Contact.CLOSED for state in contacts.flank_states()])
+    contact_mask = np.array([state is Contact.IN_CONTACT for state in contacts.flank_states()])
     return coupled_meshes(machine, contact_mask).tolist()
 
 
@@ -171,7 +171,7 @@ def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
     NotConverged
         If no equilibrium is found.
     """
-    return _springs_in_states(machine, loaded_contacts(machine), (Contact.CLOSED,))
+    return _springs_in_states(machine, loaded_contacts(machine), (Contact.IN_CONTACT,))
 
 
 def _springs_in_states(

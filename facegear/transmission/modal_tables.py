@@ -93,11 +93,11 @@ def contact_table(machine: Machine, vibrating_machine: VibratingMachine, stiffne
 
 
 def _mesh_state(drive: Contact, back: Contact) -> str:
-    if Contact.UNDECIDED in (drive, back):
-        return Contact.UNDECIDED.value
-    if drive is Contact.CLOSED:
-        return "wedged" if back is Contact.CLOSED else "drive"
-    return "back" if back is Contact.CLOSED else "open"
+    if Contact.UNCERTAIN in (drive, back):
+        return Contact.UNCERTAIN.value
+    if drive is Contact.IN_CONTACT:
+        return "wedged" if back is Contact.IN_CONTACT else "drive"
+    return "back" if back is Contact.IN_CONTACT else "open"
 
 
 def shape_table(labels: Sequence[str], modes: Modes) -> pd.DataFrame:

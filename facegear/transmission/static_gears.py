@@ -137,7 +137,7 @@ def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Arr
         R of the flanks (2 meshes of the gear, p), and of the slopes (2, meshes, p): along the radius over the
         gear radius, and round the axis. R R^T of the flanks is in m/N.
     """
-    whole = body.joined(layout.gear_radius)
+    whole = body.compliance_with_slope(layout.gear_radius)
     whole[0, 1, [0, 2]] = whole[0, [0, 2], 1] = 0.0  # along the axis or round it, never both
     sizes, vectors = np.linalg.eigh(whole)
     shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]

@@ -21,12 +21,12 @@ from facegear.config.tooth_pair import ToothPair
 from facegear.errors import FacegearError
 from facegear.load_sharing.quantity_names import (
     BULK,
+    CYCLE_SELECTION_ERRORS,
     K_GAMMA,
-    MISSED,
-    OPEN,
-    REVERSED,
-    SIMPLIFIED,
-    columns_of,
+    OPEN_FRACTION,
+    REVERSED_FRACTION,
+    SIMPLIFICATION_ERRORS,
+    matching_names,
 )
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
@@ -138,8 +138,8 @@ class SampledMachine(VariedMachine):
     @property
     def checks(self) -> tuple[str, ...]:
         """Columns that say what a sample misses, of the first CHECKED samples."""
-        hunting = () if self.question.dynamic else tuple(MISSED.values())
-        return (*hunting, *(SIMPLIFIED.values() if self.friction else ()))
+        hunting = () if self.question.dynamic else tuple(CYCLE_SELECTION_ERRORS.values())
+        return (*hunting, *(SIMPLIFICATION_ERRORS.values() if self.friction else ()))
 
     def judged(self, sample: Values, check: bool, judge: Judge | None = None) -> dict[str, float]:
         """What a sample is judged by, and in the columns `checks` what it misses; nan unless `check`.
@@ -155,18 +155,20 @@ class SampledMachine(VariedMachine):
     def _simplified(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
         """What the few places of the contact miss: columns SIMPLIFIED."""
         whole = self.thorough_judge(sample)
-        off = {name: values[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFIED}
+        off = {
+            name: values[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFICATION_ERRORS
+        }
         off[BULK] = values[BULK] - whole[BULK]
-        return {column: off[name] for name, column in SIMPLIFIED.items()}
+        return {column: off[name] for name, column in SIMPLIFICATION_ERRORS.items()}
 
     def _missed(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
         """What the mesh cycles taken miss: columns MISSED."""
         whole = self.whole_judge(sample)
-        paths = columns_of(f"{K_GAMMA} ", list(whole))
-        missed = {name: whole[name] - values[name] for name in (OPEN, REVERSED)}
+        paths = matching_names(f"{K_GAMMA} ", list(whole))
+        missed = {name: whole[name] - values[name] for name in (OPEN_FRACTION, REVERSED_FRACTION)}
         ratios = (whole[name] / values[name] - 1.0 for name in paths if values[name] > 0.0)
         missed[K_GAMMA] = max(ratios, default=nan)
-        return {MISSED[name]: value for name, value in missed.items()}
+        return {CYCLE_SELECTION_ERRORS[name]: value for name, value in missed.items()}
 
     def run(
         self,

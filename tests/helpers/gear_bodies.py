@@ -70,7 +70,7 @@ def rectangular(inner: float, outer: float, thickness: float, material: Material
 
 def at(body: BodyMatrices, r: float, height: float) -> int:
     """Number of the scalar shape that stands at a place."""
-    return int(np.argmin(np.hypot(*(body.elements.places - np.array([[r], [height]])))))
+    return int(np.argmin(np.hypot(*(body.elements.shape_points - np.array([[r], [height]])))))
 
 
 def small_body(seed=0) -> ReducedBody:

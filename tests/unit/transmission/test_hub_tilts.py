@@ -44,7 +44,7 @@ def matrices():
 @cache
 def body() -> ReducedBody:
     """Thirty modes of one nodal diameter and a few of none, without damping."""
-    orders = (order_modes(matrices(), 0, 6e3), order_modes(matrices(), 1, np.inf, expected=29))
+    orders = (order_modes(matrices(), 0, 6e3), order_modes(matrices(), 1, np.inf, expected_count=29))
     solved = SimpleNamespace(
         orders=orders,
         section=gear_bodies.section(),
