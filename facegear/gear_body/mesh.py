@@ -14,13 +14,15 @@ with extras_named():
     import gmsh
 
 CORNER = 100.0
-"""How many times smaller the elements at a reentrant corner are."""
+"""Factor by which the elements at a reentrant corner are smaller."""
 ROUNDING_ANGLE = np.radians(8.0)
 """Angle below which a reentrant corner belongs to a rounded line and needs no smaller elements."""
 REACH = 2.0
 """Distance from a reentrant corner, in elements, at which they have their whole size."""
 MERGE_DISTANCE = 1e-9
+"""Distance (m) below which gmsh takes two points for one."""
 QUADRANGLE = 3
+"""Number of the quadrilateral with four nodes among gmsh's element types."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,14 +45,46 @@ class BodyMesh:
 
 
 def element_size(section: Section, across: int = ACROSS) -> float:
-    """Size (m) of the elements with `across` of them across the thinnest wall."""
+    """Return the size of the elements.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    across : int
+        Number of elements across the thinnest wall.
+
+    Returns
+    -------
+    float
+        m.
+    """
     return thinnest(section.corners) / across
 
 
 def body_mesh(section: Section, across: int = ACROSS, finer: float = CORNER) -> BodyMesh:
-    """Mesh with `across` elements across the thinnest wall, `finer` times smaller at reentrant corners.
+    """Mesh a section.
 
     A line of element edges runs along height 0 between the radii of the teeth.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    across : int
+        Number of elements across the thinnest wall.
+    finer : float
+        Factor by which elements are smaller at reentrant corners.
+
+    Returns
+    -------
+    BodyMesh
+        Nodes in m.
+
+    Raises
+    ------
+    InvalidInput
+        If the section cannot be meshed.
     """
     require_meshable(section.corners, across)
     with gmsh_session("gear body"):
@@ -72,7 +106,7 @@ def body_mesh(section: Section, across: int = ACROSS, finer: float = CORNER) -> 
 
 
 def _surfaces(section: Section) -> tuple[list[int], list[int]]:
-    """Surfaces of the body, cut along height 0 below the teeth, and of the layer of teeth."""
+    """Return the surfaces of the body, cut along height 0 below the teeth, and of the layer of teeth."""
     solids = [(2, _polygon(section.corners))]
     if section.layer is not None:
         solids.append((2, _polygon(section.layer.corners)))
@@ -95,7 +129,7 @@ def _polygon(corners: Array) -> int:
 
 
 def _sizes(section: Section, size: float, finer: float) -> None:
-    """Sizes before each element is cut into four."""
+    """Set the sizes before each element is cut into four."""
     for name in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
         gmsh.option.setNumber(f"Mesh.MeshSize{name}", 0)
     gmsh.option.setNumber("Mesh.MeshSizeMax", 2.0 * size)
@@ -122,7 +156,18 @@ def _sizes(section: Section, size: float, finer: float) -> None:
 
 
 def reentrant(corners: Array) -> Array:
-    """Corners (m, 2) of an anticlockwise polygon at which its inner angle exceeds half a turn by ROUNDED."""
+    """Return the corners at which the inner angle of a polygon exceeds half a turn by ROUNDING_ANGLE.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of an anticlockwise polygon, m.
+
+    Returns
+    -------
+    (m, 2) array
+        m.
+    """
     before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return corners[np.arctan2(cross, np.sum(before * after, axis=1)) < -ROUNDING_ANGLE]

@@ -6,7 +6,7 @@ import scipy.linalg
 from facegear.arrays import Array
 from facegear.gear_body.body import SolvedBody
 from facegear.gear_body.patch import Patch
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.section import section_properties
 
 

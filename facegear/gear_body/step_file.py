@@ -21,7 +21,8 @@ EQUAL = 1e-6
 """Distance (mm) below which two points are one."""
 MAX_DIFFERENCE = 2e-5
 """Relative difference of areas, volumes and centres below which a solid is one of revolution: OpenCASCADE
-integrates the area inside a circle to 6e-6."""
+integrates the area inside a circle to 6e-6.
+"""
 CUTS = (0.7, 2.9)
 """Angles (rad) about the axis at which a solid is cut."""
 SMALLEST, LARGEST = 1.0, 1e4
@@ -37,11 +38,25 @@ class StepFault(Exception):
 
 
 def read_section(path: str | Path) -> list[tuple[float, float]]:
-    """Return the corners (r, z) in mm of the body in a STEP file, anticlockwise from the innermost one.
+    """Read the section of the body in a STEP file.
 
     The axis is that of z through the origin. A half section may lie in any half plane through it: r is the
-    distance from the axis. The file names its own unit. Curves become straight edges within CHORD. Raises
-    StepFault for anything but one solid of revolution or one face in such a half plane, with a bore.
+    distance from the axis. The file names its own unit. Curves become straight edges within CHORD.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    list of tuple of float
+        Corners (r, z) in mm, anticlockwise from the innermost one.
+
+    Raises
+    ------
+    StepFault
+        For anything but one solid of revolution or one face in such a half plane, with a bore.
     """
     _require_file(Path(path))
     with gmsh_session("section"):
@@ -63,7 +78,7 @@ def _require_file(path: Path) -> None:
 
 
 def _read_shape(path: str | Path) -> tuple[int, int]:
-    """Dimension and tag of the only solid or face of the file."""
+    """Return dimension and tag of the only solid or face of the file."""
     try:
         shapes = gmsh.model.occ.importShapes(str(path), format="step")
     except Exception as error:  # the only class that gmsh raises
@@ -103,7 +118,9 @@ def _cut(solid: int) -> Array:
 
 
 def _require_revolution(solid: int, faces: list[int]) -> None:
-    """Both cuts are alike, the centre of mass is on the axis, and area times its way round is the volume."""
+    """Raise StepFault unless both cuts are alike, the centre of mass is on the axis, and area times its way
+    round is the volume.
+    """
     occ = gmsh.model.occ
     cuts = []
     for face in faces:
@@ -187,7 +204,9 @@ def _close(fine: Array) -> bool:
 
 
 def _order_corners(points: Array) -> Array:
-    """The outline without corners on a straight line, anticlockwise from the one of smallest r, then z."""
+    """Return the outline without corners on a straight line, anticlockwise from the one of smallest r, then
+    z.
+    """
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)

@@ -14,9 +14,11 @@ from facegear.gear_body.patch import Patch
 from facegear.gear_body.section import section_properties
 
 RPM = 30.0 / np.pi
+"""rpm for 1 rad/s."""
 DRAWN_MODES = 2
 """Modes of each order whose shapes are stored."""
 DRAWN_ORDERS = 7
+"""Number of orders, from 0, whose shapes are stored."""
 COUPLINGS = ("hub_axial_sqrt_kg", "hub_spin_sqrt_kg_m", "hub_sideways_sqrt_kg", "hub_tilt_sqrt_kg_m")
 """Columns of Q with the hub's motion along the axis, round it, sideways, and tilting about a diameter at
 height 0."""
@@ -25,11 +27,29 @@ height 0."""
 def body_table(
     gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array
 ) -> pd.DataFrame:
-    """One row: mass (kg) and inertia (kg m2) of the section, coordinates that its modes make, own compliance
-    along the line of action (m/N), the part of it that the modes hold, compliances that they leave out (m/N,
-    magnitudes): between the drive and the back flank of one mesh, and the largest one between flanks of two
-    meshes at angles (n,) rad, NaN for a single mesh; and the largest relative change of a frequency from a
-    coarser mesh.
+    """Return mass, inertia and compliance of a body.
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+    pressure_angle : float
+        Pressure angle, rad.
+    angles : (n,) array
+        Angles of the meshes, rad.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row: mass (kg) and inertia (kg m2) of the section, number of coordinates of its modes, own
+        compliance along the line of action (m/N), the fraction of it that the modes hold, compliances that
+        they leave out (m/N, magnitudes): between the drive and the back flank of one mesh, and the largest
+        one between flanks of two meshes, NaN for a single mesh; and the largest relative change of a
+        frequency from a coarser mesh.
     """
     mass, polar, diametral, _ = section_properties(body.section)
     drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
@@ -74,11 +94,31 @@ def mode_table(
     ratio: float,
     damping: tuple[float, float] = (0.0, 0.0),
 ) -> pd.DataFrame:
-    """One row a mode, hub held: frequencies in Hz at rest and of waves in space at the body's speed (rad/s),
-    and speeds of the pinions (rpm, `ratio` times the body's) at which the mesh frequency meets each wave.
+    """Return frequencies, coefficients and resonant speeds of all modes, hub held.
 
     Coefficients of a mode of unit modal mass are c (gyroscopic_factor), B (stiffening_factor), the damping
-    ratio and the four Q (COUPLINGS). damping: ratio of every mode, and beta (s) of D = beta K.
+    ratio and the four Q (COUPLINGS).
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    speed : float
+        Speed of the body, rad/s.
+    teeth : int
+        Number of its teeth.
+    ratio : float
+        Speed of the pinions over that of the body.
+    damping : tuple[float, float]
+        Damping ratio of every mode, and beta (s) of D = beta K.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a mode: frequencies in Hz at rest and of waves in space at the body's speed, and speeds of the
+        pinions (rpm) at which the mesh frequency meets each wave.
     """
     parts = []
     for modes, changes in zip(body.orders, body.changes, strict=True):
@@ -109,10 +149,20 @@ def mode_table(
 
 
 def hub_couplings(modes: OrderModes) -> dict[str, Array]:
-    """Return Q of every mode (m,) by COUPLINGS: mass between the mode and a motion of the hub.
+    """Return Q of every mode: mass between the mode and a motion of the hub.
 
     Q = int rho X . R over the body, X the shape for unit modal mass and R the body moved as a rigid whole by
     1 m or 1 rad. Modes of two nodal diameters and more have none.
+
+    Parameters
+    ----------
+    modes : OrderModes
+        The m modes of one order.
+
+    Returns
+    -------
+    dict of str to (m,) array
+        By COUPLINGS, in the units of their names (sqrt(kg), m).
     """
     couplings = np.zeros((4, modes.frequencies.size))
     if modes.order == 0:
@@ -125,10 +175,28 @@ def hub_couplings(modes: OrderModes) -> dict[str, Array]:
 def crossing_table(
     gear: str, body: SolvedBody, teeth: int, ratio: float, last_rpm: float, angles: Array
 ) -> pd.DataFrame:
-    """One row a crossing of a mesh harmonic with a wave, hub held, up to the pinion speed `last_rpm`.
+    """Return the crossings of mesh harmonics with waves, hub held, up to a pinion speed.
 
-    phase_factor: how many times the force of one mesh drives the wave where all meshes of the gear, at angles
-    (n,), carry the same force; their number where all add up, 0 where they cancel.
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    teeth : int
+        Number of its teeth.
+    ratio : float
+        Speed of the pinions over that of the body.
+    last_rpm : float
+        Highest speed of the pinions, rpm.
+    angles : (n,) array
+        Angles of the meshes, rad.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a crossing. phase_factor: how many times the force of one mesh drives the wave where all
+        meshes of the gear carry the same force; their number where all add up, 0 where they cancel.
     """
     rows = []
     for modes in body.orders:
@@ -147,7 +215,22 @@ def crossing_table(
 
 
 def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
-    """One row an order: motions along the axis and round it below a mesh by unit forces, m/N."""
+    """Return the motions along the axis and round it below a mesh by unit forces.
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row an order, m/N.
+    """
     static = body.static(patch)
     return pd.DataFrame(
         {
@@ -163,9 +246,27 @@ def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
 def influence_table(
     gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, sign: float, meshes: dict[str, float]
 ) -> pd.DataFrame:
-    """One row for two flanks: motion of the first against its force by a force on the second, m/N, hub held.
+    """Return the motion of one flank against its force by a force on another, hub held.
 
-    meshes: angle (rad) of each pinion as the upper gear turns; sign: 1 for the upper gear, -1 for the lower.
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+    pressure_angle : float
+        Pressure angle, rad.
+    sign : float
+        1 for the upper gear, -1 for the lower, dimensionless.
+    meshes : dict[str, float]
+        Angle of each pinion as the upper gear turns, rad, by its name.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for two flanks, m/N.
     """
     static = body.static(patch)
     flanks = {name: flank_direction(pressure_angle, name == "back") for name in ("drive", "back")}
@@ -180,7 +281,21 @@ def influence_table(
 
 
 def shape_arrays(gear: str, body: SolvedBody) -> dict[str, Array]:
-    """Nodes, quadrilaterals and displacements (U, V, W) at the nodes of the first modes, for pictures."""
+    """Return nodes, quadrilaterals and displacements (U, V, W) at the nodes of the first modes, for pictures.
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear, with which the names of the arrays begin.
+    body : SolvedBody
+        The solved body.
+
+    Returns
+    -------
+    dict of str to array
+        nodes (n, 2) in m, quads (e, 4) as an index of nodes, shapes (k, n, 3) for unit modal mass, labels (k,
+        2): order and number of the mode.
+    """
     node_shapes = body.elements.basis.dofs.nodal_dofs[0]
     shapes, labels = [], []
     for modes in body.orders[:DRAWN_ORDERS]:

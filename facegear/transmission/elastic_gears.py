@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.linear_model import LinearModel, Spin
 

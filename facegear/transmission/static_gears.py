@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.transmission.elastic_gears import ElasticGears, append_block, flank_rows, rim_slopes
 from facegear.transmission.layout import Layout
 from facegear.transmission.linear_model import LinearModel

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.conjugate_slopes import conjugate_slopes
 from facegear.geometry.design import AssemblyErrors

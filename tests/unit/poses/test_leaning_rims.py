@@ -15,7 +15,7 @@ from facegear.gear_body.compliance import flank_direction, mean_compliance, slop
 from facegear.gear_body.matrices import body_matrices
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.modes import held_solver, order_modes
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.poses.fixed_point import operating_pose
 from facegear.poses.surface import PoseSurface

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import eigsh
 from facegear.gear_body.matrices import body_matrices, rigid_motions
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.modes import order_modes
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.section import inertia_about, section_properties
 from facegear.load_sharing import sensitivity
