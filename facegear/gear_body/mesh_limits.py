@@ -15,9 +15,11 @@ LARGEST = 6_000
 def require_meshable(corners: Array, across: int = ACROSS) -> None:
     """Raises InvalidInput for a section so thin that its mesh would have more elements than LARGEST."""
     size = thinnest(corners) / across
-    following = np.roll(corners, -1, axis=0)
-    area = abs(0.5 * float(np.sum(corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0])))
+    next_corners = np.roll(corners, -1, axis=0)
+    area = abs(0.5 * float(np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0])))
     if area > LARGEST * size**2:
-        needed = 1e3 * across * np.sqrt(area / LARGEST)
-        allowed = f"at least {needed:.3g} mm beside an area of {1e6 * area:.4g} mm2, to be meshed"
-        raise InvalidInput("thinnest wall of the section", float(f"{1e3 * size * across:.4g}"), allowed)
+        min_thickness_mm = 1e3 * across * np.sqrt(area / LARGEST)
+        requirement = (
+            f"at least {min_thickness_mm:.3g} mm beside an area of {1e6 * area:.4g} mm2, to be meshed"
+        )
+        raise InvalidInput("thinnest wall of the section", float(f"{1e3 * size * across:.4g}"), requirement)

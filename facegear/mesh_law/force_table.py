@@ -64,24 +64,24 @@ class ForceTable:
         amounts = np.linspace(0.0, 1.0, LOOKS + 1)[:, None] * np.append(np.diff(self.levels), 0.0)
         return float((first + amounts * (2.0 * second + 3.0 * amounts * third)).min())
 
-    def mirrored(self) -> "ForceTable":
+    def mirror(self) -> "ForceTable":
         """The table of a contact that goes through the phases the other way round."""
         sign = np.array([-1.0, 1.0])[:, None]
         return ForceTable(self.levels, sign * self.forces, sign * self.slopes)
 
-    def scaled(self, factor: float) -> "ForceTable":
+    def scale(self, factor: float) -> "ForceTable":
         """Forces and slopes times a factor."""
         return ForceTable(self.levels, factor * self.forces, factor * self.slopes)
 
 
-def lagging(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
+def shift_tables(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
     """The tables of contacts that come later by some mesh periods each."""
     series = np.array([[table.forces, table.slopes] for table in tables])
     angle = 2.0 * np.pi * np.multiply.outer(cycles, np.arange(series.shape[-1]))[:, None, None]
     cosine, sine = np.cos(angle), np.sin(angle)
     a, b = series[..., 0, :], series[..., 1, :]
     later = np.stack([a * cosine + b * sine, b * cosine - a * sine], axis=-2)
-    return [ForceTable(table.levels, *both) for table, both in zip(tables, later, strict=True)]
+    return [ForceTable(table.levels, *series) for table, series in zip(tables, later, strict=True)]
 
 
 def hermite(levels: Array, forces: Array, slopes: Array) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 from facegear.arrays import Array
 
 
-class Held(Protocol):
+class LawAtPhases(Protocol):
     """A law of M contacts at K phases: its field `stiffness` (K, M) bounds the slopes, N/m."""
 
     @property
@@ -65,7 +65,7 @@ class MeshLaw(Protocol):
     def at_phase(self, cycle: float) -> "MeshLaw":
         """The law at one phase, whatever the phase."""
 
-    def statics_law(self, cycles: Array) -> Held:
+    def statics_law(self, cycles: Array) -> LawAtPhases:
         """Evaluate the law at some phases for statics.
 
         Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any other, statics evaluates the forces

@@ -189,6 +189,10 @@ def _pieces(law: LinearLaw) -> Array:
         for row, start in zip(table, breaks[:-1], strict=True):
             source = int(np.searchsorted(piece.breaks, start, side="right")) - 1
             ahead = np.polynomial.Polynomial([start - piece.breaks[source], 1.0])
-            shifted = np.asarray(np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef, float)
-            row[: shifted.size, contact] = shifted / (2.0 * np.pi) ** np.arange(shifted.size)
+            shifted_coefficients = np.asarray(
+                np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef, float
+            )
+            row[: shifted_coefficients.size, contact] = shifted_coefficients / (2.0 * np.pi) ** np.arange(
+                shifted_coefficients.size
+            )
     return table

@@ -91,23 +91,25 @@ class LoadDependentLaw:
 
     @cached_property
     def _mean(self) -> "LoadDependentLaw":
-        return self._changed(
+        return self._with_series(
             [(table.forces[..., :1], table.slopes[..., :1]) for table in self.tables], self.kind
         )
 
     def at_phase(self, cycle: float) -> "LoadDependentLaw":
         """The law of every kind at one phase."""
         at = np.array([cycle])
-        held = []
+        series = []
         for table in self.tables:
-            both = np.zeros((2, table.levels.size, 2, 1))
-            both[..., 1, 0] = values_at(np.array([table.forces, table.slopes]), at)[0]
-            held.append((both[0], both[1]))
-        return self._changed(held, self.kind)
+            values = np.zeros((2, table.levels.size, 2, 1))
+            values[..., 1, 0] = values_at(np.array([table.forces, table.slopes]), at)[0]
+            series.append((values[0], values[1]))
+        return self._with_series(series, self.kind)
 
-    def _changed(self, series: Sequence[tuple[Array, Array]], kind: Integers) -> "LoadDependentLaw":
+    def _with_series(self, series: Sequence[tuple[Array, Array]], kind: Integers) -> "LoadDependentLaw":
         tables = zip(self.tables, series, strict=True)
-        return LoadDependentLaw(tuple(ForceTable(table.levels, *both) for table, both in tables), kind)
+        return LoadDependentLaw(
+            tuple(ForceTable(table.levels, *table_series) for table, table_series in tables), kind
+        )
 
     def statics_law(self, cycles: Array) -> LoadDependentHeld:
         """Evaluate the law at some phases for statics.

@@ -9,7 +9,7 @@ from facegear.geometry.design import PairDesign
 from facegear.geometry.flank_errors import FLANKS, GEARS, pair_at
 from facegear.poses.fixed_point import OperatingPose
 
-SAME = 1e-9
+ERROR_TOLERANCE = 1e-9
 """Errors (m, rad) that differ by less are the same."""
 
 
@@ -36,16 +36,16 @@ def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
     """Of a converged pose and the design as assembled."""
     designs: list[PairDesign] = []
     torques: list[float] = []
-    known: dict[tuple[object, ...], int] = {}
+    number_of_key: dict[tuple[object, ...], int] = {}
     numbers = []
     for mesh, force in enumerate(result.forces.tolist()):
         back, torque = force < 0.0, float(result.torque[mesh])
         errors = result.poses.errors(mesh, back)
         parts = (errors.offset, errors.shaft_angle_error, errors.axial_shift)
-        key = (back, *(round(part / SAME) for part in parts), f"{torque:.9g}")
-        if key not in known:
-            known[key] = len(designs)
+        key = (back, *(round(part / ERROR_TOLERANCE) for part in parts), f"{torque:.9g}")
+        if key not in number_of_key:
+            number_of_key[key] = len(designs)
             designs.append(replace(pair_at(design, GEARS[0], FLANKS[back]), assembly=errors))
             torques.append(torque)
-        numbers.append(known[key])
+        numbers.append(number_of_key[key])
     return CarryingPairs(designs, torques, np.array(numbers))

@@ -32,13 +32,13 @@ class ForceDirections:
     slopes: Array
     lever: float = 0.0
 
-    def __call__(self, lumped: LinearModel) -> LinearModel:
+    def __call__(self, model: LinearModel) -> LinearModel:
         """The model with these directions."""
-        leaning = self.lever * leaning_rows(lumped, self.layout)
-        added = self.beyond(lumped) + np.concatenate([leaning, leaning])
-        return replace(lumped, rows=lumped.rows + added)
+        leaning = self.lever * leaning_rows(model, self.layout)
+        added_rows = self.added_flank_rows(model) + np.concatenate([leaning, leaning])
+        return replace(model, rows=model.rows + added_rows)
 
-    def beyond(self, model: LinearModel) -> Array:
+    def added_flank_rows(self, model: LinearModel) -> Array:
         """What the directions add to the rows of the ideal contact, (2 meshes, n).
 
         A mesh turns no pinion about a diameter: the middle of its face takes the force.

@@ -33,7 +33,7 @@ class MeshEnergy:
         Along the line of action, N.
     approach
         x, m.
-    stored
+    energy
         U, J.
     by_path
         G_y, J/m.
@@ -43,14 +43,14 @@ class MeshEnergy:
 
     force: float
     approach: float
-    stored: float
+    energy: float
     by_path: float
     by_angle: float
 
-    def scaled(self, factor: float) -> "MeshEnergy":
+    def with_stiffness_factor(self, factor: float) -> "MeshEnergy":
         """Of teeth that are so many times as stiff, at the same force."""
-        others = (part / factor for part in (self.approach, self.stored, self.by_path, self.by_angle))
-        return MeshEnergy(self.force, *others)
+        scaled_parts = (part / factor for part in (self.approach, self.energy, self.by_path, self.by_angle))
+        return MeshEnergy(self.force, *scaled_parts)
 
 
 def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) -> MeshEnergy:
@@ -58,14 +58,14 @@ def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) 
     if torque <= 0.0:
         return MeshEnergy(0.0, 0.0, 0.0, 0.0, 0.0)
     base, knots = surface.pair.pinion_base_radius, np.log(surface.nodes.torques)
-    known, last = surface.stiffness_logs(path, angle), float(np.log(torque))
+    stiffness_logs, last = surface.stiffness_logs(path, angle), float(np.log(torque))
     lightest = min(last, float(knots[0]))
-    slope = known @ surface.torque_weights(knots[0], 1)
-    logs = known[:, 0] + (lightest - knots[0]) * slope
+    slope = stiffness_logs @ surface.torque_weights(knots[0], 1)
+    logs = stiffness_logs[:, 0] + (lightest - knots[0]) * slope
     parts = _light(lightest, logs, slope)
     if last > knots[0]:
-        parts += _above(surface, known, np.append(knots[knots < last], last))
-        logs = known @ surface.torque_weights(last)
+        parts += _above(surface, stiffness_logs, np.append(knots[knots < last], last))
+        logs = stiffness_logs @ surface.torque_weights(last)
     complementary, by_path, by_angle = parts / base**2
     force = torque / base
     approach = force / float(np.exp(logs[0]))
@@ -77,8 +77,8 @@ def linear_energy(surface: PoseSurface, load: float, torque: float, path: float,
     log, by_path, by_angle = surface.stiffness_logs(path, angle) @ surface.torque_weights(float(np.log(load)))
     force = torque / surface.pair.pinion_base_radius
     approach = force / float(np.exp(log))
-    stored = 0.5 * force * approach
-    return MeshEnergy(force, approach, stored, float(-stored * by_path), float(-stored * by_angle))
+    energy = 0.5 * force * approach
+    return MeshEnergy(force, approach, energy, float(-energy * by_path), float(-energy * by_angle))
 
 
 def _light(last: float, logs: Array, slope: Array) -> Array:
@@ -91,13 +91,13 @@ def _light(last: float, logs: Array, slope: Array) -> Array:
     return np.asarray(whole * np.array([1.0, *(slope[1:] / (2.0 - slope[0]) - logs[1:])]))
 
 
-def _above(surface: PoseSurface, known: Array, ends: Array) -> Array:
+def _above(surface: PoseSurface, stiffness_logs: Array, ends: Array) -> Array:
     """The same of loads from the first to the last of logarithms `ends` of torques, between nodes.
 
-    known: as `PoseSurface.stiffness_logs` has it.
+    stiffness_logs: as `PoseSurface.stiffness_logs` has it.
     """
     half = 0.5 * np.diff(ends)[:, None]
     at = ends[:-1, None] + half * (POINTS + 1.0)
-    log, by_path, by_angle = np.moveaxis(surface.torque_weights(at) @ known.T, -1, 0)
-    given = half * WEIGHTS * np.exp(2.0 * at - log)
-    return np.array([given.sum(), -(given * by_path).sum(), -(given * by_angle).sum()])
+    log, by_path, by_angle = np.moveaxis(surface.torque_weights(at) @ stiffness_logs.T, -1, 0)
+    weights = half * WEIGHTS * np.exp(2.0 * at - log)
+    return np.array([weights.sum(), -(weights * by_path).sum(), -(weights * by_angle).sum()])

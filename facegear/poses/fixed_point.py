@@ -57,12 +57,12 @@ class OperatingPose:
         On the pinion by that mesh, N m.
     factor : (m,)
         Stiffness at pose and load over the machine's own.
-    closing : (2 m,)
+    flank_closure : (2 m,)
         By what the exact contact closes every flank beyond first order, m, drive flanks first.
     reactions : (m, 3)
         Derivatives of the energy of each mesh by offset, axial shift (N) and error of the shaft angle (N m)
         of the flank that carries, at the same turn of the gears.
-    stored : (m,)
+    energy : (m,)
         Energy of each mesh, J.
     steps
         That were taken, and `change` of the last one relative to the largest force.
@@ -75,9 +75,9 @@ class OperatingPose:
     angle: Array
     torque: Array
     factor: Array
-    closing: Array
+    flank_closure: Array
     reactions: Array
-    stored: Array
+    energy: Array
     steps: int
     change: float
 
@@ -94,29 +94,29 @@ def operating_pose(
     ideal: whether deflections and forces of the flanks keep to the normals of the ideal contact. Raises
     InvalidInput for a pose outside the surface, NotConverged.
     """
-    own = machine.imperfections.stiffness
-    machine = prepared(machine, surface)
-    posed, forces = machine, mean_equilibrium(static(machine))
+    machine_stiffness = machine.imperfections.stiffness
+    machine = with_ideal_directions(machine, surface)
+    machine_at_pose, forces = machine, mean_equilibrium(static(machine))
     change = np.inf
     for step in range(1, STEPS + 1):
         result = pose_at(machine, surface, forces, load, ideal)
-        posed, before = result.machine, result.forces
-        forces = mean_equilibrium(static(posed))
+        machine_at_pose, before = result.machine, result.forces
+        forces = mean_equilibrium(static(machine_at_pose))
         now = significant_forces(forces.forces[0])
         change = float(np.abs(now - before).max() / max(np.abs(now).max(), 1e-300))
         if change < TOLERANCE:
             last = pose_at(machine, surface, forces, load, ideal)
             return replace(last, steps=step, change=change)
-    tried = f"{STEPS} steps; forces still change by {change:.1e} of the largest (own stiffness {own.max():g})"
-    raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", tried)
+    problem = f"{STEPS} steps; forces still change by {change:.1e} of the largest (own stiffness {machine_stiffness.max():g})"
+    raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", problem)
 
 
-def prepared(machine: Machine, surface: PoseSurface) -> Machine:
+def with_ideal_directions(machine: Machine, surface: PoseSurface) -> Machine:
     """The machine with the directions of the ideal contact, at rest with the slopes of rims that bend."""
     if machine.directions is not None or machine.bodies is None:
         return machine
-    none = np.zeros((2 * len(machine.layout.meshes), len(PARTS)))
-    return replace(machine, directions=ForceDirections(machine.layout, surface.pair.mean_radius, none))
+    zeros = np.zeros((2 * len(machine.layout.meshes), len(PARTS)))
+    return replace(machine, directions=ForceDirections(machine.layout, surface.pair.mean_radius, zeros))
 
 
 def posed_machine(machine: Machine, surface: PoseSurface) -> Machine:
@@ -135,15 +135,15 @@ def pose_at(
 
     at_rest: of a `prepared` machine.
     """
-    machine = prepared(machine, surface)
+    machine = with_ideal_directions(machine, surface)
     layout, names = machine.layout, machine.layout.mesh_names
     meshes = len(names)
     forces = significant_forces(at_rest.forces[0])
-    linear, moved = _whole(machine, at_rest)
-    poses = _poses(machine, surface, linear, moved)
-    carrying = np.arange(meshes) + meshes * (forces < 0.0)
+    linear, displacements = _whole(machine, at_rest)
+    poses = _poses(machine, surface, linear, displacements)
+    loaded_flanks = np.arange(meshes) + meshes * (forces < 0.0)
     contacts = unloaded_contacts(surface, poses, names)
-    path = np.array([contacts[flank].y for flank in carrying])
+    path = np.array([contacts[flank].y for flank in loaded_flanks])
     torque, angle = np.abs(forces) * layout.pinion_arm, poses.shaft_angle_error
     factor, energies = np.ones(meshes), []
     for mesh, name in enumerate(names):
@@ -151,27 +151,27 @@ def pose_at(
         surface.require(name, *at)
         if forces[mesh] != 0.0:
             factor[mesh] = _factor(machine, surface, mesh, at, bool(forces[mesh] < 0.0), load)
-        own = mesh_energy(surface, *at) if load is None else linear_energy(surface, load, *at)
-        energies.append(own.scaled(_scale(machine, surface, mesh)))
-    reactions = flank_reactions(surface, poses, contacts, energies, carrying)
-    closing = closing_beyond(machine, surface, poses, contacts)
+        energy_of_pair = mesh_energy(surface, *at) if load is None else linear_energy(surface, load, *at)
+        energies.append(energy_of_pair.with_stiffness_factor(_scale(machine, surface, mesh)))
+    reactions = flank_reactions(surface, poses, contacts, energies, loaded_flanks)
+    closure = closing_beyond(machine, surface, poses, contacts)
     slopes = force_slopes(surface, reactions, meshes)
     if ideal:
-        slopes, closing = np.zeros_like(slopes), np.zeros_like(closing)
+        slopes, closure = np.zeros_like(slopes), np.zeros_like(closure)
     lever = 0.0 if ideal else float(ideal_slopes(surface.pair)[2])
     directions = ForceDirections(layout, surface.pair.mean_radius, slopes, lever)
-    beyond = directions.beyond(linear) @ moved
+    beyond = directions.added_flank_rows(linear) @ displacements
     return OperatingPose(
-        machine=replace(_with(machine, factor, closing - beyond), directions=directions),
+        machine=replace(_with(machine, factor, closure - beyond), directions=directions),
         forces=forces,
         poses=poses,
         path=path,
         angle=angle,
         torque=torque,
         factor=factor,
-        closing=closing,
-        reactions=np.abs(forces)[:, None] * reactions[carrying],
-        stored=np.array([energy.stored for energy in energies]),
+        flank_closure=closure,
+        reactions=np.abs(forces)[:, None] * reactions[loaded_flanks],
+        energy=np.array([energy.energy for energy in energies]),
         steps=0,
         change=0.0,
     )
@@ -179,19 +179,19 @@ def pose_at(
 
 def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
     """The model at rest with the shafts of its pinions, and its displacements (n,)."""
-    resting, line = static(machine), machine.drive_line
-    if line is None or resting.drive_line is not None:
-        return resting.linear, at_rest.displacements[0]
-    moved = line.extend_displacements(machine.lumped_model, at_rest.displacements)[0]
-    return replace(resting, drive_line=line).linear, moved
+    static_machine, line = static(machine), machine.drive_line
+    if line is None or static_machine.drive_line is not None:
+        return static_machine.linear, at_rest.displacements[0]
+    displacements = line.extend_displacements(machine.lumped_model, at_rest.displacements)[0]
+    return replace(static_machine, drive_line=line).linear, displacements
 
 
 def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displacements: Array) -> MeshPoses:
     """Poses at the displacements, of pinions that stand where their bearings are, in the pair's assembly."""
-    nominal, moved = surface.nominal, displacements.copy()
+    nominal, displacements_from_assembly = surface.nominal, displacements.copy()
     for pinion, position in enumerate(machine.imperfections.position):
-        moved[4 * pinion : 4 * pinion + 2] += position
-    motion = mesh_poses(linear, machine.layout, surface.pair.mean_radius, moved)
+        displacements_from_assembly[4 * pinion : 4 * pinion + 2] += position
+    motion = mesh_poses(linear, machine.layout, surface.pair.mean_radius, displacements_from_assembly)
     side = np.array([machine.layout.gears[g].sign for _, g in machine.layout.meshes])
     return MeshPoses(
         offset=motion.offset + side * nominal.offset,
@@ -215,14 +215,14 @@ def _factor(
     all multiplied by it, and then lie at another level of their law: it is the factor with which the mesh
     is pressed in at its load as the surface says.
     """
-    taken = at[0] if load is None else load
-    stiffness = surface.at(STIFFNESS, taken, *at[1:])
+    torque = at[0] if load is None else load
+    stiffness = surface.at(STIFFNESS, torque, *at[1:])
     if machine.tables is None:
         return stiffness / surface.reference_stiffness
-    rest, own = nominal_contact(machine, surface, mesh, back), machine.imperfections.stiffness[mesh]
+    rest, mesh_factor = nominal_contact(machine, surface, mesh, back), machine.imperfections.stiffness[mesh]
     factor = 1.0
     for _ in range(FACTOR_STEPS):
-        level = taken / (own * factor) if load is None else load
+        level = torque / (mesh_factor * factor) if load is None else load
         level = min(level, float(surface.nodes.torques[-1]))
         before, factor = factor, stiffness / surface.at(STIFFNESS, level, *rest)
         if abs(factor - before) < SAME_FACTOR:
@@ -232,14 +232,18 @@ def _factor(
 
 def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
     """Stiffness of the machine's teeth over that of the surface."""
-    own = float(machine.imperfections.stiffness[mesh])
-    return own if machine.tables is not None else own * machine.stiffness.mean / surface.reference_stiffness
+    mesh_factor = float(machine.imperfections.stiffness[mesh])
+    return (
+        mesh_factor
+        if machine.tables is not None
+        else mesh_factor * machine.stiffness.mean / surface.reference_stiffness
+    )
 
 
-def _with(machine: Machine, factor: Array, closing: Array) -> Machine:
-    """The machine with a factor on the stiffness of each mesh, and flanks closed by `closing` (2 meshes,)."""
+def _with(machine: Machine, factor: Array, closure: Array) -> Machine:
+    """The machine with a factor on the stiffness of each mesh, and flanks closed by `closure` (2 meshes,)."""
     flaws = machine.imperfections
-    drive, back = np.split(closing, 2)
+    drive, back = np.split(closure, 2)
     return replace(
         machine,
         half_backlash=machine.half_backlash - 0.5 * (drive + back),

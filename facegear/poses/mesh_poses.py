@@ -58,7 +58,7 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
     line through the pitch point that is parallel to the pinion's axis, which is an offset as well.
     """
     offset, shift, angle, outward = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
-    numbered = {label: number for number, label in enumerate(linear.labels)}
+    number_of_label = {label: number for number, label in enumerate(linear.labels)}
     for mesh, (i, g) in enumerate(layout.meshes):
         side, at = layout.gears[g].sign, layout.angles[i]
         tangent = np.array([np.cos(at), np.sin(at)])
@@ -68,7 +68,9 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
         offset[mesh, gear : gear + 2] = -side * tangent
         shift[mesh, gear + 2] = side
         outward[mesh, gear : gear + 2] = -away
-        leaning, yawing = (numbered.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS)
+        leaning, yawing = (
+            number_of_label.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS
+        )
         if leaning is not None and yawing is not None:
             angle[mesh, leaning] = side
             offset[mesh, yawing] = -side * mean_radius
@@ -98,11 +100,13 @@ def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
 def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
     """Lift of the teeth by coordinates of gears that bend, from what the flanks' deflections have of it."""
     gears = {gear.name for gear in layout.gears}
-    added = [
+    elastic_coordinates = [
         number
         for number, label in enumerate(linear.labels)
         if number >= layout.dof and label.rpartition(":")[0] in gears
     ]
     meshes = len(layout.meshes)
-    separating = 0.5 * (linear.rows[:meshes, added] + linear.rows[meshes : 2 * meshes, added])
-    shift[:, added] = -separating / np.sin(layout.pressure_angle)
+    separating_motion = 0.5 * (
+        linear.rows[:meshes, elastic_coordinates] + linear.rows[meshes : 2 * meshes, elastic_coordinates]
+    )
+    shift[:, elastic_coordinates] = -separating_motion / np.sin(layout.pressure_angle)

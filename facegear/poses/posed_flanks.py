@@ -32,8 +32,12 @@ def unloaded_contacts(
             errors = poses.errors(mesh, back)
             contact = contact_at(surface.pair, errors)
             if contact is None:
-                where = f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.axial_shift:.4g} um"
-                raise NotConverged("operating pose", f"mesh {name}", f"no flanks face each other at {where}")
+                pose_text = (
+                    f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.axial_shift:.4g} um"
+                )
+                raise NotConverged(
+                    "operating pose", f"mesh {name}", f"no flanks face each other at {pose_text}"
+                )
             contacts.append(contact)
     return contacts
 
@@ -46,16 +50,16 @@ def closing_beyond(
     Both are counted from the flank as assembled, which closes by nothing where no flanks face each other.
     """
     pair, meshes = surface.pair, len(machine.layout.meshes)
-    closing = np.zeros(2 * meshes)
+    closure = np.zeros(2 * meshes)
     for flank, contact in enumerate(contacts):
         mesh, back = flank % meshes, flank >= meshes
-        nominal = assembled(machine, surface, mesh, back)
+        nominal = assembly_errors(machine, surface, mesh, back)
         at_rest = contact_at(pair, nominal)
         if at_rest is None:
             continue
         first = ideal_slopes(pair) @ (_three(poses.errors(mesh, back)) - _three(nominal))
-        closing[flank] = contact.transmission_error - at_rest.transmission_error - first
-    return closing
+        closure[flank] = contact.transmission_error - at_rest.transmission_error - first
+    return closure
 
 
 def flank_reactions(
@@ -63,7 +67,7 @@ def flank_reactions(
     poses: MeshPoses,
     contacts: list[ConjugateContact],
     energies: list[MeshEnergy],
-    carrying: Integers,
+    loaded_flanks: Integers,
 ) -> Array:
     """Derivatives of the energy of every flank by its errors over its force, (2 meshes, 3).
 
@@ -75,7 +79,7 @@ def flank_reactions(
         energy = energies[flank % meshes]
         slopes = conjugate_slopes(surface.pair, poses.errors(flank % meshes, flank >= meshes), contact)
         reactions[flank] = slopes.transmission_error
-        if flank == carrying[flank % meshes] and energy.force > 0.0:
+        if flank == loaded_flanks[flank % meshes] and energy.force > 0.0:
             by_angle = np.array([0.0, 0.0, energy.by_angle])
             reactions[flank] -= (energy.by_path * slopes.path + by_angle) / energy.force
     return reactions
@@ -101,7 +105,7 @@ def ideal_slopes(pair: PairNumbers) -> Array:
     return np.array([cosine, -sine, -sine * (pair.gear_base_radius / cosine - pair.mean_radius)])
 
 
-def assembled(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> AssemblyErrors:
+def assembly_errors(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> AssemblyErrors:
     """Assembly errors that a flank meets without any motion, those of the pair's own assembly."""
     side = machine.layout.gears[machine.layout.meshes[mesh][1]].sign
     nominal = surface.nominal
@@ -114,7 +118,7 @@ def assembled(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> 
 
 def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> tuple[float, float]:
     """Unloaded path (m) and error of the shaft angle (rad) of a flank as assembled, without any motion."""
-    errors = assembled(machine, surface, mesh, back)
+    errors = assembly_errors(machine, surface, mesh, back)
     contact = contact_at(surface.pair, errors)
     assert contact is not None
     return contact.y, errors.shaft_angle_error

@@ -80,8 +80,8 @@ def surface_nodes(pair: PairNumbers, nominal: AssemblyErrors, largest: float, ti
     touch along lines.
     """
     if pair.shaper_lift <= 0.0:
-        allowed = "more than the pinion's for poses: flanks that touch along lines meet them with edges"
-        raise InvalidInput("teeth of the shaper", int(pair.pinion_teeth), allowed)
+        requirement = "more than the pinion's for poses: flanks that touch along lines meet them with edges"
+        raise InvalidInput("teeth of the shaper", int(pair.pinion_teeth), requirement)
     at_rest = contact_at(pair, nominal)
     width = pair.last_end - pair.first_end
     middle = pair.mean_radius if at_rest is None else at_rest.y
@@ -190,17 +190,17 @@ class PoseSurface:
     def require(self, mesh: str, torque: float, path: float, angle: float) -> None:
         """Raise InvalidInput, naming the mesh, for a pose outside the nodes."""
         nodes = self.nodes
-        for quantity, value, known, unit in (
+        for quantity, value, range_of_nodes, unit in (
             ("path of the contact", 1e3 * path, 1e3 * nodes.paths, "mm"),
             ("error of the shaft angle", np.degrees(angle), np.degrees(nodes.angles), "deg"),
             ("torque", torque, np.append(0.0, nodes.torques[-1]), "N m"),
         ):
-            low, high = float(known[0]), float(known[-1])
+            low, high = float(range_of_nodes[0]), float(range_of_nodes[-1])
             if not low - 1e-9 <= value <= high + 1e-9:
-                allowed = (
+                requirement = (
                     f"within {low:.6g} to {high:.6g} {unit} of the poses solved: nothing is extrapolated"
                 )
-                raise InvalidInput(f"{quantity} of mesh {mesh}", f"{value:.6g} {unit}", allowed)
+                raise InvalidInput(f"{quantity} of mesh {mesh}", f"{value:.6g} {unit}", requirement)
 
     def left_out(self, quantity: str) -> dict[str, Array]:
         """Errors at inner nodes of `path` and `torque` if each had not been solved.
@@ -209,7 +209,10 @@ class PoseSurface:
         """
         logs = self._logs(quantity)
         over = {"path": (1, self.nodes.paths), "torque": (2, np.log(self.nodes.torques))}
-        return {name: _left_out(places, np.moveaxis(logs, axis, 0)) for name, (axis, places) in over.items()}
+        return {
+            name: _left_out(node_coordinates, np.moveaxis(logs, axis, 0))
+            for name, (axis, node_coordinates) in over.items()
+        }
 
     def _logs(self, quantity: str) -> Array:
         values = self.values[quantity]
@@ -228,10 +231,10 @@ class PoseSurface:
         }
 
 
-def _left_out(places: Array, values: Array) -> Array:
+def _left_out(coordinates: Array, values: Array) -> Array:
     """What splines over all other places miss at each inner one."""
-    missed = []
-    for inner in range(1, len(places) - 1):
-        fewer = scipy.interpolate.CubicSpline(np.delete(places, inner), np.delete(values, inner, axis=0))
-        missed.append(fewer(places[inner]) - values[inner])
-    return np.array(missed)
+    errors = []
+    for inner in range(1, len(coordinates) - 1):
+        fewer = scipy.interpolate.CubicSpline(np.delete(coordinates, inner), np.delete(values, inner, axis=0))
+        errors.append(fewer(coordinates[inner]) - values[inner])
+    return np.array(errors)

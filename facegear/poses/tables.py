@@ -15,7 +15,7 @@ from facegear.transmission.machine import Machine
 
 FRACTIONS = np.arange(1, 16) / 10.0
 """Of the machine's mean torques at which its poses are looked for."""
-HALVINGS, REACHING = 8, 4
+HALVINGS, REACH_HALVINGS = 8, 4
 """Halvings of a step of the load at which a path crosses the face's end, and to the end of the surface."""
 SHORT = ("stiffness", "ste_peak_to_peak", "pressure", RADIUS, "pinion_root", "face_gear_root")
 PERCENT = {
@@ -69,14 +69,14 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
     where the machine puts it and as assembled. Quantities of a mesh without load are nan.
     """
     layout, pair, rows = machine.layout, surface.pair, []
-    drive, back = np.split(result.closing, 2)
+    drive, back = np.split(result.flank_closure, 2)
     for mesh, name in enumerate(layout.mesh_names):
         on_back, angle = result.forces[mesh] < 0.0, float(result.angle[mesh])
         at = float(result.torque[mesh]), float(result.path[mesh]), angle
         rest = nominal_contact(machine, surface, mesh, on_back)
-        known = {quantity: surface.at(quantity, *at) for quantity in surface.values}
+        values = {quantity: surface.at(quantity, *at) for quantity in surface.values}
         nominal = {quantity: surface.at(quantity, at[0], *rest) for quantity in surface.values}
-        loaded = result.forces[mesh] != 0.0
+        has_load = result.forces[mesh] != 0.0
         rows.append(
             {
                 "mesh": name,
@@ -84,29 +84,29 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
                 "force_n": result.forces[mesh],
                 "force_as_assembled_n": before[mesh],
                 "torque_n_m": at[0],
-                **dict(zip(REACTIONS, pressing(result, surface)[mesh].tolist(), strict=True)),
+                **dict(zip(REACTIONS, gear_reactions(result, surface)[mesh].tolist(), strict=True)),
                 "offset_um": 1e6 * result.poses.offset[mesh],
                 "axial_shift_um": 1e6 * result.poses.axial_shift[mesh],
                 "shaft_angle_error_deg": np.degrees(angle),
                 "outward_um": 1e6 * result.poses.outward[mesh],
                 "closing_um": 1e6 * (back if on_back else drive)[mesh],
                 "unloaded_path_mm": 1e3 * at[1],
-                "path_mm": 1e3 * known[RADIUS] if loaded else np.nan,
-                "path_as_assembled_mm": 1e3 * nominal[RADIUS] if loaded else np.nan,
+                "path_mm": 1e3 * values[RADIUS] if has_load else np.nan,
+                "path_as_assembled_mm": 1e3 * nominal[RADIUS] if has_load else np.nan,
                 "to_inner_end_mm": 1e3 * (at[1] - pair.first_end),
                 "to_outer_end_mm": 1e3 * (pair.last_end - at[1]),
                 "stiffness_factor": result.factor[mesh],
                 **{
-                    column: 100.0 * (known[quantity] / nominal[quantity] - 1.0) if loaded else np.nan
+                    column: 100.0 * (values[quantity] / nominal[quantity] - 1.0) if has_load else np.nan
                     for quantity, column in PERCENT.items()
-                    if quantity in known
+                    if quantity in values
                 },
             }
         )
     return pd.DataFrame(rows)
 
 
-def pressing(result: OperatingPose, surface: PoseSurface) -> Array:
+def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
     """REACTIONS of every mesh, (meshes, 3), N and N m."""
     tangential, shifting, turning = result.reactions.T
     return np.stack([tangential, -shifting, -turning - surface.pair.mean_radius * shifting], axis=1)
@@ -114,12 +114,12 @@ def pressing(result: OperatingPose, surface: PoseSurface) -> Array:
 
 def with_margins(meshes: pd.DataFrame, margins: Sequence[Mapping[str, float] | None]) -> pd.DataFrame:
     """The table of meshes with columns MARGINS, from distances (m) by name; nan for a mesh without load."""
-    loaded = (meshes["torque_n_m"] > 0.0).to_numpy()
+    has_load = (meshes["torque_n_m"] > 0.0).to_numpy()
     return meshes.assign(
         **{
             column: [
                 1e3 * float(margin[name]) if on and margin is not None else np.nan
-                for on, margin in zip(loaded, margins, strict=True)
+                for on, margin in zip(has_load, margins, strict=True)
             ]
             for column, name in MARGINS.items()
         }
@@ -129,11 +129,13 @@ def with_margins(meshes: pd.DataFrame, margins: Sequence[Mapping[str, float] | N
 def margin_text(meshes: pd.DataFrame) -> str:
     """A sentence on the edges that contact patterns reach, or the end of the face that is nearest."""
     edges = {**ENDS, **TIPS}
-    reached = {words: meshes.loc[meshes[column] == 0.0, "mesh"].to_list() for column, words in edges.items()}
-    reached = {words: names for words, names in reached.items() if names}
+    meshes_of_edge = {
+        words: meshes.loc[meshes[column] == 0.0, "mesh"].to_list() for column, words in edges.items()
+    }
+    meshes_of_edge = {words: names for words, names in meshes_of_edge.items() if names}
     texts = [
         f"the pattern reaches {words} in {', '.join(names) if len(names) < len(meshes) else 'every mesh'}"
-        for words, names in reached.items()
+        for words, names in meshes_of_edge.items()
     ]
     free = meshes[list(ENDS)].where(meshes[list(ENDS)] > 0.0)
     if free.notna().to_numpy().any():
@@ -153,7 +155,7 @@ def load_tables(machine: Machine, surface: PoseSurface) -> tuple[pd.DataFrame, p
 
     LOAD_COLUMNS and LEAVING_COLUMNS; a contact leaves where its unloaded path crosses an end of the face.
     """
-    names, rows, leaving = machine.layout.mesh_names, [], []
+    names, rows, exits = machine.layout.mesh_names, [], []
     last: tuple[float, Array] | None = None
     for fraction, result in _loads(machine, surface):
         rows += [
@@ -174,43 +176,41 @@ def load_tables(machine: Machine, surface: PoseSurface) -> tuple[pd.DataFrame, p
             before = np.zeros(len(names), bool) if last is None else sign * (last[1] - radius) > 0.0
             for mesh in np.flatnonzero(now & ~before).tolist():
                 start = 0.0 if last is None else last[0]
-                crossed = _crossing(machine, surface, mesh, sign, radius, (start, fraction))
-                leaving.append((names[mesh], crossed, end, 1e3 * radius))
+                crossing_fraction = _crossing(machine, surface, mesh, sign, radius, (start, fraction))
+                exits.append((names[mesh], crossing_fraction, end, 1e3 * radius))
         last = fraction, result.path
-    return pd.DataFrame(rows, columns=list(LOAD_COLUMNS)), pd.DataFrame(
-        leaving, columns=list(LEAVING_COLUMNS)
-    )
+    return pd.DataFrame(rows, columns=list(LOAD_COLUMNS)), pd.DataFrame(exits, columns=list(LEAVING_COLUMNS))
 
 
 def _loads(machine: Machine, surface: PoseSurface) -> Iterator[tuple[float, OperatingPose]]:
     """Poses at FRACTIONS of the load, and last at the largest one that the surface reaches."""
-    reached = 0.0
+    reached_fraction = 0.0
     for fraction in FRACTIONS.tolist():
         result = _at_load(machine, surface, fraction)
         if result is None:
             break
         yield fraction, result
-        reached = fraction
+        reached_fraction = fraction
     else:
         return
     last, beyond = None, fraction
-    for _ in range(REACHING):
-        middle = 0.5 * (reached + beyond)
+    for _ in range(REACH_HALVINGS):
+        middle = 0.5 * (reached_fraction + beyond)
         result = _at_load(machine, surface, middle)
         if result is None:
             beyond = middle
         else:
-            last, reached = result, middle
+            last, reached_fraction = result, middle
     if last is not None:
-        yield reached, last
+        yield reached_fraction, last
 
 
-def leaving_text(leaving: pd.DataFrame) -> str:
+def leaving_text(exits: pd.DataFrame) -> str:
     """Sentences on contacts that leave the face."""
     return "; ".join(
         f"at {100 * row.load_fraction:.0f} % of the torque the contact of {row.mesh} leaves the face "
         f"at {row.face_end_mm:.4g} mm"
-        for row in leaving.itertuples()
+        for row in exits.itertuples()
     )
 
 

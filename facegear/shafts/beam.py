@@ -41,8 +41,8 @@ class Segment:
             if (value := getattr(self, name)) <= 0.0:
                 raise InvalidInput(f"{name} of a shaft's segment", value, "above 0 m")
         if not 0.0 <= self.bore < self.diameter:
-            allowed = f"from 0 to below the diameter of {self.diameter:g} m"
-            raise InvalidInput("bore of a shaft's segment", self.bore, allowed)
+            requirement = f"from 0 to below the diameter of {self.diameter:g} m"
+            raise InvalidInput("bore of a shaft's segment", self.bore, requirement)
 
     @property
     def area(self) -> float:
@@ -84,13 +84,13 @@ def clamped_compliance(segments: Sequence[Segment], material: Elasticity, at: Ar
     begin = 0.0
     for segment in segments:
         flexibility = section_flexibility(segment, material)
-        for (i, reached), (j, loaded) in product(enumerate(distances), enumerate(distances)):
-            end = min(begin + segment.length, reached, loaded)
+        for (i, motion_position), (j, load_position) in product(enumerate(distances), enumerate(distances)):
+            end = min(begin + segment.length, motion_position, load_position)
             if end > begin:
                 for section, weight in ((begin, 1.0), (0.5 * (begin + end), 4.0), (end, 1.0)):
-                    strained = flexibility[:, None] * carry_motion(loaded - section).T
+                    strained = flexibility[:, None] * carry_motion(load_position - section).T
                     compliance[i, j] += (
-                        weight / 6.0 * (end - begin) * carry_motion(reached - section) @ strained
+                        weight / 6.0 * (end - begin) * carry_motion(motion_position - section) @ strained
                     )
         begin += segment.length
     return compliance

@@ -85,7 +85,7 @@ def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
                 "outward_um": 1e6 * flank.outward,
                 "approach_um": 1e6 * flank.approach,
                 "deflection_um": 1e6 * flank.deflection,
-                "closing_um": 1e6 * flank.closing,
+                "closing_um": 1e6 * flank.closure,
                 "backlash_um": 1e6 * flank.backlash,
                 "unloaded_path_mm": 1e3 * flank.path,
                 "to_inner_end_mm": 1e3 * flank.to_inner_end,

@@ -33,8 +33,8 @@ class LoadTable:
             return values[exact[0]]
         low, high = self.torques[0], self.torques[-1]
         if not low <= torque <= high:
-            allowed = f"within `torques of the contact analysis`, {low:g} to {high:g}"
-            raise InvalidInput("torque of the mesh stiffness", torque, allowed)
+            requirement = f"within `torques of the contact analysis`, {low:g} to {high:g}"
+            raise InvalidInput("torque of the mesh stiffness", torque, requirement)
         return scipy.interpolate.PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
 
     def interpolation_error(self, torque: float, definition: Definition) -> float:
@@ -45,8 +45,13 @@ class LoadTable:
         if inner.size == 0 or np.isclose(self.torques, torque, rtol=1e-12).any():
             return 0.0 if inner.size else float("nan")
         left_out = inner[np.argmin(np.abs(np.log(self.torques[inner] / torque)))]
-        kept = np.delete(np.arange(len(self.torques)), left_out)
-        fewer = LoadTable(self.torques[kept], self.positions, self.average[kept], self.local[kept])
+        other_torques = np.delete(np.arange(len(self.torques)), left_out)
+        fewer = LoadTable(
+            self.torques[other_torques],
+            self.positions,
+            self.average[other_torques],
+            self.local[other_torques],
+        )
         full = self.at(torque, definition)
         return float(np.abs(fewer.at(torque, definition) / full - 1.0).max())
 
@@ -60,12 +65,12 @@ def load_table(ltca: pd.DataFrame) -> LoadTable:
     positions, column = np.unique(ltca["position"].to_numpy(float), return_inverse=True)
     average, local = np.full((2, torques.size, positions.size), np.nan)
     average[row, column], local[row, column] = (ltca[name].to_numpy(float) for name in COLUMN.values())
-    known = ~np.isnan(average).any(axis=1)
-    if not known.any():
+    is_known = ~np.isnan(average).any(axis=1)
+    if not is_known.any():
         depth = ltca["interference_um"].max()
         raise FacegearError(
             "mesh_stiffness: there is none, as the teeth interfere: tips stand up to "
             f"{depth:.3g} um deep in fillets along the line of action (a smaller "
             "tooth_pair.pinion.rack_tip_radius_modules or more tooth_pair.shaper.teeth clears them)"
         )
-    return LoadTable(torques[known], positions, average[known], local[known])
+    return LoadTable(torques[is_known], positions, average[is_known], local[is_known])

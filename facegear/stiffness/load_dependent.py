@@ -33,7 +33,7 @@ LIGHTEST = 1.0 / 32.0
 """Smallest torque solved, over the largest."""
 EXPONENT = 1.3
 """Of the force over the deflection, roughly: with it levels lie evenly in the root of the deflection."""
-SOLVED = 13
+TORQUE_COUNT = 13
 """Torques that are solved: every second one gives the table, those between show its error."""
 PIECES = (1, 2, 3, 4, 5)
 """Numbers of cubics between the first level and the last, the fewest first: a motion stops at every level
@@ -65,8 +65,8 @@ class FlankContacts:
 
     def at(self, rows: Sequence[int]) -> "FlankContacts":
         """Some of the forces."""
-        chosen = list(rows)
-        return FlankContacts(self.forces[chosen], self.deflections[chosen], self.slopes[chosen])
+        indices = list(rows)
+        return FlankContacts(self.forces[indices], self.deflections[indices], self.slopes[indices])
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ class TableError:
 def law_torques(largest: float) -> list[float]:
     """Torques (N m) at which contact is solved for a law that reaches the largest at every phase, rising."""
     power, largest = 2.0 * EXPONENT, REACH * largest
-    parts = np.linspace(LIGHTEST ** (1.0 / power), 1.0, SOLVED)
+    parts = np.linspace(LIGHTEST ** (1.0 / power), 1.0, TORQUE_COUNT)
     return [float(largest * part**power) for part in parts[:-1]] + [float(largest)]
 
 
@@ -104,12 +104,12 @@ def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[Fo
     orders: harmonics kept, at most as many as the positions give. Raises FacegearError where the force falls
     while the deflection grows.
     """
-    given = [flank.at(range(0, SOLVED, 2)) for flank in flanks]
-    between = [flank.at(range(1, SOLVED, 2)) for flank in flanks]
+    fit_contacts = [flank.at(range(0, TORQUE_COUNT, 2)) for flank in flanks]
+    between = [flank.at(range(1, TORQUE_COUNT, 2)) for flank in flanks]
     best, smallest = None, np.inf
     for pieces, crowding in product(PIECES, CROWDING):
-        tables = [force_table(flank, pieces, crowding, orders) for flank in given]
-        errors = [table_error(*both) for both in zip(tables, between, strict=True)]
+        tables = [force_table(flank, pieces, crowding, orders) for flank in fit_contacts]
+        errors = [table_error(*pair) for pair in zip(tables, between, strict=True)]
         excess = max(error.excess for error in errors)
         if any(map(falls, tables)) or excess >= smallest:
             continue
@@ -137,9 +137,9 @@ def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: i
 
     Raises FacegearError where the levels overlap.
     """
-    kept = min(orders, (contacts.deflections.shape[1] - 1) // 2)
-    reached = contacts.deflections
-    first, last = reached[0].max(), reached[-1].min()
+    order = min(orders, (contacts.deflections.shape[1] - 1) // 2)
+    deflections = contacts.deflections
+    first, last = deflections[0].max(), deflections[-1].min()
     if first >= last:
         raise FacegearError(
             "mesh law: over a pitch the deflections under the smallest of contact.torques_n_m reach "
@@ -151,11 +151,11 @@ def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: i
     parts = np.sort(BELOW)[:, None]
     lower = forces[0] * parts**exponent
     lower_slopes = exponent * lower / (parts * first)
-    nothing = np.zeros((1, reached.shape[1]))
+    zeros = np.zeros((1, deflections.shape[1]))
     return ForceTable(
         np.concatenate([[0.0], parts[:, 0] * first, levels]),
-        _series(np.concatenate([nothing, lower, forces]), kept),
-        _series(np.concatenate([nothing, lower_slopes, slopes]), kept),
+        _series(np.concatenate([zeros, lower, forces]), order),
+        _series(np.concatenate([zeros, lower_slopes, slopes]), order),
     )
 
 
@@ -163,11 +163,11 @@ def table_error(table: ForceTable, contacts: FlankContacts) -> TableError:
     """The table against contact solutions up to its last level."""
     positions = np.arange(contacts.deflections.shape[1]) / contacts.deflections.shape[1]
     law = load_dependent_law([table])
-    given = law.force(positions, contacts.deflections[..., None])[..., 0]
+    table_forces = law.force(positions, contacts.deflections[..., None])[..., 0]
     within = contacts.deflections <= table.levels[-1]
     force = float(table.forces[-1, 1, 0])
-    missed = (given - contacts.forces[:, None])[within] / force
-    return TableError(float(np.sqrt((missed**2).mean())), float(np.abs(missed).max()), force)
+    differences = (table_forces - contacts.forces[:, None])[within] / force
+    return TableError(float(np.sqrt((differences**2).mean())), float(np.abs(differences).max()), force)
 
 
 def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, AnyArray]:
@@ -211,19 +211,22 @@ def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
     end, so that all columns of the least squares are of one size.
     """
     count = levels.size
-    fitted = np.empty((2 * count, contacts.deflections.shape[1]))
-    given, sought = np.array([0, count]), np.delete(np.arange(2 * count), [0, count])
+    coefficients = np.empty((2 * count, contacts.deflections.shape[1]))
+    known_columns, unknown_columns = np.array([0, count]), np.delete(np.arange(2 * count), [0, count])
     units = np.repeat([1.0, count / levels[-1]], count)
-    for p, (reached, stiffness) in enumerate(zip(contacts.deflections.T, contacts.slopes.T, strict=True)):
+    for p, (deflections, stiffness) in enumerate(zip(contacts.deflections.T, contacts.slopes.T, strict=True)):
         lightest = np.concatenate([contacts.forces[:2], stiffness[:2]])
-        fitted[given, p] = np.concatenate(_cubics(reached[:2], levels[:1])) @ lightest
-        weight = SLOPE_WEIGHT * np.gradient(reached)
-        values, slopes = _cubics(levels, reached)
+        coefficients[known_columns, p] = np.concatenate(_cubics(deflections[:2], levels[:1])) @ lightest
+        weight = SLOPE_WEIGHT * np.gradient(deflections)
+        values, slopes = _cubics(levels, deflections)
         rows = np.concatenate([values, weight[:, None] * slopes])
-        wanted = np.concatenate([contacts.forces, weight * stiffness]) - rows[:, given] @ fitted[given, p]
-        solved = np.linalg.lstsq((rows * units)[:, sought], wanted)[0]
-        fitted[sought, p] = units[sought] * solved
-    return fitted[:count], fitted[count:]
+        right_side = (
+            np.concatenate([contacts.forces, weight * stiffness])
+            - rows[:, known_columns] @ coefficients[known_columns, p]
+        )
+        solution = np.linalg.lstsq((rows * units)[:, unknown_columns], right_side)[0]
+        coefficients[unknown_columns, p] = units[unknown_columns] * solution
+    return coefficients[:count], coefficients[count:]
 
 
 def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:

@@ -10,16 +10,16 @@ Definition = Literal["average", "local"]
 
 @dataclass(frozen=True, eq=False)
 class StiffnessRequest:
-    """Source of k(t); `mean` N/m where it is given, `torque` N m on the pinion per mesh, orders `kept`,
+    """Source of k(t); `mean` N/m where it is given, `torque` N m on the pinion per mesh, orders `order`,
     factor `variation` on k(t) about its mean.
 
-    `given` is the series of the config; zero for the other sources.
+    `given_series` is the series of the config; zero for the other sources.
     """
 
     source: Literal["fem", "fem_scaled", "harmonics"]
     mean: float | None
     torque: float | None
     definition: Definition
-    kept: int
+    order: int
     variation: float
-    given: Harmonics
+    given_series: Harmonics

@@ -15,7 +15,7 @@ from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.tables import curve_table, harmonics_table, with_unloaded_error
 from facegear.stiffness.unloaded import peak_to_peak, unloaded_series
 
-DRAWN = 256
+CURVE_POINTS = 256
 """Points a pitch of a curve that comes from given harmonics."""
 
 
@@ -72,12 +72,12 @@ def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Contact
         assert request.mean is not None
         scale = request.mean / fit.series.mean
     whole = fit.series.scaled(scale).varied(request.variation)
-    series = whole.kept(request.kept)
+    series = whole.kept(request.order)
     if series.minimum <= 0.0:
-        allowed = (
-            f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
+        requirement = (
+            f"at most {_largest_variation(fit.series.kept(request.order)):.4g}, so that k(t) stays positive"
         )
-        raise InvalidInput("variation of the mesh stiffness", request.variation, allowed)
+        raise InvalidInput("variation of the mesh stiffness", request.variation, requirement)
     error, cut = unloaded_series(ltca, series.order)
     return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
 
@@ -102,7 +102,7 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
         mean_local_n_per_m=scale * table.at(torque, "local").mean(),
     )
     return Stiffness(
-        curve_table(table.positions, _varied(scale * curve.samples, request.variation), curve.series),
+        curve_table(table.positions, _vary_samples(scale * curve.samples, request.variation), curve.series),
         harmonics,
         harmonics_table(curve.whole, fit, scale * request.variation),
         summary,
@@ -111,9 +111,9 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
 
 def stiffness_given(request: StiffnessRequest) -> Stiffness:
     """Curve of the series that the config gives."""
-    whole = request.given.varied(request.variation)
-    series = whole.kept(request.kept)
-    positions = np.arange(DRAWN) / DRAWN
+    whole = request.given_series.varied(request.variation)
+    series = whole.kept(request.order)
+    positions = np.arange(CURVE_POINTS) / CURVE_POINTS
     return Stiffness(
         curve_table(positions, whole(positions), series),
         harmonics_table(series, None),
@@ -122,7 +122,7 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
     )
 
 
-def _varied(samples: Array, factor: float) -> Array:
+def _vary_samples(samples: Array, factor: float) -> Array:
     return samples + (factor - 1.0) * (samples - samples.mean())
 
 

@@ -47,10 +47,10 @@ def unloaded_error(table: pd.DataFrame) -> Harmonics | None:
     """The unloaded transmission error (m) of a harmonics table; None where k was given without contact."""
     if "e_sin_um" not in table:
         return None
-    renamed = table[["order", "e_sin_um", "e_cos_um"]].set_axis(
+    error_table = table[["order", "e_sin_um", "e_cos_um"]].set_axis(
         ["order", "sin_n_per_m", "cos_n_per_m"], axis=1
     )
-    return series_of(renamed).scaled(1e-6)
+    return series_of(error_table).scaled(1e-6)
 
 
 def curve_table(positions: Array, samples: Array, series: Harmonics) -> pd.DataFrame:
@@ -66,9 +66,18 @@ def load_dependence(table: LoadTable) -> pd.DataFrame:
             samples = table.at(torque, definition)
             fit = fit_harmonics(samples)
             first, second = (*fit.series.amplitudes[1:3], np.nan)[:2]
-            needed = [fit.orders_within(level) for level in LEVELS]
+            needed_orders = [fit.orders_within(level) for level in LEVELS]
             rows.append(
-                (definition, torque, samples.mean(), samples.min(), samples.max(), first, second, *needed)
+                (
+                    definition,
+                    torque,
+                    samples.mean(),
+                    samples.min(),
+                    samples.max(),
+                    first,
+                    second,
+                    *needed_orders,
+                )
             )
     names = [f"orders_for_{100 * level:g}_percent" for level in LEVELS]
     columns = ["definition", "torque_n_m", "mean_n_per_m", "min_n_per_m", "max_n_per_m"]

@@ -15,7 +15,7 @@ import numpy as np
 from facegear.arrays import Array, Mask
 from facegear.by_content import kept_by_content
 from facegear.harmonics.series import Harmonics
-from facegear.mesh_law.force_table import ForceTable, lagging
+from facegear.mesh_law.force_table import ForceTable, shift_tables
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
 from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
@@ -209,16 +209,16 @@ def _law_of_tables(
     gears (meshes,): number of each mesh's gear; factors (meshes,) on the forces; softening (meshes,), m/N;
     lags of the meshes, mesh periods.
     """
-    mirrored_backs = [gear_tables.back.mirrored() for gear_tables in tables]
+    mirrored_backs = [gear_tables.back.mirror() for gear_tables in tables]
     drives, backs = [tables[g].drive for g in gears], [mirrored_backs[g] for g in gears]
     flanks = [
-        table if factor == 1.0 else table.scaled(factor)
+        table if factor == 1.0 else table.scale(factor)
         for table, factor in zip([*drives, *backs], 2 * factors.tolist(), strict=True)
     ]
     if softening is not None:
         soft = 2 * softening.tolist()
         flanks = [soften_table(table, compliance) for table, compliance in zip(flanks, soft, strict=True)]
-    return load_dependent_law(lagging(flanks, 2 * lags))
+    return load_dependent_law(shift_tables(flanks, 2 * lags))
 
 
 def _lags(machine: Machine) -> list[float]:
@@ -255,7 +255,7 @@ def _line_linear_law(stiffness: Harmonics, lags: tuple[float, ...]) -> MeshLaw:
 
 @kept_by_content(4)
 def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) -> MeshLaw:
-    return load_dependent_law(lagging(drive, lags))
+    return load_dependent_law(shift_tables(drive, lags))
 
 
 def error_series(machine: Machine) -> tuple[Harmonics, ...]:

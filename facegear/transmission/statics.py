@@ -11,7 +11,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.harmonics.series import stacked, stacked_values
-from facegear.mesh_law.law import Held, MeshLaw
+from facegear.mesh_law.law import LawAtPhases, MeshLaw
 from facegear.transmission.balance import balance, bearing_loads
 from facegear.transmission.block_statics import has_kernel, settle_all
 from facegear.transmission.dense_statics import RESIDUAL, Contacts, dense_equilibrium
@@ -204,7 +204,7 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
     return Equilibria(displacements, 0.5 * (drive - back), forces, force_balance.residual)
 
 
-def _by_blocks(machine: Machine, law: Held, gaps: Array) -> tuple[Array, Array]:
+def _by_blocks(machine: Machine, law: LawAtPhases, gaps: Array) -> tuple[Array, Array]:
     """Return displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
     coordinates, scale = static_unknowns(machine)
     springs, start = static_springs(machine), np.zeros(coordinates.size)

@@ -17,7 +17,7 @@ from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.harmonics.series import Harmonics
 from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, CondensedShaft, Shaft, condensed
+from facegear.shafts.condensed import Bearing, CondensedShaft, Shaft, condense_shaft
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
@@ -154,7 +154,7 @@ def condensed_shaft(given: dict[str, Any]) -> CondensedShaft:
         for position, radial, axial in given["bearings"]
     )
     segments = tuple(Segment(*segment) for segment in given["segments"])
-    return condensed(Shaft(segments, Elasticity(YOUNG, POISSON), bearings, given["pinion"]))
+    return condense_shaft(Shaft(segments, Elasticity(YOUNG, POISSON), bearings, given["pinion"]))
 
 
 def _solve(folder: Path) -> dict[str, Any]:
