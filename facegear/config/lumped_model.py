@@ -14,7 +14,7 @@ from facegear.config.shafts import OUTPUT, TurningMassSection, stepped_shaft, to
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import error_series
 from facegear.harmonics.series import Harmonics
-from facegear.shafts.condensed import condense_shaft
+from facegear.shafts.condensed_shaft import condense_shaft
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.excitation import Excitation
 from facegear.transmission.imperfections import Imperfections

@@ -22,7 +22,7 @@ from facegear.config.bodies import (
 from facegear.config.changes import TEETH
 from facegear.config.shafts import stepped_shaft
 from facegear.config.transmission import PinionPlace, Transmission
-from facegear.shafts.condensed import condense_shaft
+from facegear.shafts.condensed_shaft import condense_shaft
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
 

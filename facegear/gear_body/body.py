@@ -39,7 +39,8 @@ class SolvedBody:
     orders
         Modes of the orders 0, 1, 2, ...
     compliances : (orders, 3, 3)
-        Compliance of the means <W>, <V> and <W / r> below the teeth, from order 0 up to the last that a load needs.
+        Compliance of the means <W>, <V> and <W / r> below the teeth, from order 0 up to the last that a
+        load needs.
     slopes : (orders, 1, 4)
         <W>, <V>, <W / r> and slope dW/dr by a unit moment on that slope, 1/N and rad/(N m).
     changes

@@ -310,7 +310,8 @@ def along_teeth(
     elements : Elements
         The elements.
     convert_weights : Callable[[Array, Array], Array]
-        Function that maps the weights of a plain mean, and the r of the points, to the weights of this mean.
+        Function that maps the weights of a plain mean (points, edges), and the r of the points, to the
+        weights of this mean.
 
     Returns
     -------

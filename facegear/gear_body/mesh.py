@@ -74,7 +74,7 @@ def body_mesh(section: Section, across: int = ACROSS, finer: float = CORNER) -> 
     across : int
         Number of elements across the thinnest wall.
     finer : float
-        Factor by which elements are smaller at reentrant corners.
+        Factor by which elements are smaller at reentrant corners, dimensionless.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""How large the mesh of a section becomes, known before it is made."""
+"""Number of elements in the mesh of a section, estimated before it is made."""
 
 import numpy as np
 
@@ -13,7 +13,15 @@ LARGEST = 6_000
 
 
 def require_meshable(corners: Array, across: int = ACROSS) -> None:
-    """Raises InvalidInput for a section so thin that its mesh would have more elements than LARGEST."""
+    """Raise InvalidInput for a section so thin that its mesh would have more elements than LARGEST.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of the section, m.
+    across : int
+        Number of elements across the thinnest wall.
+    """
     size = thinnest(corners) / across
     next_corners = np.roll(corners, -1, axis=0)
     area = abs(0.5 * float(np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0])))

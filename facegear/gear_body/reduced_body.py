@@ -111,7 +111,7 @@ class ReducedBody:
         Parameters
         ----------
         arrays : Mapping[str, AnyArray]
-            Arrays by name.
+            Arrays (...) by name, SI units.
         gear : str
             Name of the gear.
 

@@ -110,7 +110,7 @@ def mode_table(
     teeth : int
         Number of its teeth.
     ratio : float
-        Speed of the pinions over that of the body.
+        Speed of the pinions over that of the body, a ratio.
     damping : tuple[float, float]
         Damping ratio of every mode, and beta (s) of D = beta K.
 
@@ -186,7 +186,7 @@ def crossing_table(
     teeth : int
         Number of its teeth.
     ratio : float
-        Speed of the pinions over that of the body.
+        Speed of the pinions over that of the body, a ratio.
     last_rpm : float
         Highest speed of the pinions, rpm.
     angles : (n,) array

@@ -74,11 +74,37 @@ class LoadDependentLaw:
         return hermite(self._levels, forces, slopes)
 
     def force(self, cycles: Array, beyond: Array) -> Array:
-        """Forces (..., K, M)."""
+        """Return the forces of the contacts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m; negative on a back flank.
+
+        Returns
+        -------
+        (..., K, M) array
+            N.
+        """
         return self._pieces.at(self.kind, cycles, beyond)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Slopes (..., K, M), zero where nothing is pressed in."""
+        """Return the derivatives of the forces by the amounts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m; negative on a back flank.
+
+        Returns
+        -------
+        (..., K, M) array
+            N/m; zero where nothing is pressed in.
+        """
         return self._pieces.at(self.kind, cycles, beyond, slopes=True)
 
     @cached_property
@@ -86,7 +112,13 @@ class LoadDependentLaw:
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
-        """Mean forces and slopes at every level."""
+        """Return the law with the mean forces and slopes at every level.
+
+        Returns
+        -------
+        LoadDependentLaw
+            A law that does not depend on the phase.
+        """
         return self._mean
 
     @cached_property
@@ -96,7 +128,18 @@ class LoadDependentLaw:
         )
 
     def at_phase(self, cycle: float) -> "LoadDependentLaw":
-        """The law of every kind at one phase."""
+        """Return the law of every kind at one phase.
+
+        Parameters
+        ----------
+        cycle : float
+            Mesh periods since the start.
+
+        Returns
+        -------
+        LoadDependentLaw
+            A law that does not depend on the phase.
+        """
         at = np.array([cycle])
         series = []
         for table in self.tables:
@@ -147,7 +190,18 @@ class LoadDependentLaw:
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
-    """The law of contacts with a table each."""
+    """Return the law of contacts with a table each.
+
+    Parameters
+    ----------
+    tables : Sequence of ForceTable
+        Table of each contact.
+
+    Returns
+    -------
+    LoadDependentLaw
+        N and N/m.
+    """
     return LoadDependentLaw(tuple(tables), np.arange(len(tables)))
 
 

@@ -12,8 +12,10 @@ MAX_PHASE_SETS = 2
 
 
 class PiecewiseCubics:
-    """Cubics of some kinds: levels (kinds, L) where their pieces begin, series (kinds, L, 4, 2, harmonics +
-    1) of the coefficients, which are kept for the phases that were asked for last.
+    """Cubics of some kinds in pieces, whose coefficients are periodic series of the phase.
+
+    Levels (kinds, L), at which the pieces begin, and series (kinds, L, 4, 2, harmonics + 1) of the
+    coefficients. Coefficients at the phases that were used last are cached.
     """
 
     def __init__(self, levels: Array, series: Array) -> None:
@@ -21,7 +23,24 @@ class PiecewiseCubics:
         self.cache: dict[bytes, _AtPhases] = {}
 
     def at(self, kind: Integers, cycles: Array, beyond: Array, slopes: bool = False) -> Array:
-        """Values, or slopes, (..., K, M) of contacts of some kinds at amounts (..., K, M) and phases (K,)."""
+        """Return values, or slopes, of contacts of some kinds.
+
+        Parameters
+        ----------
+        kind : (M,) array of int
+            Index of the kind of each contact.
+        cycles : (K,) array
+            Phases, mesh periods.
+        beyond : (..., K, M) array
+            Amounts, m.
+        slopes : bool
+            Whether slopes are returned instead of values.
+
+        Returns
+        -------
+        (..., K, M) array
+            N, or N/m for slopes.
+        """
         contacts = np.moveaxis(beyond, -1, 0)
         amounts = np.ascontiguousarray(contacts).reshape(len(kind), -1, len(cycles))
         deepest = np.abs(amounts).max(axis=(1, 2), initial=0.0)
@@ -50,7 +69,9 @@ class _AtPhases:
         self.known_pieces = [0] * len(levels)
 
     def down_to(self, of_contacts: Sequence[int], amounts: Sequence[float]) -> Array:
-        """All coefficients, of which those are known that contacts of these kinds meet up to some amounts."""
+        """Return all coefficients, of which those are known that contacts of these kinds meet up to some
+        amounts.
+        """
         for kind, amount in zip(of_contacts, amounts, strict=True):
             pieces = int(np.searchsorted(self.levels[kind], amount, side="right")) if amount > 0.0 else 0
             for piece in range(self.known_pieces[kind], pieces):

@@ -1,9 +1,9 @@
-"""The machine with its teeth where its own forces put them: fixed point of statics and contact over pose.
+"""Static equilibrium with pose-dependent contact, by fixed-point iteration.
 
-The pose of every mesh gives a factor on its stiffness, what the exact unloaded contact closes each flank
-by beyond the first order that the meshes' deflections hold, and the direction of its force. Law, force and
+The pose of every mesh gives a factor on its stiffness, what the exact unloaded contact closes each flank by
+beyond the first order that the meshes' deflections hold, and the direction of its force. Law, force and
 reactions of a mesh are the derivatives of one energy (`facegear.poses.energy`), so that the converged machine
-is at rest in a potential. Factor and closing are errors of single meshes and the directions are rows of the
+is at rest in a potential. Factor and closure are errors of single meshes and the directions are rows of the
 linear model, so that everything that is computed of a machine takes them. To first order the line of action's
 part of a displacement is the deflection itself and is counted once.
 """
@@ -35,7 +35,9 @@ from facegear.transmission.statics import Equilibria, mean_equilibrium
 TOLERANCE = 1e-6
 """Largest change of a mesh force in the last step, over the largest force."""
 STEPS = 60
+"""Largest number of steps."""
 SAME_FACTOR, FACTOR_STEPS = 1e-13, 100
+"""Change of a stiffness factor at which its iteration ends, and the largest number of its steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,11 +49,11 @@ class OperatingPose:
     machine
         With the factors, errors and directions that the poses give to its meshes.
     forces : (m,)
-        What each mesh transmits with mean stiffness and no e(t), N; negative on the back flank.
+        Force of each mesh with mean stiffness and no e(t), N; negative on the back flank.
     poses
-        Of all meshes, with the assembly errors of the pair in.
+        Poses of all meshes, with the assembly errors of the pair in.
     path, angle : (m,)
-        Where the unloaded contact of the carrying flank stands along the pinion, m; its error of the shaft
+        Position of the unloaded contact of the carrying flank along the pinion, m; its error of the shaft
         angle, rad.
     torque : (m,)
         On the pinion by that mesh, N m.
@@ -65,7 +67,7 @@ class OperatingPose:
     energy : (m,)
         Energy of each mesh, J.
     steps
-        That were taken, and `change` of the last one relative to the largest force.
+        Number of steps, and `change` of the last one relative to the largest force.
     """
 
     machine: Machine
@@ -88,11 +90,30 @@ def operating_pose(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """The fixed point under the machine's mean torques, to TOLERANCE.
+    """Compute the fixed point under the machine's mean torques, to TOLERANCE.
 
-    load: torque (N m) at which all stiffnesses are taken whatever the meshes carry, None for their own.
-    ideal: whether deflections and forces of the flanks keep to the normals of the ideal contact. Raises
-    InvalidInput for a pose outside the surface, NotConverged.
+    Parameters
+    ----------
+    machine : Machine
+        The machine as assembled.
+    surface : PoseSurface
+        Contact over the pose.
+    load : float or None
+        Torque at which all stiffnesses are taken whatever the meshes carry, N m; None for their own.
+    ideal : bool
+        Whether deflections and forces of the flanks keep to the normals of the ideal contact.
+
+    Returns
+    -------
+    OperatingPose
+        SI units.
+
+    Raises
+    ------
+    InvalidInput
+        For a pose outside the surface.
+    NotConverged
+        If the forces do not settle, or no equilibrium is found.
     """
     machine_stiffness = machine.imperfections.stiffness
     machine = with_ideal_directions(machine, surface)
@@ -107,12 +128,28 @@ def operating_pose(
         if change < TOLERANCE:
             last = pose_at(machine, surface, forces, load, ideal)
             return replace(last, steps=step, change=change)
-    problem = f"{STEPS} steps; forces still change by {change:.1e} of the largest (own stiffness {machine_stiffness.max():g})"
+    stiffest = machine_stiffness.max()
+    problem = (
+        f"{STEPS} steps; forces still change by {change:.1e} of the largest (own stiffness {stiffest:g})"
+    )
     raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", problem)
 
 
 def with_ideal_directions(machine: Machine, surface: PoseSurface) -> Machine:
-    """The machine with the directions of the ideal contact, at rest with the slopes of rims that bend."""
+    """Return the machine with the directions of the ideal contact, at rest with the slopes of rims that bend.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+
+    Returns
+    -------
+    Machine
+        The same machine where its directions are set, or its bodies are rigid.
+    """
     if machine.directions is not None or machine.bodies is None:
         return machine
     zeros = np.zeros((2 * len(machine.layout.meshes), len(PARTS)))
@@ -120,7 +157,25 @@ def with_ideal_directions(machine: Machine, surface: PoseSurface) -> Machine:
 
 
 def posed_machine(machine: Machine, surface: PoseSurface) -> Machine:
-    """The machine with the poses that its own mean torques make. Raises what `operating_pose` raises."""
+    """Return the machine with the poses that its own mean torques make.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine as assembled.
+    surface : PoseSurface
+        Contact over the pose.
+
+    Returns
+    -------
+    Machine
+        The machine at its pose.
+
+    Raises
+    ------
+    InvalidInput, NotConverged
+        As `operating_pose`.
+    """
     return operating_pose(machine, surface).machine
 
 
@@ -131,9 +186,32 @@ def pose_at(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """The machine with the poses of an equilibrium, one step of `operating_pose`.
+    """Return the machine with the poses of an equilibrium, one step of `operating_pose`.
 
-    at_rest: of a `prepared` machine.
+    Parameters
+    ----------
+    machine : Machine
+        The machine as assembled.
+    surface : PoseSurface
+        Contact over the pose.
+    at_rest : Equilibria
+        Equilibrium of a machine of `with_ideal_directions`.
+    load : float or None
+        Torque at which all stiffnesses are taken whatever the meshes carry, N m; None for their own.
+    ideal : bool
+        Whether deflections and forces of the flanks keep to the normals of the ideal contact.
+
+    Returns
+    -------
+    OperatingPose
+        SI units.
+
+    Raises
+    ------
+    InvalidInput
+        For a pose outside the surface.
+    NotConverged
+        If the flanks of a mesh do not face each other.
     """
     machine = with_ideal_directions(machine, surface)
     layout, names = machine.layout, machine.layout.mesh_names
@@ -178,7 +256,7 @@ def pose_at(
 
 
 def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
-    """The model at rest with the shafts of its pinions, and its displacements (n,)."""
+    """Return the model at rest with the shafts of its pinions, and its displacements (n,)."""
     static_machine, line = static(machine), machine.drive_line
     if line is None or static_machine.drive_line is not None:
         return static_machine.linear, at_rest.displacements[0]
@@ -187,7 +265,9 @@ def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
 
 
 def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displacements: Array) -> MeshPoses:
-    """Poses at the displacements, of pinions that stand where their bearings are, in the pair's assembly."""
+    """Return the poses at the displacements, of pinions that stand where their bearings are, in the pair's
+    assembly.
+    """
     nominal, displacements_from_assembly = surface.nominal, displacements.copy()
     for pinion, position in enumerate(machine.imperfections.position):
         displacements_from_assembly[4 * pinion : 4 * pinion + 2] += position
@@ -209,11 +289,12 @@ def _factor(
     back: bool,
     load: float | None,
 ) -> float:
-    """On the stiffness of a mesh at its torque (N m), unloaded path (m) and error of the shaft angle (rad).
+    """Return the factor on the stiffness of a mesh at its torque (N m), unloaded path (m) and error of the
+    shaft angle (rad).
 
     load: torque (N m) at which the stiffnesses are taken, None for its own. Forces that follow the load are
-    all multiplied by it, and then lie at another level of their law: it is the factor with which the mesh
-    is pressed in at its load as the surface says.
+    all multiplied by the factor, and then lie at another level of their law: it is the factor with which the
+    mesh is pressed in at its load as the surface says.
     """
     torque = at[0] if load is None else load
     stiffness = surface.at(STIFFNESS, torque, *at[1:])
@@ -231,7 +312,7 @@ def _factor(
 
 
 def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
-    """Stiffness of the machine's teeth over that of the surface."""
+    """Return the stiffness of the machine's teeth over that of the surface."""
     mesh_factor = float(machine.imperfections.stiffness[mesh])
     return (
         mesh_factor
@@ -241,7 +322,9 @@ def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
 
 
 def _with(machine: Machine, factor: Array, closure: Array) -> Machine:
-    """The machine with a factor on the stiffness of each mesh, and flanks closed by `closure` (2 meshes,)."""
+    """Return the machine with a factor on the stiffness of each mesh, and flanks closed by `closure` (2
+    meshes,).
+    """
     flaws = machine.imperfections
     drive, back = np.split(closure, 2)
     return replace(

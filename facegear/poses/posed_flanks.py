@@ -22,9 +22,26 @@ from facegear.transmission.machine import Machine
 def unloaded_contacts(
     surface: PoseSurface, poses: MeshPoses, names: tuple[str, ...]
 ) -> list[ConjugateContact]:
-    """Unloaded contact of all drive flanks, then all back flanks, (2 meshes,).
+    """Return the unloaded contact of all drive flanks, then all back flanks.
 
-    names: of the meshes. Raises NotConverged where the flanks of a mesh do not face each other.
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    poses : MeshPoses
+        Poses of the meshes.
+    names : tuple of str
+        Names of the meshes.
+
+    Returns
+    -------
+    list of ConjugateContact
+        2 meshes entries, in m and rad.
+
+    Raises
+    ------
+    NotConverged
+        If the flanks of a mesh do not face each other.
     """
     contacts = []
     for back in (False, True):
@@ -45,9 +62,25 @@ def unloaded_contacts(
 def closing_beyond(
     machine: Machine, surface: PoseSurface, poses: MeshPoses, contacts: list[ConjugateContact]
 ) -> Array:
-    """Exact transmission error of every flank less what its deflection has of it, m, (2 meshes,).
+    """Return the exact transmission error of every flank less the part that its deflection has.
 
     Both are counted from the flank as assembled, which closes by nothing where no flanks face each other.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+    poses : MeshPoses
+        Poses of the meshes.
+    contacts : list of ConjugateContact
+        Unloaded contacts of `unloaded_contacts`.
+
+    Returns
+    -------
+    (2 meshes,) array
+        m.
     """
     pair, meshes = surface.pair, len(machine.layout.meshes)
     closure = np.zeros(2 * meshes)
@@ -69,9 +102,27 @@ def flank_reactions(
     energies: list[MeshEnergy],
     loaded_flanks: Integers,
 ) -> Array:
-    """Derivatives of the energy of every flank by its errors over its force, (2 meshes, 3).
+    """Return the derivatives of the energy of every flank by its errors, over its force.
 
-    Of one that does not carry, the limit at no force: the normal of the unloaded contact.
+    For a flank that does not carry it is the limit at no force: the normal of the unloaded contact.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    poses : MeshPoses
+        Poses of the meshes.
+    contacts : list of ConjugateContact
+        Unloaded contacts of `unloaded_contacts`.
+    energies : list of MeshEnergy
+        Energy of each mesh.
+    loaded_flanks : (meshes,) array of int
+        Index of the flank of each mesh that carries.
+
+    Returns
+    -------
+    (2 meshes, 3) array
+        By offset and axial shift, m/m, and error of the shaft angle, m/rad.
     """
     meshes = len(energies)
     reactions = np.zeros((2 * meshes, 3))
@@ -86,9 +137,23 @@ def flank_reactions(
 
 
 def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
-    """Slopes of the forces of all flanks as `ForceDirections` has them, (2 meshes, parts).
+    """Return the slopes of the forces of all flanks as `ForceDirections` has them.
 
-    reactions: (2 meshes, 3), of `flank_reactions`. A back flank meets an offset as the opposite one.
+    A back flank meets an offset as the opposite one.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    reactions : (2 meshes, 3) array
+        Derivatives of `flank_reactions`, m/m and m/rad.
+    meshes : int
+        Number of meshes.
+
+    Returns
+    -------
+    (2 meshes, parts) array
+        m/m and m/rad.
     """
     slopes = np.zeros((2 * meshes, len(PARTS)))
     slopes[:, :3] = reactions - ideal_slopes(surface.pair)
@@ -97,16 +162,41 @@ def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
 
 
 def ideal_slopes(pair: PairNumbers) -> Array:
-    """What deflections hold of an offset, an axial shift and an error of the shaft angle, (3,).
+    """Return the part of an offset, an axial shift and an error of the shaft angle that deflections hold.
 
-    The first two are pure numbers, the third is in m a rad.
+    Parameters
+    ----------
+    pair : PairNumbers
+        Numbers of the pair.
+
+    Returns
+    -------
+    (3,) array
+        m/m, m/m and m/rad.
     """
     cosine, sine = np.cos(pair.pressure_angle), np.sin(pair.pressure_angle)
     return np.array([cosine, -sine, -sine * (pair.gear_base_radius / cosine - pair.mean_radius)])
 
 
 def assembly_errors(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> AssemblyErrors:
-    """Assembly errors that a flank meets without any motion, those of the pair's own assembly."""
+    """Return the assembly errors that a flank meets without any motion, those of the pair's own assembly.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+    mesh : int
+        Index of the mesh.
+    back : bool
+        Whether it is the back flank.
+
+    Returns
+    -------
+    AssemblyErrors
+        m and rad.
+    """
     side = machine.layout.gears[machine.layout.meshes[mesh][1]].sign
     nominal = surface.nominal
     return replace(
@@ -117,7 +207,24 @@ def assembly_errors(machine: Machine, surface: PoseSurface, mesh: int, back: boo
 
 
 def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> tuple[float, float]:
-    """Unloaded path (m) and error of the shaft angle (rad) of a flank as assembled, without any motion."""
+    """Return unloaded path and error of the shaft angle of a flank as assembled, without any motion.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+    mesh : int
+        Index of the mesh.
+    back : bool
+        Whether it is the back flank.
+
+    Returns
+    -------
+    pair of float
+        m and rad.
+    """
     errors = assembly_errors(machine, surface, mesh, back)
     contact = contact_at(surface.pair, errors)
     assert contact is not None

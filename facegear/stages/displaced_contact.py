@@ -15,7 +15,7 @@ from facegear.contact.gear_flank import from_arrays
 from facegear.contact.posed import met_contacts
 from facegear.errors import ConfigError, chosen
 from facegear.number_format import count_noun
-from facegear.poses.displaced import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
+from facegear.poses.displaced_flanks import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
 from facegear.stages.outcome import Outcome
 
 SHIFTS, TURNS = ("x_um", "y_um", "z_um"), ("tilt_x_deg", "tilt_y_deg", "theta_deg")

@@ -12,9 +12,9 @@ from facegear.contact.margins import pattern_margins
 from facegear.contact.posed import PosedContact, met_contacts
 from facegear.contact.reactions import REACTION_COLUMNS
 from facegear.geometry.design import PairDesign
-from facegear.poses.carrying import carrying_pairs
 from facegear.poses.fixed_point import OperatingPose
 from facegear.poses.fixed_point import operating_pose as fixed_point
+from facegear.poses.loaded_pairs import carrying_pairs
 from facegear.poses.posed_flanks import assembly_errors
 from facegear.poses.surface import STIFFNESS, PoseSurface
 from facegear.poses.tables import (

@@ -11,11 +11,22 @@ from facegear.errors import FacegearError, InvalidInput
 from facegear.stiffness.request import Definition
 
 COLUMN = {"average": "k_average_n_per_m", "local": "k_local_n_per_m"}
+"""Column of the contact table for each definition of the stiffness."""
 
 
 @dataclass(frozen=True, eq=False)
 class LoadTable:
-    """k(position, torque): torques (t,) N m, positions (p,) 0..1, `average` and `local` (t, p) N/m."""
+    """Mesh stiffness over position and torque.
+
+    Attributes
+    ----------
+    torques : (t,) array
+        Torques on the pinion, N m.
+    positions : (p,) array
+        Positions in a pitch, 0 to 1.
+    average, local : (t, p) arrays
+        Stiffness of both definitions, N/m.
+    """
 
     torques: Array
     positions: Array
@@ -23,9 +34,24 @@ class LoadTable:
     local: Array
 
     def at(self, torque: float, definition: Definition) -> Array:
-        """Stiffness (p,) at a torque, monotone cubic in log torque at each position.
+        """Return the stiffness at a torque, monotone cubic in log torque at each position.
 
-        Raises InvalidInput outside the torques solved: the curve is never extrapolated.
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+        definition : Definition
+            Average or local stiffness.
+
+        Returns
+        -------
+        (p,) array
+            N/m.
+
+        Raises
+        ------
+        InvalidInput
+            Outside the torques solved: the curve is never extrapolated.
         """
         values = self.average if definition == "average" else self.local
         exact = np.flatnonzero(np.isclose(self.torques, torque, rtol=1e-12))
@@ -38,8 +64,19 @@ class LoadTable:
         return scipy.interpolate.PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
 
     def interpolation_error(self, torque: float, definition: Definition) -> float:
-        """Largest relative change of the curve if the nearest inner torque had not been solved; nan if there
-        is none.
+        """Return the largest relative change of the curve if the nearest inner torque had not been solved.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+        definition : Definition
+            Average or local stiffness.
+
+        Returns
+        -------
+        float
+            Relative, a fraction; nan where there is no inner torque, 0 at a torque that was solved.
         """
         inner = np.arange(1, len(self.torques) - 1)
         if inner.size == 0 or np.isclose(self.torques, torque, rtol=1e-12).any():
@@ -57,9 +94,23 @@ class LoadTable:
 
 
 def load_table(ltca: pd.DataFrame) -> LoadTable:
-    """From the contact table: all positions at the torques whose average stiffness is known at every one.
+    """Read all positions of the contact table at the torques whose average stiffness is known at every
+    position.
 
-    Raises FacegearError where the teeth interfere, so that there is none.
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table of the contact analysis.
+
+    Returns
+    -------
+    LoadTable
+        N m and N/m.
+
+    Raises
+    ------
+    FacegearError
+        If the teeth interfere at every torque, so that there is no stiffness.
     """
     torques, row = np.unique(ltca["torque_n_m"].to_numpy(float), return_inverse=True)
     positions, column = np.unique(ltca["position"].to_numpy(float), return_inverse=True)

@@ -19,6 +19,7 @@ from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.load_dependent import load_dependent_law
 
 GEARS, FLANKS = ("upper", "lower"), ("drive", "back")
+"""Names of gears and flanks, in the order of the rows and columns of `flank_variant`."""
 LAW_ARRAYS = {
     "level_m": (None, None),
     "force_n": (None, None, 2, None),
@@ -29,12 +30,15 @@ LAW_ARRAYS = {
 each gear's (upper, lower) flank (drive, back) has.
 """
 LEVEL_COLUMNS = ("deflection_um", "torque_n_m", "force_n", "slope_n_per_m", "table_rms_percent")
+"""Columns of level_table() after gear and flank."""
 LIGHTEST = 1.0 / 32.0
 """Smallest torque solved, over the largest."""
 EXPONENT = 1.3
-"""Of the force over the deflection, roughly: with it levels lie evenly in the root of the deflection."""
+"""Approximate exponent of the force over the deflection: with it levels lie evenly in the root of the
+deflection.
+"""
 TORQUE_COUNT = 13
-"""Torques that are solved: every second one gives the table, those between show its error."""
+"""Number of torques that are solved: every second one gives the table, those between show its error."""
 PIECES = (1, 2, 3, 4, 5)
 """Numbers of cubics between the first level and the last, the fewest first: a motion stops at every level
 that it passes.
@@ -48,7 +52,7 @@ REACH = 1.2
 BELOW = (0.5, 0.25, 0.125)
 """Further levels, as parts of the first."""
 RMS, LARGEST = 1e-3, 4e-3
-"""What is aimed at: the table's error over the largest mean force."""
+"""Aims for the rms and the largest error of a table, over the largest mean force."""
 ROUNDING = 1e-6
 """Part of the steepest slope by which a force may fall, as the Fourier series are cut."""
 
@@ -64,7 +68,18 @@ class FlankContacts:
     slopes: Array
 
     def at(self, rows: Sequence[int]) -> "FlankContacts":
-        """Some of the forces."""
+        """Return the solutions at some of the forces.
+
+        Parameters
+        ----------
+        rows : Sequence of int
+            Indices of the forces.
+
+        Returns
+        -------
+        FlankContacts
+            N, m and N/m.
+        """
         indices = list(rows)
         return FlankContacts(self.forces[indices], self.deflections[indices], self.slopes[indices])
 
@@ -91,18 +106,43 @@ class TableError:
 
 
 def law_torques(largest: float) -> list[float]:
-    """Torques (N m) at which contact is solved for a law that reaches the largest at every phase, rising."""
+    """Return the torques at which contact is solved for a law that reaches the largest at every phase.
+
+    Parameters
+    ----------
+    largest : float
+        Largest torque of the law, N m.
+
+    Returns
+    -------
+    list of float
+        N m, rising.
+    """
     power, largest = 2.0 * EXPONENT, REACH * largest
     parts = np.linspace(LIGHTEST ** (1.0 / power), 1.0, TORQUE_COUNT)
     return [float(largest * part**power) for part in parts[:-1]] + [float(largest)]
 
 
 def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[ForceTable], list[TableError]]:
-    """Tables of flanks with the fewest and evenest levels that meet the aim, else with the smallest error of
-    all, and their errors.
+    """Fit the tables of flanks with the fewest and evenest levels that meet the aim, else with the smallest
+    error of all.
 
-    orders: harmonics kept, at most as many as the positions give. Raises FacegearError where the force falls
-    while the deflection grows.
+    Parameters
+    ----------
+    flanks : Sequence of FlankContacts
+        Contact solutions of the flanks.
+    orders : int
+        Number of harmonics kept, at most as many as the positions give.
+
+    Returns
+    -------
+    pair of list of ForceTable and list of TableError
+        Table of each flank, N and N/m, and its relative error.
+
+    Raises
+    ------
+    FacegearError
+        If the force falls while the deflection grows.
     """
     fit_contacts = [flank.at(range(0, TORQUE_COUNT, 2)) for flank in flanks]
     between = [flank.at(range(1, TORQUE_COUNT, 2)) for flank in flanks]
@@ -126,16 +166,47 @@ def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[Fo
 
 
 def falls(table: ForceTable) -> bool:
-    """Whether the force falls somewhere while the deflection grows, by more than cutting the series does."""
+    """Whether the force falls somewhere while the deflection grows, by more than cutting the series does.
+
+    Parameters
+    ----------
+    table : ForceTable
+        The table.
+
+    Returns
+    -------
+    bool
+        True if its smallest slope is below -ROUNDING of the steepest.
+    """
     return table.min_slope < -ROUNDING * table.steepest
 
 
 def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: int) -> ForceTable:
-    """The table whose cubics come nearest to the contacts' forces and slopes at every position, by least
-    squares. Its first level has the largest deflection of the lightest contact, the last the smallest of the
-    heaviest; there are `pieces` cubics between them.
+    """Fit the table whose cubics come nearest to the contacts' forces and slopes at every position, by least
+    squares.
 
-    Raises FacegearError where the levels overlap.
+    Its first level has the largest deflection of the lightest contact, the last the smallest of the heaviest.
+
+    Parameters
+    ----------
+    contacts : FlankContacts
+        Contact solutions of a flank.
+    pieces : int
+        Number of cubics between these levels.
+    crowding : float
+        Exponent with which levels crowd towards the first, dimensionless.
+    orders : int
+        Number of harmonics kept, at most as many as the positions give.
+
+    Returns
+    -------
+    ForceTable
+        N and N/m.
+
+    Raises
+    ------
+    FacegearError
+        If the levels overlap.
     """
     order = min(orders, (contacts.deflections.shape[1] - 1) // 2)
     deflections = contacts.deflections
@@ -160,7 +231,20 @@ def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: i
 
 
 def table_error(table: ForceTable, contacts: FlankContacts) -> TableError:
-    """The table against contact solutions up to its last level."""
+    """Compare a table with contact solutions up to its last level.
+
+    Parameters
+    ----------
+    table : ForceTable
+        The table.
+    contacts : FlankContacts
+        Contact solutions.
+
+    Returns
+    -------
+    TableError
+        Errors relative to the mean force at the last level, N.
+    """
     positions = np.arange(contacts.deflections.shape[1]) / contacts.deflections.shape[1]
     law = load_dependent_law([table])
     table_forces = law.force(positions, contacts.deflections[..., None])[..., 0]
@@ -171,7 +255,20 @@ def table_error(table: ForceTable, contacts: FlankContacts) -> TableError:
 
 
 def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, AnyArray]:
-    """Arrays as LAW_ARRAYS; numbers (gears, flanks): the table that each flank has."""
+    """Return the arrays LAW_ARRAYS.
+
+    Parameters
+    ----------
+    tables : Sequence of ForceTable
+        Tables with as many levels and harmonics.
+    numbers : (gears, flanks) array of int
+        Index of the table that each flank has.
+
+    Returns
+    -------
+    dict of str to array
+        m, N and N/m, shapes as in LAW_ARRAYS (tables, levels, ...).
+    """
     return {
         "level_m": np.array([table.levels for table in tables]),
         "force_n": np.array([table.forces for table in tables]),
@@ -181,7 +278,24 @@ def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, Any
 
 
 def forces_over_pitch(law: Arrays, row: int, phases: Array, amounts: Array) -> Array:
-    """Forces (amounts, phases) in N of the table in a row of LAW_ARRAYS; amounts in m."""
+    """Return the forces of a table of LAW_ARRAYS.
+
+    Parameters
+    ----------
+    law : Arrays
+        Arrays as LAW_ARRAYS.
+    row : int
+        Index of the table.
+    phases : (phases,) array
+        Mesh periods.
+    amounts : (amounts,) array
+        Compression, m.
+
+    Returns
+    -------
+    (amounts, phases) array
+        N.
+    """
     table = ForceTable(law["level_m"][row], law["force_n"][row], law["slope_n_per_m"][row])
     beyond = np.broadcast_to(amounts[:, None, None], (amounts.size, phases.size, 1))
     return load_dependent_law([table]).force(phases, beyond)[..., 0]
@@ -190,7 +304,25 @@ def forces_over_pitch(law: Arrays, row: int, phases: Array, amounts: Array) -> A
 def level_table(
     tables: Sequence[ForceTable], errors: Sequence[TableError], numbers: Integers, base_radius: float
 ) -> pd.DataFrame:
-    """Mean force and slope of every gear's flanks at every level, with the error of the table beside them."""
+    """Return mean force and slope of every gear's flanks at every level, with the error of the table beside
+    them.
+
+    Parameters
+    ----------
+    tables : Sequence of ForceTable
+        The tables.
+    errors : Sequence of TableError
+        Error of each table.
+    numbers : (gears, flanks) array of int
+        Index of the table that each flank has.
+    base_radius : float
+        Base radius of the pinion, m.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns gear, flank, LEVEL_COLUMNS and table_largest_percent.
+    """
     rows = [
         (gear, flank, 1e6 * level, base_radius * force, force, slope, *error.percent)
         for gear, row in zip(GEARS, numbers, strict=True)
@@ -204,7 +336,7 @@ def level_table(
 
 
 def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
-    """Forces and slopes (levels, p) of the cubics that come nearest to the contacts of each position.
+    """Return forces and slopes (levels, p) of the cubics that come nearest to the contacts of each position.
 
     At the first level they are those of the cubic between the two lightest contacts, as the force below it
     follows from them. Unknown slopes are counted in units of the mean slope of a cubic with unit force at its
@@ -230,8 +362,8 @@ def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
 
 
 def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:
-    """Values and slopes (amounts, 2 levels) of the Hermite cubics at amounts: of those with unit force at one
-    level, then of those with unit slope. Beyond the levels the outer cubics go on.
+    """Return values and slopes (amounts, 2 levels) of the Hermite cubics at amounts: with unit force at one
+    level, then with unit slope. Beyond the levels the outer cubics go on.
     """
     at = np.clip(np.searchsorted(levels, amounts, side="right") - 1, 0, levels.size - 2)
     width = levels[at + 1] - levels[at]
@@ -248,7 +380,7 @@ def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:
 
 
 def _series(values: Array, orders: int) -> Array:
-    """Fourier series (rows, 2, orders + 1) of samples (rows, p)."""
+    """Return the Fourier series (rows, 2, orders + 1) of samples (rows, p)."""
     terms = np.fft.rfft(values, axis=1)[:, : orders + 1] / values.shape[1]
     terms[:, 1:] *= 2.0
     return np.stack([-terms.imag, terms.real], axis=1)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.shafts.condensed import MOTIONS, CondensedShaft
+from facegear.shafts.condensed_shaft import MOTIONS, CondensedShaft
 from facegear.transmission.layout import DOF_PER_BODY, TILT_LETTERS, Layout
 from facegear.transmission.linear_model import LinearModel, Spin
 

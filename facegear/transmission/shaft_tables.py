@@ -7,7 +7,7 @@ import pandas as pd
 import scipy.linalg
 
 from facegear.arrays import Array
-from facegear.shafts.condensed import Shaft, deflections
+from facegear.shafts.condensed_shaft import Shaft, deflections
 from facegear.transmission.drive_line import DriveLine, TurningMass
 from facegear.transmission.machine import Machine
 from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads

@@ -6,7 +6,7 @@ import numpy as np
 from lumped_machines import make_layout, make_machine
 
 from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, Shaft, condense_shaft
+from facegear.shafts.condensed_shaft import Bearing, Shaft, condense_shaft
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.teeth import GEOMETRIC
 

@@ -17,7 +17,7 @@ from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.harmonics.series import Harmonics
 from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, CondensedShaft, Shaft, condense_shaft
+from facegear.shafts.condensed_shaft import Bearing, CondensedShaft, Shaft, condense_shaft
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side

@@ -41,7 +41,7 @@ def seen_at_zero(x, y):
     "second implementation",
     "both bodies displaced rigidly, contact searched at 1e-13 m",
     capability="displaced_contact",
-    module="facegear.poses.displaced",
+    module="facegear.poses.displaced_flanks",
 )
 @pytest.mark.parametrize("side", ["upper", "lower"])
 def test_two_displaced_bodies_meet_and_close_as_rigid_displacement_has_it(side):
@@ -64,7 +64,7 @@ def test_two_displaced_bodies_meet_and_close_as_rigid_displacement_has_it(side):
     "second implementation",
     "unloaded contact of published poses, searched on displaced bodies",
     capability="displaced_contact",
-    module="facegear.poses.displaced",
+    module="facegear.poses.displaced_flanks",
 )
 def test_an_offset_with_a_leaning_pinion_has_the_published_contact_on_both_flanks():
     """The outer end of a pinion that leans about x comes away from the upper gear."""

@@ -1,4 +1,4 @@
-"""Unloaded contact of a pair whose two bodies stand displaced: where its flanks meet, and how far they close.
+"""Unloaded contact of a pair with displaced bodies: where its flanks meet, and how far they close.
 
 The pinion's displacement is given in the machine's frame at the pinion: x along the tangent as the upper
 gear's teeth move, y along the gears' axis towards the upper gear, z outwards along the pinion. The gear's
@@ -106,17 +106,27 @@ def displaced_flanks(
 
     Parameters
     ----------
-    design
+    design : PairDesign
         Pair as assembled.
-    mesh
+    mesh : MeshPlace
         Where the mesh is in its machine.
-    pinion, gear
-        Displacements of both bodies, of any size for which flanks face each other.
-    position
+    pinion : Displacement
+        Displacement of the pinion, of any size for which flanks face each other.
+    gear : Displacement
+        Displacement of the gear, of any such size.
+    position : float
         Place of a pitch (0 to 1) at which flanks with modifications are searched; the others have the same
-        contact everywhere.
+        contact everywhere. Dimensionless.
 
-    Raises NotConverged where the flanks do not face each other.
+    Returns
+    -------
+    dict of str to DisplacedFlank
+        By names of FLANKS, m and rad.
+
+    Raises
+    ------
+    NotConverged
+        If the flanks do not face each other.
     """
     motions = _motions(design, mesh, pinion, gear)
     nominal = errors_at(design.assembly, mesh.gear, FLANKS[0])

@@ -1,4 +1,4 @@
-"""The pairs whose drive flanks the carrying flanks of a machine at its pose are."""
+"""Pairs of gears whose drive flanks are the loaded flanks of a machine at its pose."""
 
 from dataclasses import dataclass, replace
 
@@ -10,7 +10,7 @@ from facegear.geometry.flank_errors import FLANKS, GEARS, pair_at
 from facegear.poses.fixed_point import OperatingPose
 
 ERROR_TOLERANCE = 1e-9
-"""Errors (m, rad) that differ by less are the same."""
+"""Difference of errors (m, rad) below which they count as the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,9 +22,9 @@ class CarryingPairs:
     designs
         Each pair, its assembly that of the pose.
     torques
-        What each carries on the pinion, N m; 0 where none does.
+        Torque of each on the pinion, N m; 0 where it carries none.
     numbers : (m,)
-        Which of them the carrying flank of each mesh is, the drive flank where none carries.
+        Index of the pair of the carrying flank of each mesh, of the drive flank where none carries.
     """
 
     designs: list[PairDesign]
@@ -33,7 +33,20 @@ class CarryingPairs:
 
 
 def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
-    """Of a converged pose and the design as assembled."""
+    """Return the different pairs of a machine at a converged pose.
+
+    Parameters
+    ----------
+    result : OperatingPose
+        Converged pose.
+    design : PairDesign
+        Design as assembled.
+
+    Returns
+    -------
+    CarryingPairs
+        Torques in N m.
+    """
     designs: list[PairDesign] = []
     torques: list[float] = []
     number_of_key: dict[tuple[object, ...], int] = {}
