@@ -128,9 +128,9 @@ def operating_pose(
         if change < TOLERANCE:
             last = pose_at(machine, surface, forces, load, ideal)
             return replace(last, steps=step, change=change)
-    stiffest = machine_stiffness.max()
     problem = (
-        f"{STEPS} steps; forces still change by {change:.1e} of the largest (own stiffness {stiffest:g})"
+        f"{STEPS} steps; forces still change by {change:.1e} of the largest "
+        f"(own stiffness {machine_stiffness.max():g})"
     )
     raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", problem)
 
