@@ -7,17 +7,27 @@ if TYPE_CHECKING:
     from facegear.transmission.layout import Layout
 
 K_GAMMA, K_V = "k_gamma", "k_v"
+"""Mesh load factor and dynamic factor, with which names of paths begin."""
 PEAK, OPEN_FRACTION, REVERSED_FRACTION = "peak_mesh_force_n", "open_fraction", "reversed_fraction"
+"""Largest load of a mesh, and fractions of time with an open and with a reversed mesh."""
 BEARINGS = "bearing_mass"
+"""Mass of all bearings (`facegear.load_sharing.bearings`)."""
 PAST_LAW = "past_law_fraction"
+"""Largest fraction of positions at which a flank is past the last level of its law."""
 ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic_um", "pressure_mpa"
+"""Loaded transmission error of the tooth pair, and its pressure."""
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
+"""Root stress of both bodies."""
 CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
 """Quantities that a contact analysis alone gives."""
 LOSS, LOSS_PERCENT = "friction_loss_w", "friction_loss_percent"
+"""Friction loss of all meshes."""
 BULK, FLASH, CONTACT_TEMPERATURE = "hottest_body_c", "largest_flash_k", "contact_temperature_c"
+"""Hottest body, largest flash temperature and hottest contact."""
 SCUFFING, SCUFFING_MARGIN = "scuffing_safety", "scuffing_margin_k"
+"""Scuffing safety, and its margin in temperature."""
 FILM, FILM_RATIO = "smallest_film_um", "smallest_film_ratio"
+"""Thinnest film, and its smallest ratio to the roughness."""
 MICROPITTING = "smallest_micropitting_film_ratio"
 UNSOLVED = "unsolved_loss_share"
 FRICTION = (

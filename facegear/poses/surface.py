@@ -20,6 +20,7 @@ from facegear.geometry.conjugate import PairNumbers, contact_at, offset_for
 from facegear.geometry.design import AssemblyErrors
 
 STIFFNESS, RADIUS = "stiffness_n_per_m", "path_radius_m"
+"""Names of two of the QUANTITIES."""
 QUANTITIES = (
     STIFFNESS,
     "ste_peak_to_peak_m",

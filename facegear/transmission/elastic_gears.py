@@ -26,6 +26,7 @@ from facegear.transmission.linear_model import LinearModel, Spin
 TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
 """J, which turns the cosine and sine coordinates of a wave by a quarter of a period."""
 X, Y, Z, THETA, TILT_X, TILT_Y = range(6)
+"""Rows of the hub's motions in `Coordinates.mass_hub`."""
 
 
 @dataclass(frozen=True, eq=False)

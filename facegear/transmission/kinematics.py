@@ -9,3 +9,4 @@ from facegear.transmission.teeth import GEOMETRIC
 KINEMATICS: Mapping[str, Kinematics] = {
     kinematics.name: kinematics for kinematics in (GEOMETRIC, PRINTED_KINEMATICS)
 }
+"""Kinematics of the meshes by their names in a config."""

@@ -115,3 +115,4 @@ class PrintedKinematics:
 
 
 PRINTED_KINEMATICS = PrintedKinematics()
+"""The only object of its class."""

@@ -102,6 +102,7 @@ class Teeth:
 
 
 GEOMETRIC = Teeth()
+"""The only object of its class."""
 
 
 def mesh_parts(layout: Layout) -> tuple[Array, Array]:
