@@ -1,4 +1,4 @@
-"""The lumped model with everything that drives it."""
+"""Lumped model of a transmission with everything that drives it."""
 
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
@@ -69,47 +69,47 @@ class FlankTables:
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """The lumped model with everything that drives it.
+    """Lumped model of a transmission with everything that drives it.
 
     Attributes
     ----------
     layout
         Bodies and mesh geometry.
-    torques
-        On the bodies, N m.
+    torques : (bodies,)
+        Torques on the bodies, N m.
     stiffness
-        Of the reference mesh, N/m.
+        Stiffness of the reference mesh over a mesh cycle, N/m.
     error
-        e(t) of the reference mesh, a Fourier series in m.
+        Transmission error e(t) of the reference mesh, a Fourier series in m.
     half_backlash : (meshes,)
         Half the backlash of each mesh, m.
     damping, phase_convention
-        Of bodies, bearings and meshes; how meshes lag.
+        Damping of bodies, bearings and meshes; how meshes lag.
     error_lags : (meshes,)
-        Lag of the error in mesh periods; without them each mesh lags by its stiffness phase.
+        Lag of the error in mesh periods. If None, each mesh lags by its stiffness phase.
     imperfections
-        Of single meshes and bodies; none by default.
+        Errors of single meshes and bodies; none by default.
     forces : (bodies, 3)
-        External ones on the bodies along x, y, z, N; none by default.
+        External forces on the bodies along x, y, z, N; none by default.
     law
-        Of all contacts, as facegear.transmission.flanks.mesh_contacts orders them. Without one their force is
-        the stiffness times how far they are pressed in, and with one `stiffness` is only the scale of it.
+        Law of all contacts, as facegear.transmission.flanks.mesh_contacts orders them. If None, force =
+        stiffness * compression. With a law, `stiffness` is only its scale.
     tables
-        Of the flanks at each gear, from which that law is made where it depends on the load.
+        Force tables of the flanks at each gear, from which the law is made where it depends on the load.
     friction
-        Of the meshes; it disturbs the motion, and nothing at rest.
+        Friction of the meshes. It disturbs the motion, and does nothing at rest.
     bodies
-        What makes more of them than rigid masses on springs.
+        Function that makes more of the bodies than rigid masses on springs.
     softening : (meshes, 2, 2)
         Compliance in series with the teeth of each mesh, m/N: motion of the drive and the back flank (rows)
-        by a unit force on either (columns); nothing by default. Motion takes its diagonal alone, after
+        by a unit force on either (columns); none by default. Motion takes its diagonal alone, after
         `loaded_modes.machine_in_motion` has attached coordinates for the rest.
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
     directions
-        What turns the forces of the meshes from the normals of the ideal contact; nothing by default.
+        Function that turns the forces of the meshes away from the normals of the ideal contact; none by default.
     excitations
-        Periodic torques beside the mean ones; nothing at rest.
+        Periodic torques beside the mean torques; without effect at rest.
     """
 
     layout: Layout
