@@ -120,8 +120,8 @@ def load_table(ltca: pd.DataFrame) -> LoadTable:
     if not is_known.any():
         depth = ltca["interference_um"].max()
         raise FacegearError(
-            "mesh_stiffness: there is none, as the teeth interfere: tips stand up to "
-            f"{depth:.3g} um deep in fillets along the line of action (a smaller "
+            "mesh_stiffness: not computed, as the teeth interfere. Tips penetrate the fillets by up to "
+            f"{depth:.3g} um along the line of action (a smaller "
             "tooth_pair.pinion.rack_tip_radius_modules or more tooth_pair.shaper.teeth clears them)"
         )
     return LoadTable(torques[is_known], positions, average[is_known], local[is_known])

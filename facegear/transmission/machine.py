@@ -107,7 +107,8 @@ class Machine:
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
     directions
-        Function that turns the forces of the meshes away from the normals of the ideal contact; none by default.
+        Function that turns the forces of the meshes away from the normals of the ideal contact; none by
+        default.
     excitations
         Periodic torques beside the mean torques; without effect at rest.
     """
