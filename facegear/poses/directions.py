@@ -32,11 +32,11 @@ class ForceDirections:
     slopes: Array
     lever: float = 0.0
 
-    def __call__(self, model: LinearModel) -> LinearModel:
+    def __call__(self, base_model: LinearModel) -> LinearModel:
         """Return the model with these directions."""
-        leaning = self.lever * leaning_rows(model, self.layout)
-        added_rows = self.added_flank_rows(model) + np.concatenate([leaning, leaning])
-        return replace(model, rows=model.rows + added_rows)
+        leaning = self.lever * leaning_rows(base_model, self.layout)
+        added_rows = self.added_flank_rows(base_model) + np.concatenate([leaning, leaning])
+        return replace(base_model, rows=base_model.rows + added_rows)
 
     def added_flank_rows(self, model: LinearModel) -> Array:
         """Return what the directions add to the rows of the ideal contact.

@@ -321,12 +321,12 @@ class ElasticGears:
         of_gears = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
         return np.array([of_gears.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
-    def __call__(self, model_without_gears: LinearModel) -> LinearModel:
+    def __call__(self, base_model: LinearModel) -> LinearModel:
         """Return the model with the coordinates of every gear behind its own.
 
         The lumped damping stays on the coordinates that it is given for.
         """
-        model = model_without_gears
+        model = base_model
         for gear, body in self.bodies.items():
             model = self._with_gear(model, gear, body)
         residuals = self.residuals()

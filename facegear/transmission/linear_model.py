@@ -208,5 +208,5 @@ class LinearModel:
 class Bodies(Protocol):
     """Function that adds to the linear model of rigid masses on springs."""
 
-    def __call__(self, model: LinearModel) -> LinearModel:
+    def __call__(self, base_model: LinearModel) -> LinearModel:
         """Return the model with coordinates added behind its own, or with other matrices."""

@@ -59,9 +59,9 @@ class StaticGears:
     elastic: ElasticGears
     with_slopes: bool = False
 
-    def __call__(self, model_without_gears: LinearModel) -> LinearModel:
+    def __call__(self, base_model: LinearModel) -> LinearModel:
         """Return the model with the coordinates of every gear behind its own."""
-        model, layout = model_without_gears, self.elastic.layout
+        model, layout = base_model, self.elastic.layout
         for gear, body in self.elastic.bodies.items():
             meshes = np.array([g == gear for _, g in layout.meshes])
             if self.with_slopes:
