@@ -47,7 +47,7 @@ def bearing_forces(model: Model, motion: Track) -> Array:
     outside and is no bearing's. With clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its
     damping is beta dF/dt.
     """
-    linear, felt = model.machine.linear, _felt(model.machine.alike, model.reduced)
+    linear, felt = model.machine.linear, _felt(model.machine.without_errors, model.reduced)
     rings = linear.rings
     moving_parts = motion.along(felt.places, felt.speeds)
     first = len(moving_parts) - 4 * rings.body.size

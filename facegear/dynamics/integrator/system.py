@@ -121,7 +121,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
     """The system of a machine in its reduced coordinates; runouts and pitch deviations are left out."""
     contacts, rings = mesh_contacts(machine), machine.linear.rings
     nothing = 3 * rings.body.size * [0.0]
-    error, error_kind = _kinds(machine.alike)
+    error, error_kind = _kinds(machine.without_errors)
     load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
     return System(

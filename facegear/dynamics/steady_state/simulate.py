@@ -48,7 +48,7 @@ class Model:
 def build_model(machine: Machine) -> Model:
     """Reduce a machine once for all speeds. Raises NotConverged where its equilibrium is not found."""
     machine = machine_in_motion(machine)
-    reduced = _reduced(machine.alike)
+    reduced = _reduced(machine.without_errors)
     return Model(machine, reduced, _excited(machine, reduced.basis, machine_system(machine, reduced)))
 
 

@@ -23,7 +23,7 @@ from facegear.geometry.design import AssemblyErrors, Relief
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.stiffness.source import stiffness_from_contact
 from facegear.stiffness.tables import unloaded_error
-from facegear.stiffness.unloaded import unloaded_series
+from facegear.stiffness.unloaded_error import unloaded_series
 
 TORQUES = [100.0, 600.0]
 

@@ -18,7 +18,7 @@ from facegear.poses.exact_pose import body_motion, in_mesh_frame, pose_of
 from facegear.poses.mesh_poses import mesh_poses, pose_rows
 from facegear.transmission.layout import Role, Tilt
 from facegear.transmission.linear_model import LinearModel
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 from facegear.transmission.teeth import GEOMETRIC
 
 PITCHES = 143 * 30.0 / 360.0

@@ -11,7 +11,7 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.gear_body.excitation import phase_factors
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears, coordinates
 from facegear.transmission.layout import Side
