@@ -21,7 +21,7 @@ from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from facegear.compare.answers import SAME_DATE
 from facegear.io import documents, tables
-from facegear.pipeline.reported import REPORTED, table_name
+from facegear.pipeline.reported import REPORT_TABLES, table_name
 from facegear.pipeline.table import STAGES
 from validation.references import ROOT
 
@@ -101,7 +101,7 @@ def _range(values: pd.Series) -> list[tuple[str, float]]:
 
 def stored_tables(folder: Path) -> dict[str, pd.DataFrame]:
     """Tables that the report of a case reads, by name; of a sweep SWEPT and VIBRATION."""
-    wanted = [(name, file) for name, files in REPORTED.items() for file in files]
+    wanted = [(name, file) for name, files in REPORT_TABLES.items() for file in files]
     paths = [folder / STAGES[name].files[file].path for name, file in (*wanted, ("duty_loads", "duty_loads"))]
     read = {table_name(path): tables.read(path, allow_empty=True) for path in paths if path.exists()}
     if "sweep" in read:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from facegear.pipeline.needs import resolved_needs, shared_sources
 from facegear.pipeline.run import call
-from facegear.pipeline.stage import NONE, Case, From, Wildcards
+from facegear.pipeline.stage import NO_WILDCARDS, Case, From, Wildcards
 from facegear.pipeline.table import STAGES
 from facegear.results.base import Result, StageOutput
 from facegear.results.store import Store
@@ -54,15 +54,15 @@ class Chain:
 
     def given(self, upstream: Mapping[str, From]) -> dict[str, Any]:
         """Arguments that come from earlier stages."""
-        wanted = {key: source for key, source in upstream.items() if source.wanted(self.case)}
+        wanted = {key: source for key, source in upstream.items() if source.is_needed(self.case)}
         return {key: self._given(source) for key, source in wanted.items()}
 
-    def compute(self, name: str, wildcards: Wildcards = NONE, **more: Any) -> "Outcome":
+    def compute(self, name: str, wildcards: Wildcards = NO_WILDCARDS, **more: Any) -> "Outcome":
         """A stage computed now."""
         stage = STAGES[name]
-        return call(stage, self.arguments(name), **stage.typed(wildcards), **more)
+        return call(stage, self.arguments(name), **stage.typed_wildcards(wildcards), **more)
 
-    def part(self, name: str, file: str, wildcards: Wildcards = NONE) -> Any:
+    def part(self, name: str, file: str, wildcards: Wildcards = NO_WILDCARDS) -> Any:
         """The content of one file of a stage."""
         if not STAGES[name].wildcards:
             return self.store.output(name, self.values, lambda: self.compute(name)).content[file]
@@ -73,9 +73,9 @@ class Chain:
     def _given(self, source: From) -> Any:
         parts = [
             self._of(where.get("case")).part(source.stage, source.file, _without_case(where))
-            for where in source.places(self.case)
+            for where in source.file_wildcards(self.case)
         ]
-        return parts if source.each else parts[0]
+        return parts if source.each_wildcards else parts[0]
 
     def _of(self, case: str | None) -> "Chain":
         """The chain of another case of the same config; its own without a name."""

@@ -14,7 +14,7 @@ from facegear.io.atomic import atomic_path, require_writable, require_writable_f
 from facegear.pipeline.asked import machine_loads
 from facegear.pipeline.estimated_time import outlook_in_words
 from facegear.pipeline.needs import resolved_needs
-from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair, table_name
+from facegear.pipeline.reported import REPORT_TABLES, asked_for, reported_tables, shown_pair, table_name
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
@@ -106,8 +106,8 @@ class WholeCase:
         for stage in self._asked():
             content = self._output(stage).content
             paths = {
-                name: [str(folder / file.at({"each": text})) for text in file.each(self.chain.case)]
-                if file.each
+                name: [str(folder / file.at({"each": text})) for text in file.each_text(self.chain.case)]
+                if file.each_text
                 else str(folder / file.path)
                 for name, file in stage.files.items()
             }
@@ -222,7 +222,7 @@ class WholeCase:
 
     def _figure_names(self, stage: Stage) -> Sequence[str]:
         """Names of all figures of a stage."""
-        return stage.figures.named(self.chain.case) if stage.figures else ()
+        return stage.figures.figure_names(self.chain.case) if stage.figures else ()
 
     def _figures(self, stage: Stage) -> Iterator[tuple[str, Any]]:
         """Draw the figures of a stage; yield each with its name."""
@@ -263,4 +263,4 @@ class WholeCase:
 
 
 def _is_reported(stage: Stage) -> bool:
-    return stage.name in REPORTED or (stage.figures is not None and stage.name not in NOT_REPORTED)
+    return stage.name in REPORT_TABLES or (stage.figures is not None and stage.name not in NOT_REPORTED)

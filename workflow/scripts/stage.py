@@ -20,7 +20,7 @@ with job(snakemake):
             given = {**read_all(row.upstream, part.input, stages), **part.params["needs"]}
             partial = Path(part.output[row.resumable]).with_suffix(".partial") if row.resumable else None
             resumed = {"partial": partial, "code": code} if partial else {}
-            outcome = call(row, given, **row.typed(wildcards), **resumed)
+            outcome = call(row, given, **row.typed_wildcards(wildcards), **resumed)
             write_stage(row, outcome.content, part.output)
             if partial:
                 partial.unlink()
