@@ -12,7 +12,7 @@ from facegear.config.cases import changed_config, expand_cases
 from facegear.config.keys import keys_named
 from facegear.config.load import config_of, load_config, plain
 from facegear.config.model import Config, resolved
-from facegear.errors import ConfigError, FacegearError, chosen, extras_named, file_path
+from facegear.errors import ConfigError, FacegearError, extras_named, file_path, require_choice
 from facegear.pipeline.run import machine_inputs
 from facegear.results.chain import Chain
 from facegear.results.store import Store, case_folder
@@ -992,7 +992,7 @@ class Gearbox:
             config without a transmission.
         """
         path = file_path(path)
-        ending = chosen(path.suffix.lower(), ENDINGS, "ending of the path")
+        ending = require_choice(path.suffix.lower(), ENDINGS, "ending of the path")
         if ending == ".fmu":
             from facegear.exchange.fmu import write_fmu
 
@@ -1102,7 +1102,9 @@ class Gearbox:
 
         cause_sections = self._require_section("tolerances")["causes"]
         names = [cause["name"] for cause in cause_sections]
-        scaled_names = [chosen(name, names, "causes") for name in (names if causes is None else causes)]
+        scaled_names = [
+            require_choice(name, names, "causes") for name in (names if causes is None else causes)
+        ]
 
         def sample_quantity(scale: float) -> Any:
             scaled_causes = [
@@ -1116,7 +1118,7 @@ class Gearbox:
                 .tolerances(samples)
                 .samples()
             )
-            return frame[chosen(quantity, list(frame.columns), "quantity")].to_numpy(float)
+            return frame[require_choice(quantity, list(frame.columns), "quantity")].to_numpy(float)
 
         return loosest(sample_quantity, at_most, percentile / 100.0, max_factor)
 

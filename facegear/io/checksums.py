@@ -55,11 +55,11 @@ def verify(path: str | Path) -> None:
     for manifest in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
         try:
             document = json.loads(manifest.read_text(encoding="utf-8"))
-            recorded = document["files"].get(path.name)
+            recorded_checksum = document["files"].get(path.name)
             rebuild = document["rebuild"]
         except (ValueError, KeyError, TypeError, AttributeError):
             raise CorruptFile(manifest, "the manifest is not readable") from None
-        if recorded is None:
+        if recorded_checksum is None:
             continue
-        if path.stat().st_size != recorded["bytes"] or sha256(path) != recorded["sha256"]:
+        if path.stat().st_size != recorded_checksum["bytes"] or sha256(path) != recorded_checksum["sha256"]:
             raise CorruptFile(path, "the content differs from what its stage wrote", f"{rebuild}{path.name}")

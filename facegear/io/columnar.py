@@ -28,7 +28,7 @@ def read(path: str | Path, columns: Sequence[str] = ()) -> pd.DataFrame:
         frame = pq.read_table(path).to_pandas()
     except (pa.ArrowException, OSError) as error:
         raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
-    missing = [name for name in columns if name not in frame.columns]
-    if missing:
-        raise CorruptFile(path, f"column {missing[0]!r} is missing")
+    missing_columns = [name for name in columns if name not in frame.columns]
+    if missing_columns:
+        raise CorruptFile(path, f"column {missing_columns[0]!r} is missing")
     return frame

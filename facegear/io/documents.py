@@ -36,7 +36,7 @@ def read(path: str | Path, keys: Sequence[str] = ()) -> dict[str, Any]:
         raise CorruptFile(path, "not a readable json record") from None
     if not isinstance(record, dict):
         raise CorruptFile(path, "not a json record")
-    missing = [key for key in keys if key not in record]
-    if missing:
-        raise CorruptFile(path, f"key {missing[0]!r} is missing")
+    missing_keys = [key for key in keys if key not in record]
+    if missing_keys:
+        raise CorruptFile(path, f"key {missing_keys[0]!r} is missing")
     return record

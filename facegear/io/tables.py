@@ -36,9 +36,9 @@ def read(
         )
     except (ValueError, UnicodeDecodeError) as error:
         raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
-    missing = [name for name in columns if name not in frame.columns]
-    if missing:
-        raise CorruptFile(path, f"column {missing[0]!r} is missing")
+    missing_columns = [name for name in columns if name not in frame.columns]
+    if missing_columns:
+        raise CorruptFile(path, f"column {missing_columns[0]!r} is missing")
     if frame.empty and not allow_empty:
         raise CorruptFile(path, "the table is empty")
     numbers = frame[list(columns)].select_dtypes("number")

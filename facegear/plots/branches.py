@@ -26,7 +26,7 @@ from facegear.plots.sweep import rms_axis, select
 
 PERIOD_COLOURS = (BLUE, RED, GREEN, PURPLE)
 """Colours of period 1, 2, 4 and any other."""
-NAMED = (1, 2, 4)
+LABELLED_PERIODS = (1, 2, 4)
 MARKERS = {
     "fold": "triangle-up",
     "period doubling": "square",
@@ -35,7 +35,7 @@ MARKERS = {
 }
 SWEEPS = {"up": ("y-up", grey(0.45)), "down": ("y-down", grey(0.7))}
 IRREGULAR = grey(0.55)
-SHOWN = 0.06
+MIN_FRACTION_SHOWN = 0.06
 """Smallest fraction of a bar that has room for its number."""
 LOCI: Mapping[str, tuple[str, LineStyle]] = {"fold": (BLUE, "solid"), "period doubling": (RED, "dash")}
 UNIT_CIRCLE = 2.0 * np.pi * np.arange(361) / 360
@@ -103,7 +103,9 @@ def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _colour(period: int) -> str:
-    return PERIOD_COLOURS[NAMED.index(period) if period in NAMED else len(NAMED)]
+    return PERIOD_COLOURS[
+        LABELLED_PERIODS.index(period) if period in LABELLED_PERIODS else len(LABELLED_PERIODS)
+    ]
 
 
 def _keys(branches: pd.DataFrame) -> Iterator[Key]:
@@ -116,7 +118,7 @@ def _keys(branches: pd.DataFrame) -> Iterator[Key]:
 
 def _by_size(periods: pd.Series) -> list[int]:
     """Periods with a colour of their own first."""
-    return sorted(periods.unique(), key=lambda period: (period not in NAMED, period))
+    return sorted(periods.unique(), key=lambda period: (period not in LABELLED_PERIODS, period))
 
 
 def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
@@ -153,7 +155,7 @@ def fractions(table: pd.DataFrame) -> Figure:
         for row in table[table["speed_rpm"] == speed].itertuples():
             name, colour = _motion(str(row.motion))
             top = bottom + row.fraction
-            has_number = str(row.branch).isdigit() and row.fraction > SHOWN
+            has_number = str(row.branch).isdigit() and row.fraction > MIN_FRACTION_SHOWN
             is_inner = 0.0 < row.fraction < 1.0 and top < 1.0 - 1e-9
             ends: Look = (
                 {"low": _array_of(top - row.error), "high": _array_of(top + row.error)} if is_inner else {}
@@ -181,7 +183,7 @@ def _motion(label: str) -> tuple[str, str]:
     if not label.startswith("period-"):
         return "not periodic", IRREGULAR
     period = int(label.removeprefix("period-"))
-    if period in NAMED:
+    if period in LABELLED_PERIODS:
         return f"period {period}", _colour(period)
     return "other periods", _colour(period)
 

@@ -56,10 +56,13 @@ def along_path(local: Arrays) -> Figure:
 
 def over_flank(local: Arrays, pressure: Arrays) -> Figure:
     """Friction loss and flash temperature over the pinion's flank at the largest torque."""
-    seen = pattern(pressure)
+    contact_pattern = pattern(pressure)
     torque = local["torque_n_m"].max()
     on = local["torque_n_m"] == torque
-    width, radius = 1e3 * seen.points[..., 1], 1e3 * np.hypot(seen.points[..., 0], seen.points[..., 2])
+    width, radius = (
+        1e3 * contact_pattern.points[..., 1],
+        1e3 * np.hypot(contact_pattern.points[..., 0], contact_pattern.points[..., 2]),
+    )
     stages = np.unique(passage(pressure["contact_position"], pressure["contact_tooth"]))
     row = np.searchsorted(stages, passage(local["position"], local["tooth"])[on])
     cells = row, local["plane"][on].astype(int)
@@ -122,11 +125,11 @@ def efficiency_map(table: pd.DataFrame) -> Figure:
 
 def machine_heat(meshes: pd.DataFrame, bodies: pd.DataFrame) -> Figure:
     """Loss of every mesh and heat of every body at the nominal load."""
-    lost, heat = meshes[meshes["bin"] == 0], bodies[bodies["bin"] == 0]
-    positions = {mesh: float(number) for number, mesh in enumerate(dict.fromkeys(lost["mesh"]))}
+    mesh_losses, heat = meshes[meshes["bin"] == 0], bodies[bodies["bin"] == 0]
+    positions = {mesh: float(number) for number, mesh in enumerate(dict.fromkeys(mesh_losses["mesh"]))}
     loss: list[Bars] = []
     for flank, colour in FLANK_COLOURS.items():
-        rows = lost[lost["flank"] == flank]
+        rows = mesh_losses[mesh_losses["flank"] == flank]
         if len(rows):
             at, lengths = rows["mesh"].map(positions).to_numpy(float), rows["loss_w"].to_numpy(float)
             loss.append(Bars(at, lengths, f"{flank} flank", colour, flat=True))

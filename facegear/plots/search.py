@@ -17,10 +17,10 @@ def front_figure(
 ) -> Figure:
     """Every design by its first two objectives, by generation where there is but one; front and winners."""
     across, up = objectives[:2] if len(objectives) > 1 else ("generation", objectives[0])
-    known = designs[designs["error"] == ""]
+    computed_designs = designs[designs["error"] == ""]
     dots: Look = {"line": "none", "marker": "dot", "size": 3.0}
     marks = [
-        Curve(known[across], known[up], "designs tried", grey(0.6), **dots),
+        Curve(computed_designs[across], computed_designs[up], "designs tried", grey(0.6), **dots),
         Curve(front[across], front[up], "front", BLUE, width=1.0, marker="circle", size=4.0),
     ]
     for number, row in enumerate(winners.itertuples() if len(objectives) > 1 else ()):

@@ -30,32 +30,38 @@ MARKS = {
 
 def passage_figure(table: pd.DataFrame) -> Figure:
     """Largest tension below the loaded flank, and largest compression below the other, for each torque."""
-    felt = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
-    positions = table.loc[felt > PART_SHOWN * felt.max(), "passage"]
-    shown = table[table["passage"].between(positions.min() - 0.25, positions.max() + 0.25)]
-    return _both(shown, "passage", Axis("Passage of a tooth", "pitches"))
+    largest_stress = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
+    positions = table.loc[largest_stress > PART_SHOWN * largest_stress.max(), "passage"]
+    rows_shown = table[table["passage"].between(positions.min() - 0.25, positions.max() + 0.25)]
+    return _both_fillets_figure(rows_shown, "passage", Axis("Passage of a tooth", "pitches"))
 
 
 def along_face_figure(table: pd.DataFrame) -> Figure:
     """The same along the face: the largest over the passage."""
-    return _both(table, "radius_mm", Axis("Gear radius", "mm"))
+    return _both_fillets_figure(table, "radius_mm", Axis("Gear radius", "mm"))
 
 
-def _both(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
+def _both_fillets_figure(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
     torques = np.sort(table["torque_n_m"].unique())
     panels = []
     for body, name in BODIES.items():
         curves = []
         for torque, colour in zip(torques, shades(torques.size), strict=True):
             rows = table[(table["torque_n_m"] == torque) & (table["body"] == body)]
-            loaded, other = (
+            loaded_fillet, other_fillet = (
                 rows[rows["fillet"] == fillet].sort_values(coordinate) for fillet in ("loaded", "other")
             )
             label = f"{format_number(torque, 4)} N m"
             look: Look = {"line": "dash", "width": 0.9, "in_legend": False}
             curves += [
-                Curve(loaded[coordinate], loaded["largest_mpa"], label, colour),
-                Curve(other[coordinate], other["smallest_mpa"], f"{label}, other fillet", colour, **look),
+                Curve(loaded_fillet[coordinate], loaded_fillet["largest_mpa"], label, colour),
+                Curve(
+                    other_fillet[coordinate],
+                    other_fillet["smallest_mpa"],
+                    f"{label}, other fillet",
+                    colour,
+                    **look,
+                ),
             ]
         stress = Axis(f"{name}: root stress", "MPa", "tension solid, compression dashed")
         panels.append(Panel(along, stress, curves, height=2.4))

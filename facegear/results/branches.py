@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -141,7 +141,7 @@ class BranchesResult(Result):
         """
         from facegear.plots.branches import amplitudes, fractions, multipliers, typical_meshes
 
-        chosen(what, FIGURES, "plot")
+        require_choice(what, FIGURES, "plot")
         if what == "fractions":
             return fractions(self.content["coexistence"])
         if what == "multipliers":

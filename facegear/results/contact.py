@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -119,6 +119,6 @@ class ContactResult(Result):
         """
         from facegear.plots.contact import contact_curves, contact_pattern
 
-        if chosen(what, ("pattern", "curves"), "plot") == "curves":
+        if require_choice(what, ("pattern", "curves"), "plot") == "curves":
             return contact_curves(self.content["ltca"])
         return contact_pattern(self.content["pressure"])

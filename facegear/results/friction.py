@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -94,7 +94,7 @@ class FrictionResult(Result):
         """
         from facegear.plots.friction import along_path, efficiency_map, over_flank
 
-        if chosen(what, ("path", "flank", "efficiency"), "plot") == "path":
+        if require_choice(what, ("path", "flank", "efficiency"), "plot") == "path":
             return along_path(self.content["local"])
         if what == "flank":
             return over_flank(self.content["local"], self.content["pressure"])

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -54,7 +54,7 @@ class GeometryResult(Result):
         from facegear.plots.tooth_pair import separation, tooth_pair, tooth_sections
 
         record, flanks = self.content["pair"], self.content["flanks"]
-        if chosen(what, ("pair", "sections", "separation"), "plot") == "separation":
+        if require_choice(what, ("pair", "sections", "separation"), "plot") == "separation":
             return separation(record, flanks, self.content["contact"])
         return tooth_pair(record, flanks) if what == "pair" else tooth_sections(record, flanks)
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import FacegearError, chosen
+from facegear.errors import FacegearError, require_choice
 from facegear.results.base import Result, require_answers
 from facegear.results.paper_figure import fit_for_paper
 
@@ -84,5 +84,5 @@ class LoadSharingResult(Result):
         group_kinds = tuple(dict.fromkeys(self.content["summary"]["kind"]))
         if not group_kinds:
             raise FacegearError(f"{self.values['case']}: no meshes share a load, there is nothing to draw")
-        group_kind = group_kinds[0] if kind is None else chosen(kind, group_kinds, "kind")
+        group_kind = group_kinds[0] if kind is None else require_choice(kind, group_kinds, "kind")
         return sharing_figure(frames["curve"], frames["summary"], group_kind, title)

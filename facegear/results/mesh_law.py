@@ -32,6 +32,7 @@ class MeshLawResult(Result):
         Returns
         -------
         dict[str, AnyArray]
-            Arrays by name, in m, N and N/m, with the shapes of LAW_ARRAYS (`facegear.stiffness.load_dependent`).
+            Arrays by name, of LAW_ARRAYS: levels (tables, levels) in m, forces and slopes (tables, levels, 2,
+            orders) in N and N/m, table of each flank (2, 2).
         """
         return {name: values.copy() for name, values in self.content["law"].items()}

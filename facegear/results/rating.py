@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -74,6 +74,6 @@ class RatingResult(Result):
         """
         from facegear.plots.strength import damage_by_bin, life
 
-        if chosen(what, ("life", "damage"), "plot") == "life":
+        if require_choice(what, ("life", "damage"), "plot") == "life":
             return life(self.content["rating"], self.content["damage"], self.content["curves"])
         return damage_by_bin(self.content["rating"], self.content["damage"])

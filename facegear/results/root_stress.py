@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -62,7 +62,7 @@ class RootStressResult(Result):
         """
         import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
-        chosen(body, ("pinion", "face_gear"), "body")
+        require_choice(body, ("pinion", "face_gear"), "body")
         arrays = self.content["stress"]
         return xr.DataArray(
             1e-6 * arrays[f"{body}_stress_pa"],
@@ -91,6 +91,6 @@ class RootStressResult(Result):
         """
         from facegear.plots.strength import along_face_figure, passage_figure
 
-        if chosen(what, ("passage", "face"), "plot") == "passage":
+        if require_choice(what, ("passage", "face"), "plot") == "passage":
             return passage_figure(self.content["passage"])
         return along_face_figure(self.content["along_face"])

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -78,7 +78,7 @@ class SearchResult(Result):
         from facegear.plots.search import front_figure, hypervolume_figure
 
         content = self.content
-        if chosen(kind, KINDS, "kind") == "hypervolume":
+        if require_choice(kind, KINDS, "kind") == "hypervolume":
             return hypervolume_figure(content["hypervolume"])
         objectives = [objective["name"] for objective in self.values["search"]["objectives"]]
         return front_figure(content["designs"], content["front"], content["winners"], objectives)

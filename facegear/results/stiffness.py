@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 import pandas as pd
 
-from facegear.errors import FacegearError, chosen
+from facegear.errors import FacegearError, require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 from facegear.stiffness.tables import series_of
@@ -85,6 +85,6 @@ class StiffnessResult(Result):
         """
         from facegear.plots.stiffness import harmonic_amplitudes, stiffness_curve
 
-        if chosen(what, ("curve", "harmonics"), "plot") == "curve":
+        if require_choice(what, ("curve", "harmonics"), "plot") == "curve":
             return stiffness_curve(self.content["tvms"])
         return harmonic_amplitudes(self.content["spectrum"])

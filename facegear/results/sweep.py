@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
-from facegear.errors import FacegearError, chosen
+from facegear.errors import FacegearError, require_choice
 from facegear.results.base import Result, require_answers
 from facegear.results.paper_figure import fit_for_paper
 
@@ -123,17 +123,17 @@ class SweepResult(Result):
         """
         from facegear.plots.dynamics import SWEEP_FIGURES, drawn_machine
 
-        draw = SWEEP_FIGURES[chosen(what, tuple(SWEEP_FIGURES), "plot")]
+        draw = SWEEP_FIGURES[require_choice(what, tuple(SWEEP_FIGURES), "plot")]
         teeth = self.values["tooth_pair"]["pinion_teeth"]
         machine = drawn_machine(self.values["transmission"], teeth)
         if not beside:
             return draw(self.content, machine)
         from facegear.plots.sweeps_beside import mesh_sweeps_beside
 
-        chosen(what, ("meshes",), "plot beside other sweeps")
+        require_choice(what, ("meshes",), "plot beside other sweeps")
         require_answers(beside, SweepResult)
         sweeps = {name: result.content["sweep"] for name, result in {label: self, **beside}.items()}
-        meshes = [f"{pinion}/{side}" for side in machine.sides for pinion in machine.shown]
+        meshes = [f"{pinion}/{side}" for side in machine.sides for pinion in machine.pinions_shown]
         item_names = [set(sweep["body_or_mesh"]) for sweep in sweeps.values()]
         if not all(set(meshes) <= names for names in item_names):
             raise FacegearError("beside: must be sweeps of machines with the same meshes")

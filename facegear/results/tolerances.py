@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -114,7 +114,7 @@ class TolerancesResult(Result):
         from facegear.plots.tolerances import distribution_figure, importance_figure, scatter_figure
 
         content = self.content
-        if chosen(kind, KINDS, "kind") == "distributions":
+        if require_choice(kind, KINDS, "kind") == "distributions":
             return distribution_figure(content["samples"], content["percentiles"])
         if kind == "importance":
             return importance_figure(content["percentiles"], content["importance"], content["indices"])

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -45,4 +45,6 @@ class TopographyResult(Result):
         """
         from facegear.plots.topography import topography_figure
 
-        return topography_figure(self.content["points"], chosen(body, ("pinion", "face_gear"), "plot"))
+        return topography_figure(
+            self.content["points"], require_choice(body, ("pinion", "face_gear"), "plot")
+        )

@@ -9,7 +9,7 @@ from typing import Any
 
 from facegear.config.arguments import typed_arguments
 from facegear.config.notes import notes
-from facegear.errors import FacegearError, MissingExtra, chosen, extras_named, file_path
+from facegear.errors import FacegearError, MissingExtra, extras_named, file_path, require_choice
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.pipeline.asked import machine_loads
 from facegear.pipeline.estimated_time import outlook_in_words
@@ -164,7 +164,7 @@ class WholeCase:
             If the case has no figure of such a name.
         """
         folder, names = file_path(folder, "folder"), [names] if isinstance(names, str) else names
-        chosen(suffix, PICTURE_ENDINGS, "suffix")
+        require_choice(suffix, PICTURE_ENDINGS, "suffix")
         if not isinstance(names, Sequence):
             raise FacegearError(f"names = {names!r}: must be a list of names of figures")
         known_names = {name: stage for stage in self._stages_made() for name in self._figure_names(stage)}

@@ -5,7 +5,7 @@ from tempfile import TemporaryDirectory
 
 from facegear.config.mesh import Mesh
 from facegear.config.tooth_pair import ToothPair, pair
-from facegear.errors import FacegearError, chosen
+from facegear.errors import FacegearError, require_choice
 from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.solids import solid, teeth_of, triangles
 from facegear.io.cad import write_step, write_stl
@@ -94,8 +94,8 @@ def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair
         For a pair without bodies.
     """
     path = Path(path)
-    ending = chosen(path.suffix.lower(), (".step", ".stp", ".stl"), "ending of the path")
-    gear = next(name for name in BODIES if name == chosen(body, BODIES, "body"))
+    ending = require_choice(path.suffix.lower(), (".step", ".stp", ".stl"), "ending of the path")
+    gear = next(name for name in BODIES if name == require_choice(body, BODIES, "body"))
     is_whole = teeth is None or (isinstance(teeth, int) and not isinstance(teeth, bool))
     if not is_whole:
         raise FacegearError(f"teeth = {teeth!r}: must be a whole number")

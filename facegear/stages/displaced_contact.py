@@ -13,7 +13,7 @@ from facegear.config.tooth_pair import ToothPair, pair, pair_design
 from facegear.config.transmission import Transmission
 from facegear.contact.gear_flank import from_arrays
 from facegear.contact.posed import met_contacts
-from facegear.errors import ConfigError, chosen
+from facegear.errors import ConfigError, require_choice
 from facegear.number_format import count_noun
 from facegear.poses.displaced import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
 from facegear.stages.outcome import Outcome
@@ -90,7 +90,7 @@ def displacement(body: str, values: Mapping[str, float]) -> Displacement:
         For another key and for a value that is not a number within bounds.
     """
     for key, value in values.items():
-        chosen(key, (*SHIFTS, *TURNS), f"key of the displacement {body}")
+        require_choice(key, (*SHIFTS, *TURNS), f"key of the displacement {body}")
         largest = LARGEST_SHIFT if key in SHIFTS else LARGEST_TURN
         number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
         if not number or abs(value) > largest:
@@ -112,7 +112,7 @@ def _mesh_place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: 
         return MeshPlace("upper", 0.0, pitch_radius)
     machine = layout(transmission, ToothNumbers.of_config(tooth_pair.model_dump()))
     names = machine.mesh_names
-    i, g = machine.meshes[names.index(chosen(mesh, names, "mesh")) if mesh is not None else 0]
+    i, g = machine.meshes[names.index(require_choice(mesh, names, "mesh")) if mesh is not None else 0]
     return MeshPlace(machine.gears[g].side.value, float(machine.angles[i]) % tau, machine.tilt_distance(g))
 
 
