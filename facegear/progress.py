@@ -25,7 +25,13 @@ class Progress:
         self.estimate: tuple[float, float] | None = None
 
     def step(self, count: int = 1) -> None:
-        """Count work as done; prints at most once an interval."""
+        """Count work as done; prints at most once an interval.
+
+        Parameters
+        ----------
+        count : int
+            Number of finished pieces of work.
+        """
         self.done += count
         now = time.monotonic()
         if self.first is None:

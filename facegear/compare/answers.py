@@ -44,6 +44,13 @@ def store(folder: Path, path: Path) -> None:
 
     The file names the larger tables too, so that nothing is compared with them. Two equal folders give the
     same bytes. What was on the machine that made them is left out.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    path : Path
+        Path of the file.
     """
     all_names = sorted(answer_tables(folder))
     names = [name for name in all_names if (folder / name).stat().st_size <= MAX_BYTES]
@@ -83,7 +90,7 @@ def open_answer(name: str) -> Iterator[Path]:
 
 
 def _short(manifest: Path) -> str:
-    """What says how a table was made, without time, machine and summary."""
+    """Reduce a manifest to what says how a table was made, without time, machine and summary."""
     record = documents.read(manifest)
     keys = ("rule", "versions", "params", "code", "rebuild", "inputs", "files")
     return json.dumps({key: record[key] for key in keys if key in record}, sort_keys=True)

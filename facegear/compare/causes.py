@@ -1,4 +1,4 @@
-"""What may have moved a table: config, code and versions of its stage and of all stages before it."""
+"""Possible causes of a moved table: config, code and versions of its stage and of all stages before it."""
 
 import os
 from collections.abc import Iterator, Mapping
@@ -12,10 +12,24 @@ Manifest = Mapping[str, Any]
 
 
 def causes(name: str, old: Path, new: Path) -> list[str]:
-    """One line for each difference behind a table of two folders of results.
+    """List the differences behind a table of two folders of results.
 
     That is a changed value of the config, with both values; changed code of a stage; another version of a
     library. A line says so where there is none, or where a folder does not say how a table was made.
+
+    Parameters
+    ----------
+    name : str
+        Path of the table inside the folders.
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+
+    Returns
+    -------
+    list[str]
+        A line for each difference.
     """
     before, after = _history(old / name), _history(new / name)
     if not before or not after:

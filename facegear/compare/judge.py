@@ -32,7 +32,7 @@ COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerica
 
 
 class Verdict(StrEnum):
-    """What became of a number or a label."""
+    """Verdict on a number or a label."""
 
     SAME = "same"
     WITHIN_ERROR = "within its numerical error"
@@ -75,8 +75,24 @@ class Comparison:
 def compare(old: Path, new: Path) -> Comparison:
     """Compare all tables of two folders of results, but for those that a stored answer leaves out.
 
-    Raises FacegearError for a folder without tables, CorruptFile for a table that was altered since its stage
-    wrote it.
+    Parameters
+    ----------
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+
+    Returns
+    -------
+    Comparison
+        The comparison.
+
+    Raises
+    ------
+    FacegearError
+        For a folder without tables.
+    CorruptFile
+        For a table that was altered since its stage wrote it.
     """
     names = {side: answer_tables(side) for side in (old, new)}
     left_out = tables_not_stored(old) | tables_not_stored(new)
@@ -90,7 +106,18 @@ def compare(old: Path, new: Path) -> Comparison:
 
 
 def answer_tables(folder: Path) -> set[str]:
-    """Tables of a folder of results, as paths inside it."""
+    """Return the tables of a folder of results.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    set[str]
+        Paths inside the folder.
+    """
     paths = (path.relative_to(folder) for path in folder.rglob("*.csv"))
     table_paths = {path.as_posix() for path in paths if not set(path.parts) & {*LEFT_OUT, *UNDETERMINED}}
     if not table_paths:

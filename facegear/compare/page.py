@@ -32,7 +32,21 @@ MAX_FILES_NAMED = 3
 
 
 def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: Path, new: Path) -> None:
-    """Write the page; `reasons` of `causes_table`, `old` and `new` are the folders that were compared."""
+    """Write the page of a comparison.
+
+    Parameters
+    ----------
+    path : Path
+        Path of the file.
+    comparison : Comparison
+        The comparison.
+    reasons : pd.DataFrame
+        Table of `causes_table`.
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+    """
     with TemporaryDirectory() as folder:
         pictures = list(_pictures(comparison, old, new, Path(folder)))
         chapters = [
@@ -62,7 +76,18 @@ def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: P
 
 
 def verdict(comparison: Comparison) -> str:
-    """One sentence on the whole."""
+    """Write one sentence on the whole comparison.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    str
+        The sentence.
+    """
     if comparison.equal:
         within = comparison.counts[Verdict.WITHIN_ERROR] + comparison.counts[Verdict.IRREGULAR]
         note = f" {within} numbers moved within their numerical error." if within else ""
@@ -98,14 +123,40 @@ def stored_in_words(name: str, folder: Path) -> str:
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:
-    """The largest changes of every table, those beyond their error first."""
+    """Return the largest changes of every table, those beyond their error first.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each change.
+    """
     rows = comparison.rows.assign(counts=comparison.rows["verdict"].isin(CHANGES))
     order = rows.sort_values(["counts", "relative_change"], ascending=False, kind="stable")
     return order.groupby("file").head(LIMIT).sort_values("file", kind="stable").drop(columns="counts")
 
 
 def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
-    """Columns table, cause: what may have moved each table that stands in both folders."""
+    """Tabulate what may have moved each table that stands in both folders.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns table, cause.
+    """
     files = [
         name for name in comparison.rows["file"].unique() if (old / name).exists() and (new / name).exists()
     ]
@@ -115,7 +166,18 @@ def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
 
 
 def by_table(comparison: Comparison) -> pd.DataFrame:
-    """One row a table and verdict: how many numbers or labels, and the largest relative change among them."""
+    """Count numbers or labels by table and verdict.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each table and verdict: count, and the largest relative change.
+    """
     changes_by_file = comparison.rows.groupby(["file", "verdict"], sort=True)["relative_change"]
     return (
         changes_by_file.agg(numbers="size", largest_change="max")

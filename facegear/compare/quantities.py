@@ -1,4 +1,4 @@
-"""What is compared between two folders of results, and how accurately each number is known.
+"""Quantities that are compared between two folders of results, and the numerical error of each.
 
 An error is relative to the largest magnitude of its column in either folder. In tables with one quantity a
 row it is relative to the largest magnitude of that quantity. The errors are those of the accuracy table in
@@ -78,9 +78,19 @@ class Table:
     bracket: Bracket | None = None
 
     def error(self, column: str, elsewhere: bool = False) -> float | None:
-        """Relative numerical error of a column, or None where none is stated.
+        """Return the numerical error of a column.
 
-        elsewhere: of a row whose bracket lies elsewhere in the other table.
+        Parameters
+        ----------
+        column : str
+            Name of the column.
+        elsewhere : bool
+            Whether the row's bracket lies elsewhere in the other table.
+
+        Returns
+        -------
+        float or None
+            The error, relative; None where none is stated.
         """
         errors = {**self.errors, **self.bracket.errors} if elsewhere and self.bracket else self.errors
         fitting = [start for start in errors if column.startswith(start)]

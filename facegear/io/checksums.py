@@ -12,15 +12,36 @@ MANIFEST_SUFFIX = ".provenance.json"
 
 
 def sha256(path: str | Path) -> str:
-    """SHA-256 of a file's bytes, as hex."""
+    """Return the SHA-256 of a file's bytes.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    str
+        Hexadecimal digits.
+    """
     with open(path, "rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def require_manifest(path: str | Path) -> None:
-    """A stage's output has a manifest beside it that says what it should hold.
+    """Refuse a stage's output without the manifest beside it that says what it should hold.
 
-    Raises CorruptFile where there is none, as there is no telling then whether the file is whole.
+    Without it there is no telling whether the file is whole.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Raises
+    ------
+    CorruptFile
+        Where there is no manifest.
     """
     path = Path(path)
     if path.is_file() and not any(
@@ -38,9 +59,17 @@ def _files(manifest: Path) -> Mapping[str, Any]:
 
 
 def verify(path: str | Path) -> None:
-    """Compare `path` with the manifest of the stage that wrote it, if one lies beside it.
+    """Compare a file with the manifest of the stage that wrote it, if one lies beside it.
 
-    Raises CorruptFile where size or checksum differ, or the file is missing.
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Raises
+    ------
+    CorruptFile
+        Where size or checksum differ, or the file is missing.
     """
     path = Path(path)
     try:

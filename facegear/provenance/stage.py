@@ -26,13 +26,19 @@ Paths = Mapping[str, Any]
 
 
 class StageRun:
-    """What a script may tell about its stage; `name` leads its line on the terminal."""
+    """Run of a stage, to which a script tells its summary; `name` leads its line on the terminal."""
 
     def __init__(self, name: str) -> None:
         self.name, self.text = name, ""
 
     def summary(self, text: str) -> None:
-        """Print and record the stage's one-line summary of what it found."""
+        """Print and record the stage's one-line summary of what it found.
+
+        Parameters
+        ----------
+        text : str
+            The summary.
+        """
         self.text = text
         print(f"{self.name}: {text}", file=sys.stderr, flush=True)
 
@@ -77,7 +83,18 @@ def _flatten_paths(paths: Paths) -> list[str]:
 
 
 def parts_of(snakemake: Any) -> list[Part]:
-    """Parts of a job of a stage: one, or one for each of `cases`, whose number ends its names."""
+    """Return the parts of a job of a stage: one, or one for each of `cases`, whose number ends its names.
+
+    Parameters
+    ----------
+    snakemake : Any
+        Snakemake's object in the script.
+
+    Returns
+    -------
+    list[Part]
+        The parts.
+    """
     params, rebuild = snakemake.params, snakemake.config["rebuild_command"]
     input_paths, output_paths = dict(snakemake.input.items()), dict(snakemake.output.items())
     part_params = {"needs": params.needs, "code": params.code}
@@ -104,7 +121,18 @@ def _ending(end: str, paths: Paths) -> Paths:
 
 @contextmanager
 def stage(snakemake: Any) -> Iterator[StageRun]:
-    """Run the body of a script whose rule has one manifest, which covers all other outputs."""
+    """Run the body of a script whose rule has one manifest, which covers all other outputs.
+
+    Parameters
+    ----------
+    snakemake : Any
+        Snakemake's object in the script.
+
+    Yields
+    ------
+    StageRun
+        The run, which takes the stage's summary.
+    """
     whole = Part(
         snakemake.rule,
         tuple(dict(snakemake.wildcards.items()).values()),
@@ -123,6 +151,16 @@ def job(snakemake: Any) -> Iterator[None]:
 
     A FacegearError or a full disk ends the script with one line, the log's path and exit code 1, without a
     traceback. Ctrl-C ends it at once and without a word: the run that has started it says what is to be said.
+
+    Parameters
+    ----------
+    snakemake : Any
+        Snakemake's object in the script.
+
+    Yields
+    ------
+    None
+        Nothing.
     """
     log = Path(snakemake.log[0])
     with _one_line_errors(snakemake, log), ExitStack() as locks:
@@ -200,7 +238,9 @@ def _one_line_errors(snakemake: Any, log: Path) -> Iterator[None]:
 
 
 def _rebuilt(error: FacegearError, snakemake: Any) -> FacegearError:
-    """The same error; where a stored file is at fault, with the command that makes it again in this run."""
+    """Return the same error; where a stored file is at fault, with the command that makes it again in this
+    run.
+    """
     if not isinstance(error, CorruptFile):
         return error
     command = snakemake.config["rebuild_command"]
