@@ -42,7 +42,20 @@ UNIT_CIRCLE = 2.0 * np.pi * np.arange(361) / 360
 
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
-    """The first mesh of the first pinion of each role; pinions as in the config, meshes `pinion/side`."""
+    """Return the first mesh of the first pinion of each role.
+
+    Parameters
+    ----------
+    pinions : Sequence[Mapping[str, Any]]
+        Pinions as in the config.
+    meshes : Iterable[str]
+        Names `pinion/side` of the meshes.
+
+    Returns
+    -------
+    list[str]
+        Names of the meshes.
+    """
     roles = [pinion["role"] for pinion in pinions]
     names = [pinion["name"] for i, pinion in enumerate(pinions) if roles[i] not in roles[:i]]
     different = list(dict.fromkeys(meshes))
@@ -56,8 +69,28 @@ def amplitudes(
     meshes: Sequence[str],
     speed_rpm: float,
 ) -> Figure:
-    """RMS without mean of mesh deflections over speed, a panel for each mesh: stable parts solid, unstable
-    dashed, special points marked, points of the sweep beneath; the operating speed as a line.
+    """Draw the RMS without mean of mesh deflections over speed, a panel for each mesh.
+
+    Stable parts are solid, unstable ones dashed, special points marked, points of the sweep beneath; the
+    operating speed is a line.
+
+    Parameters
+    ----------
+    branches : pd.DataFrame
+        Table `branches` of stage branches.
+    special : pd.DataFrame
+        Table `special` of stage branches.
+    sweep : pd.DataFrame
+        Table `sweep` of stage dynamics_sweep.
+    meshes : Sequence[str]
+        Names of the meshes.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     low, high = branches["speed_rpm"].min(), branches["speed_rpm"].max()
     sweep = sweep[sweep["speed_rpm"].between(low, high)]
@@ -122,7 +155,21 @@ def _by_size(periods: pd.Series) -> list[int]:
 
 
 def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
-    """Folds and period doublings in the plane of speed and each second parameter; the operating point."""
+    """Draw folds and period doublings in the plane of speed and each second parameter, and the operating
+    point.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `loci` of stage branches_loci.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = []
     for parameter in list(dict.fromkeys(table["parameter"])) or ["torque"]:
         rows = table[table["parameter"] == parameter]
@@ -144,9 +191,20 @@ def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
 
 
 def fractions(table: pd.DataFrame) -> Figure:
-    """Share of random starts that ends on each motion, a stacked bar for each speed with standard errors.
+    """Draw the share of random starts that ends on each motion, a stacked bar for each speed with standard
+    errors.
 
     Colours tell the period as in amplitudes(), numbers the branch.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `coexistence` of stage branches.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     speeds = sorted(table["speed_rpm"].unique())
     bars = []
@@ -189,7 +247,20 @@ def _motion(label: str) -> tuple[str, str]:
 
 
 def multipliers(table: pd.DataFrame, branch: int = 0) -> Figure:
-    """The largest Floquet multipliers of a branch in the complex plane, coloured by speed."""
+    """Draw the largest Floquet multipliers of a branch in the complex plane, coloured by speed.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `multipliers` of stage branches.
+    branch : int
+        Number of the branch.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     rows = table[table["branch"] == branch]
     reach = 1.05 * float(np.clip(rows[["real", "imaginary"]].abs().to_numpy().max(), 1.0, 2.0))
     speeds = rows["speed_rpm"].to_numpy(float)
@@ -220,7 +291,32 @@ def figures(
     speed_rpm: float,
     pinions: Sequence[Mapping[str, Any]],
 ) -> tuple[Figure, ...]:
-    """Amplitudes over speed, loci (`curves`), fractions of random starts, multipliers (`circle`)."""
+    """Draw amplitudes over speed, loci (`curves`), fractions of random starts and multipliers (`circle`).
+
+    Parameters
+    ----------
+    branches : pd.DataFrame
+        Table `branches` of stage branches.
+    special : pd.DataFrame
+        Table `special` of stage branches.
+    circle : pd.DataFrame
+        Table `multipliers` of stage branches.
+    coexistence : pd.DataFrame
+        Table of stage branches.
+    curves : pd.DataFrame
+        Table of stage branches_loci.
+    sweep : pd.DataFrame
+        Table `sweep` of stage dynamics_sweep.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+    pinions : Sequence[Mapping[str, Any]]
+        Pinions as in the config.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     meshes = typical_meshes(pinions, branches["mesh"])
     return (
         amplitudes(branches, special, sweep, meshes, speed_rpm),

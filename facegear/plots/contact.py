@@ -32,8 +32,18 @@ PAIR_LOOKS: tuple[tuple[str, LineStyle], ...] = (
 
 
 def contact_curves(ltca: pd.DataFrame) -> Figure:
-    """Static transmission error and both stiffnesses for each torque, load shares at the smallest and
+    """Draw static transmission error and both stiffnesses for each torque, load shares at the smallest and
     largest.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     torques = np.sort(ltca["torque_n_m"].unique())
     error, stiffness = [], []
@@ -94,7 +104,19 @@ def close_pitch(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def contact_pattern(arrays: Arrays) -> Figure:
-    """Pressure each point of the pinion's flank sees as it passes through the mesh, one panel a torque."""
+    """Draw the pressure that each point of the pinion's flank sees as it passes through the mesh, one panel a
+    torque.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays `pressure` of stage contact.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     torques = np.unique(arrays["line_torque_n_m"])
     return pattern_panels({_title(arrays, torque): (arrays, torque) for torque in torques})
 
@@ -165,5 +187,18 @@ def _title(arrays: Arrays, torque: float) -> str:
 
 
 def figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
-    """Curves over a pitch, and the contact pattern."""
+    """Draw curves over a pitch, and the contact pattern.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return contact_curves(ltca), contact_pattern(pressure)

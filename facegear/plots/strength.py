@@ -29,7 +29,19 @@ MARKS = {
 
 
 def passage_figure(table: pd.DataFrame) -> Figure:
-    """Largest tension below the loaded flank, and largest compression below the other, for each torque."""
+    """Draw the largest tension below the loaded flank, and largest compression below the other, for each
+    torque.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `passage` of stage root_stress.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     largest_stress = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
     positions = table.loc[largest_stress > PART_SHOWN * largest_stress.max(), "passage"]
     rows_shown = table[table["passage"].between(positions.min() - 0.25, positions.max() + 0.25)]
@@ -37,7 +49,18 @@ def passage_figure(table: pd.DataFrame) -> Figure:
 
 
 def along_face_figure(table: pd.DataFrame) -> Figure:
-    """The same along the face: the largest over the passage."""
+    """Draw the root stress along the face: the largest over the passage.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `along_face` of stage root_stress.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     return _both_fillets_figure(table, "radius_mm", Axis("Gear radius", "mm"))
 
 
@@ -69,9 +92,23 @@ def _both_fillets_figure(table: pd.DataFrame, coordinate: str, along: Axis) -> F
 
 
 def life(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> Figure:
-    """Stress and cycles of every bin of a duty cycle, and the stress that may be repeated so often.
+    """Draw stress and cycles of every bin of a duty cycle, and the stress that may be repeated so often.
 
-    Of all pinions, and of all face gears, the flank nearest to its limit.
+    Of all pinions, and of all face gears, the flank nearest to its limit is drawn.
+
+    Parameters
+    ----------
+    rating : pd.DataFrame
+        Table `rating` of stage rating.
+    damage : pd.DataFrame
+        Table `damage` of stage rating.
+    curves : pd.DataFrame
+        Table `curves` of stage rating.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     panels = []
     for failure, stress in (("bending", "Root stress"), ("pitting", "Contact stress")):
@@ -93,7 +130,21 @@ def life(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> Fi
 
 
 def damage_by_bin(rating: pd.DataFrame, damage: pd.DataFrame) -> Figure:
-    """Damage of every bin of a duty cycle to the flanks that `life` shows; Miner's sum is 1 at the end."""
+    """Draw the damage of every bin of a duty cycle to the flanks that `life` shows; Miner's sum is 1 at the
+    end.
+
+    Parameters
+    ----------
+    rating : pd.DataFrame
+        Table `rating` of stage rating.
+    damage : pd.DataFrame
+        Table `damage` of stage rating.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     rows = list(_nearest(rating).itertuples())
     marks: list[Curve | Line] = [Line(1.0, "y")]
     smallest, largest = 1e-3, 3.0
@@ -135,10 +186,38 @@ def _subject(row: Any) -> str:
 
 
 def root_figures(passage: pd.DataFrame, along_face: pd.DataFrame) -> tuple[Figure, ...]:
-    """Root stress over a passage, and along the face."""
+    """Draw root stress over a passage, and along the face.
+
+    Parameters
+    ----------
+    passage : pd.DataFrame
+        Table `passage` of stage root_stress.
+    along_face : pd.DataFrame
+        Table `along_face` of stage root_stress.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return passage_figure(passage), along_face_figure(along_face)
 
 
 def rating_figures(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> tuple[Figure, ...]:
-    """Bins of the duty cycle beside the stress that may be repeated so often, and their damage."""
+    """Draw bins of the duty cycle beside the stress that may be repeated so often, and their damage.
+
+    Parameters
+    ----------
+    rating : pd.DataFrame
+        Table `rating` of stage rating.
+    damage : pd.DataFrame
+        Table `damage` of stage rating.
+    curves : pd.DataFrame
+        Table `curves` of stage rating.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return life(rating, damage, curves), damage_by_bin(rating, damage)

@@ -18,7 +18,20 @@ HEIGHT = 0.14
 
 
 def topography_figure(points: pd.DataFrame, body: str) -> Figure:
-    """Left and right flank of a gear, of `points` of stage topography; the mean of all teeth."""
+    """Draw left and right flank of a gear, with the mean of all teeth.
+
+    Parameters
+    ----------
+    points : pd.DataFrame
+        Table `points` of stage topography.
+    body : str
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     body_points = points[points["body"] == body]
     largest = float(body_points["deviation_um"].abs().max())
     (across, width_unit), (up, unit) = AXES[body]
@@ -85,5 +98,16 @@ def _range(flank: pd.DataFrame) -> str:
 
 
 def figures(points: pd.DataFrame) -> tuple[Figure, ...]:
-    """Charts of the pinion and of the face gear."""
+    """Draw charts of the pinion and of the face gear.
+
+    Parameters
+    ----------
+    points : pd.DataFrame
+        Table `points` of stage topography.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return topography_figure(points, "pinion"), topography_figure(points, "face_gear")
