@@ -244,7 +244,18 @@ def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> s
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
-    """One row a frequency: modes (with how many share it), frequency_hz, what moves, class."""
+    """Tabulate the modes by frequency.
+
+    Parameters
+    ----------
+    frequencies : pd.DataFrame
+        Table `frequencies` of stage modal.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each frequency: modes (with how many share it), frequency_hz, what moves, class.
+    """
     rows, first = [], 0
     while first < len(frequencies):
         mode = frequencies.iloc[first]

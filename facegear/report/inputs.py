@@ -12,7 +12,18 @@ SOURCES = {
 
 
 def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
-    """One phrase an input, from the plain values of a config."""
+    """Describe the inputs.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the config.
+
+    Returns
+    -------
+    list[str]
+        A phrase for each input.
+    """
     transmission, pair = values["transmission"], values["tooth_pair"]
     torque, error = transmission["torque"], transmission["transmission_error"]
     gear, pinion, shaper = pair["face_gear"], pair["pinion"], pair["shaper"]
@@ -52,7 +63,20 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
 
 
 def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
-    """A figure's line of inputs; for a figure of a publication it says who chose them."""
+    """Write a figure's line of inputs; for a figure of a publication it says who chose them.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the config.
+    of_publication : bool
+        Whether the figure belongs to a publication.
+
+    Returns
+    -------
+    str
+        The line.
+    """
     lead = "Not disclosed by the paper, chosen here: " if of_publication else "Inputs of the base case: "
     return lead + "; ".join(inputs_in_words(values))
 

@@ -46,7 +46,18 @@ CHANGE_COLUMNS = {
 
 
 def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    """Poses of all meshes, contacts that leave the face, and the surface's error; none without poses."""
+    """Return poses of all meshes, contacts that leave the face, and the surface's error.
+
+    Parameters
+    ----------
+    tables : Mapping[str, pd.DataFrame]
+        Tables of the report by name.
+
+    Returns
+    -------
+    list[Table]
+        The tables; none without poses.
+    """
     if "poses_meshes" not in tables:
         return []
     meshes, leaving_contacts = tables["poses_meshes"], tables["poses_leaving"]
@@ -62,7 +73,18 @@ def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
 
 
 def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
-    """A paragraph of what was computed; nothing without poses."""
+    """Write a paragraph on the computed poses.
+
+    Parameters
+    ----------
+    tables : Mapping[str, pd.DataFrame]
+        Tables of the report by name.
+
+    Returns
+    -------
+    str
+        The paragraph; empty without poses.
+    """
     if "poses_meshes" not in tables:
         return ""
     meshes = tables["poses_meshes"]

@@ -93,7 +93,22 @@ def _line(words: str) -> str:
 def warnings(
     values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None
 ) -> Iterator[ResultWarning]:
-    """Yield what to keep in mind, from the config and the results, in the order of computation."""
+    """Yield the notes on a report's numbers, from the config and the results, in the order of computation.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the config.
+    tables : Mapping[str, pd.DataFrame]
+        Tables of the report by name.
+    pair : Mapping[str, Any] | None
+        Record of the tooth geometry, None where it was not computed.
+
+    Yields
+    ------
+    ResultWarning
+        A note.
+    """
     if pair is not None and pair["interference"]:
         yield ResultWarning(
             "Teeth",
