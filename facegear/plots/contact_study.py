@@ -63,7 +63,7 @@ def figures(
 
     `points`: study, point and label of each case; `titles`: of each study by its name.
     """
-    machine, *others = StudiedContact.several(points, pair, ltca, by_torque, pressure)
+    machine, *others = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
     drawn = []
     for study, title in titles.items():
         shown = [machine, *(case for case in others if case.study == study)]

@@ -23,7 +23,7 @@ def contact_studies(
     `points`: study, point and label of each case, the machine itself first; of each case the record of stage
     geometry and what stage contact gives.
     """
-    cases = StudiedContact.several(points, pair, ltca, by_torque, pressure)
+    cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
     table = study_table(cases)
     shift = table.loc[table["path_shift_mm"].abs().idxmax()]
     largest = f"{shift['path_shift_mm']:.2f} mm ({shift['label']})"

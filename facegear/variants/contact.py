@@ -63,7 +63,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
             return None
         flanks_of_it, base_radius = solved.models[0].flanks, solved.models[0].design.pinion_base_radius
         positions = even_positions(plan.positions)
-        return known_contact(solved.solved[0][0], positions, flanks_of_it.pinion.shape, base_radius)
+        return known_contact(solved.results[0][0], positions, flanks_of_it.pinion.shape, base_radius)
 
     @lru_cache(maxsize=KEPT)
     def meshed(text: str) -> PairExcitation:
@@ -73,7 +73,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
         both, tensions = bodies(values, section)
         known = nominal() if _nodes(values) == own_nodes else None
         analysis = contact_analysis(
-            pair_design(section), materials(section), both, plan, every_flank=False, known=known
+            pair_design(section), materials(section), both, plan, every_flank=False, known_contact=known
         )
         curve = curve_from_contact(analysis.ltca[0], request)
         numbers = ToothNumbers.of_config(values)

@@ -94,7 +94,7 @@ def own_answer(asked: Asked) -> Answer:
     )
     cuts = asked.refinement
     flanks = flank_pair(pair.design, (pinion.side, gear.side), (cuts, cuts), asked.element != "hex27")
-    blocks = ({(0, 0): body.compliance.own} for body in (pinion, gear))
+    blocks = ({(0, 0): body.compliance.loaded_tooth} for body in (pinion, gear))
     result = SectorPair(flanks, *blocks).solve(pair.position, (asked.torque,))[0]
     (spot,) = result.spots
     pressure, _ = flank_pressure([result], flanks, pair.materials).loads[0].largest()
@@ -112,10 +112,10 @@ def own_answer(asked: Asked) -> Answer:
 def _own_body(asked: Asked, tooth: FeTooth, material: Material) -> _OwnBody:
     elastic, side = elastic_tooth(asked.pair.design, tooth, material)
     gauges, rows = root_gauges(tooth, material)
-    held = elastic.held.copy()
+    held = elastic.is_held.copy()
     nowhere = np.zeros(0, dtype=np.int64)
     held[np.union1d(elastic.left, elastic.right)] = True
-    cut_out = replace(elastic, held=held, left=nowhere, right=nowhere)
+    cut_out = replace(elastic, is_held=held, left=nowhere, right=nowhere)
     compliance = flank_compliance(cut_out, asked.refinement, element=asked.element, gauges=rows)
     return _OwnBody(side, compliance, gauges)
 

@@ -65,12 +65,12 @@ def twin_model(
     for design, size, material in zip((pinion_design, gear_design), sizes, materials, strict=True):
         tooth = slab_tooth(design, size)
         elastic, side = elastic_tooth(design, tooth, material, "right")
-        held = elastic.held.copy()
+        held = elastic.is_held.copy()
         held[:, 1] = True
         number = teeth or design.pinion.teeth
-        compliances.append(flank_compliance(replace(elastic, held=held), layer, number, 2, ends))
+        compliances.append(flank_compliance(replace(elastic, is_held=held), layer, number, 2, ends))
         sides.append(side)
-    gear = replace(compliances[1], others=compliances[1].others[::-1])
+    gear = replace(compliances[1], neighbour_blocks=compliances[1].neighbour_blocks[::-1])
     return TwinModel(
         pinion=pinion_design,
         gear=gear_design,

@@ -33,7 +33,7 @@ TORQUES = [300.0, 1000.0]
 def stored(model, positions, torques):
     results = loaded_contact(model, even_positions(positions), torques)
     pressed = flank_pressure(results, model.flanks, (STEEL, STEEL))
-    unloaded = {one.position: one.unloaded for one in results}
+    unloaded = {one.position: one.unloaded_error for one in results}
     return pressure_arrays(results, model.flanks.pinion, pressed), unloaded
 
 
