@@ -206,7 +206,7 @@ def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material]
     plain = min((crowning.start for crowning in crownings), default=0.0)
     deviation_curvature = max(
         mean_crowning(pair.pinion.flanks.right) + mean_crowning(pair.face_gear.flanks.left)
-        for pair in (design, design.exchanged)
+        for pair in (design, design.with_swapped_flanks)
     )
     if not crownings and deviation_curvature == 0.0:
         return inf

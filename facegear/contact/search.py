@@ -13,7 +13,7 @@ from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import FlankPair
 from facegear.contact.loads import EdgePoints, edge_cover, flank_cover, gather_points
 from facegear.contact.options import ContactOptions
-from facegear.geometry.opposite import located, tip_edge_feet
+from facegear.geometry.opposite import locate_hits, tip_edge_feet
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.separation import separation, separation_each
 
@@ -164,7 +164,7 @@ def _find_facing_points(
     counts, number = np.array([part.size for part in numbers]), np.concatenate(numbers)
     surface = SurfacePoints(points.position, points.normal)
     pair_of_point = np.repeat(np.arange(len(near)), counts)
-    hits = located(
+    hits = locate_hits(
         design, separation_each(design, surface, placements.angles_and_teeth, pair_of_point, FARTHEST, number)
     )
     beside = np.where(number < flank_count, BESIDE * design.module, 0.0)

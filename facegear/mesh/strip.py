@@ -65,12 +65,15 @@ def depth_rows(
 def coarsening_levels(profile: float, thickness: float, depth: float) -> int:
     """As many three-to-one steps as the inner size wants and three quarters of the depth can hold."""
     levels = 0
-    while 3.0 ** (levels + 1) * profile <= 1.2 * thickness and _used(profile, levels + 1) <= 0.75 * depth:
+    while (
+        3.0 ** (levels + 1) * profile <= 1.2 * thickness
+        and _compact_nodes(profile, levels + 1) <= 0.75 * depth
+    ):
         levels += 1
     return levels
 
 
-def _used(profile: float, levels: int) -> float:
+def _compact_nodes(profile: float, levels: int) -> float:
     return sum(2.5 * profile * 3.0**step for step in range(levels))
 
 

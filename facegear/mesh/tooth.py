@@ -98,9 +98,9 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     points = outline.cartesian(angle, height)
 
     # sigma down the flank, t inwards, width along y: right handed for the gear's right half (x, z) only
-    right, left = half.quads, mirror[_transposed(half.quads)]
+    right, left = half.quads, mirror[_transpose_grid(half.quads)]
     if body == "pinion":
-        right, left = _transposed(right), mirror[half.quads]
+        right, left = _transpose_grid(right), mirror[half.quads]
     quads = np.concatenate([right, left])
     count = len(angle)
     hexes = _extruded(quads, layers, count)
@@ -127,7 +127,7 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     )
 
 
-def _transposed(quads: Integers) -> Integers:
+def _transpose_grid(quads: Integers) -> Integers:
     return quads.reshape(-1, 3, 3).transpose(0, 2, 1).reshape(-1, 9)
 
 
@@ -160,8 +160,8 @@ def _boundary_edges(plan: SectionPlan, mirror: Integers, back: str) -> dict[str,
     }
     groups = {f"{name}_right": sides[mask] for name, mask in halves.items()}
     groups |= {f"{name}_left": mirror[sides[mask]] for name, mask in halves.items()}
-    both = {"tip": (sigma == 0).all(axis=1) | between("chamfer"), back: (t == 2).all(axis=1)}
-    return groups | {n: np.concatenate([sides[mask], mirror[sides[mask]]]) for n, mask in both.items()}
+    directions = {"tip": (sigma == 0).all(axis=1) | between("chamfer"), back: (t == 2).all(axis=1)}
+    return groups | {n: np.concatenate([sides[mask], mirror[sides[mask]]]) for n, mask in directions.items()}
 
 
 def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, hexes: Integers) -> Integers:
@@ -174,7 +174,7 @@ def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, 
             owner[face_of[int(hexes[row, [4, 10, 12, 14, 16, 22][column]])]] = centre[row]
     along, across = nodes[faces[:, 5]] - nodes[faces[:, 3]], nodes[faces[:, 7]] - nodes[faces[:, 1]]
     out = np.sum(np.cross(along, across) * (nodes[faces[:, 4]] - owner), axis=1) > 0
-    return np.where(out[:, None], faces, _transposed(faces))
+    return np.where(out[:, None], faces, _transpose_grid(faces))
 
 
 def _surfaces(

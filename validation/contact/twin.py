@@ -125,7 +125,7 @@ class _TwinAtPosition:
 
     model: TwinModel
     position: float
-    unloaded = 0.0
+    unloaded_error = 0.0
 
     @property
     def base_radius(self) -> float:

@@ -20,7 +20,7 @@ from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.position_solver import PositionSolver
 from facegear.contact.search import cover_of, facing_points, find_candidates
-from facegear.geometry.opposite import located
+from facegear.geometry.opposite import locate_hits
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
 
@@ -37,7 +37,7 @@ def placed(model, position):
 def everywhere(model, placement, tooth):
     """Candidates from the separation at every point of the flank, none screened."""
     pinion, gear = model.flanks.pinion, model.flanks.gear
-    hits = located(model.design, separation(model.design, pinion.points, *placement, tooth, 1e-3))
+    hits = locate_hits(model.design, separation(model.design, pinion.points, *placement, tooth, 1e-3))
     on_gear = gear.coordinates(hits, True, 0.1 * model.design.module)[0]
     points = flank_points(pinion, np.arange(len(pinion.at)), hits.gap[0], pinion.lever_arm, on_gear)
     return candidates_of(pinion.lattice, gear.lattice, tooth, points, flank_cover(pinion), LIMIT)

@@ -261,7 +261,7 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, ring, places
     (tooth, elastic), (ring, stiffness) = slab, ring
     _, gauges = root_gauges(tooth, STEEL)
     compliance = flank_compliance(elastic, Refinement(), tooth.teeth, 2, "ring", gauges=gauges)
-    assert ring.closed
+    assert ring.is_closed
     flank = contact_side(spur(), tooth, "right").nodes.ravel()
     normals = elastic.normals.reshape(-1, 3)
     free = np.ones((len(ring.nodes), 3), dtype=bool)
@@ -371,7 +371,7 @@ def test_two_halves_of_a_symmetric_tooth_give_way_as_the_whole_one(layers, eleme
         flank_compliance(body, cuts, tooth.teeth, 1, element=element, gauges=gauges)
         for body in (elastic, uncut)
     )
-    for name in ("own", "others", "readings"):
+    for name in ("loaded_tooth", "neighbour_blocks", "readings"):
         known = getattr(expected, name)
         np.testing.assert_allclose(
             getattr(halved, name), known, rtol=0.0, atol=1e-11 * np.abs(known).max(), err_msg=name

@@ -13,7 +13,7 @@ from facegear.contact.hertz import contact_modulus
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pressure import flank_pressure
 from facegear.contact.tables import pressure_arrays
-from facegear.geometry.placement import mirrored
+from facegear.geometry.placement import mirror_design
 from facegear.lubrication.excitation import friction_ratios
 from facegear.lubrication.friction import BenedictKelley, Constant, Doleschel, Schlenk, Xu
 from facegear.lubrication.heat import TooHot, running
@@ -306,7 +306,7 @@ def test_the_back_flank_is_the_mirror_image_in_loss_and_in_friction_s_force(load
     moved = replace(design, assembly=replace(design.assembly, offset=3e-4))
     hats = at(hats, hats.torque == 1000.0)
     flanks = []
-    for pair, mirror in ((moved, np.ones(3)), (mirrored(moved), np.array([-1.0, 1.0, 1.0]))):
+    for pair, mirror in ((moved, np.ones(3)), (mirror_design(moved), np.array([-1.0, 1.0, 1.0]))):
         point, normal = hats.point * mirror, hats.normal * mirror
         velocity, closing = slip(*spins(pair), point, normal)
         seen = replace(hats, point=point, normal=normal, velocity=velocity, closing=closing)
