@@ -63,7 +63,20 @@ class FeTooth:
         return 2 * pi / self.teeth
 
     def rotated(self, points: Array, angle: float) -> Array:
-        """Points (or vectors) (..., 3) turned about the body's axis, positive as in `geometry.design`."""
+        """Rotate points or vectors about the body's axis.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            m, or any unit.
+        angle : float
+            rad, positive as in `geometry.design`.
+
+        Returns
+        -------
+        (..., 3) array
+            Same unit.
+        """
         return points @ body_rotation(self.body, angle).T
 
 
@@ -72,13 +85,39 @@ CORNERS = np.array([0, 2, 6, 8, 18, 20, 24, 26])
 
 
 def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
-    """Mesh of one pinion tooth; the face is centred on the gear's mean radius."""
+    """Build the mesh of one pinion tooth; the face is centred on the gear's mean radius.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+
+    Returns
+    -------
+    FeTooth
+        Mesh of the tooth.
+    """
     half = design.pinion.width / 2
     return _tooth(design, "pinion", sizes, design.mean_radius - half, design.mean_radius + half)
 
 
 def gear_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
-    """Mesh of one face gear tooth from the inner to the outer cylinder."""
+    """Build the mesh of one face gear tooth from the inner to the outer cylinder.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+
+    Returns
+    -------
+    FeTooth
+        Mesh of the tooth.
+    """
     return _tooth(design, "face_gear", sizes, design.face_gear.inner_radius, design.face_gear.outer_radius)
 
 
