@@ -153,7 +153,7 @@ def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Ma
     """Pressures on the surface that the contact lines sweep, and marks at edges."""
     width = 1e3 * flank_pattern.points[..., 1]
     radius = 1e3 * np.hypot(flank_pattern.points[..., 0], flank_pattern.points[..., 2])
-    edge_kind = flank_pattern.where[torque]
+    edge_kind = flank_pattern.edge[torque]
     marks: list[Map | Curve] = [
         Map(width, radius, 1e-6 * _fade_edges(flank_pattern.pressure[torque], edge_kind), scale, smooth=True)
     ]

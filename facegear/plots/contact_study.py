@@ -63,7 +63,7 @@ def figures(
 
     `points`: study, point and label of each case; `titles`: of each study by its name.
     """
-    machine, *other_cases = StudiedContact.several(points, pair, ltca, by_torque, pressure)
+    machine, *other_cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
     study_figures = []
     for study, title in titles.items():
         cases = [machine, *(case for case in other_cases if case.study == study)]

@@ -36,6 +36,6 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
     """
     setup = contact_setup(tooth_pair, mesh, contact)
     flank = gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
-    teeth = count_noun(len(flank.compliance.others), "tooth", "teeth")
-    summary = f"{count_noun(len(flank.compliance.own), 'flank node')}, {teeth} coupled"
+    teeth = count_noun(len(flank.compliance.neighbour_blocks), "tooth", "teeth")
+    summary = f"{count_noun(len(flank.compliance.loaded_tooth), 'flank node')}, {teeth} coupled"
     return Outcome({"arrays": to_arrays(flank)}, summary)

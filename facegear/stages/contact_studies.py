@@ -38,7 +38,7 @@ def contact_studies(
     Outcome
         `table`, a row for each case and torque.
     """
-    cases = StudiedContact.several(points, pair, ltca, by_torque, pressure)
+    cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
     table = study_table(cases)
     shift = table.loc[table["path_shift_mm"].abs().idxmax()]
     largest = f"{shift['path_shift_mm']:.2f} mm ({shift['label']})"

@@ -125,7 +125,7 @@ def flank_contacts(
         return np.array(values).reshape(positions, len(torques)).T
 
     def approach(contact: LoadedPosition) -> float:
-        return contact.ste - contact.unloaded
+        return contact.ste - contact.unloaded_error
 
     return FlankContacts(
         np.array(torques) / model.design.pinion_base_radius,

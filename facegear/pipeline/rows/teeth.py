@@ -69,7 +69,7 @@ ROWS = (
             "mesh": "mesh",
             "contact": ComputedValue(asked.without_loads, ("tooth_pair", "mesh", "contact")),
         },
-        files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:STORED")},
+        files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:ARRAY_SHAPES")},
         wildcards=BODY,
         memory_mb=3000,
         minutes=30,
