@@ -16,10 +16,10 @@ from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import (
     Model,
-    Started,
+    StartedRun,
     build_model,
     simulating,
-    started,
+    start_run,
     static_start,
 )
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
@@ -115,8 +115,10 @@ class _Run:
         """That from another start, coarsely sampled; None where it comes to the known orbit."""
         coarse = replace(self.settings, samples=min(SAMPLES, self.options.samples))
         watched = watched_for(coarse, self.options, WATCHED)
-        begun = yield from started(self.model, self.speed_rpm, watched, state, known=known)
-        return None if begun.known else (yield from followed(self.model, begun, coarse, self.options))
+        begun = yield from start_run(self.model, self.speed_rpm, watched, state, known_orbit=known)
+        return (
+            None if begun.is_known_orbit else (yield from followed(self.model, begun, coarse, self.options))
+        )
 
     def known(self, response: SteadyState) -> KnownOrbit | None:
         """The orbit of a response that other starts may come to."""
@@ -188,12 +190,12 @@ def watching(
 
     `guide`: an orbit of a like machine.
     """
-    begun = yield from started(model, speed_rpm, watched_for(settings, options, WATCHED), start, guide)
+    begun = yield from start_run(model, speed_rpm, watched_for(settings, options, WATCHED), start, guide)
     return (yield from followed(model, begun, settings, options))
 
 
 def followed(
-    model: Model, motion: Started, settings: Settings, options: SharingOptions
+    model: Model, motion: StartedRun, settings: Settings, options: SharingOptions
 ) -> Course[SteadyState]:
     """What comes of a motion that was watched for the first time.
 
@@ -201,7 +203,7 @@ def followed(
     torus for a while: what seems to be one is watched on. A class that must hold for good, as that of the
     response at the nominal speed, is watched for longer.
     """
-    state = yield from motion.followed()
+    state = yield from motion.follow()
     if state.motion is not Motion.QUASI_PERIODIC:
         return state
     longer = watched_for(settings, options, TORUS_WATCHED)

@@ -525,7 +525,7 @@ def _levels(target: PlotlyAxes, mark: Levels) -> Iterator[Part]:
     for (low, high), colour in zip(pairwise(levels), level_colours(mark.scale), strict=True):
         rings = [
             points[first:last]
-            for points, offsets in zip(*between.filled(low, high), strict=True)
+            for points, offsets in zip(*between.count(low, high), strict=True)
             for first, last in pairwise(offsets)
         ]
         if rings:

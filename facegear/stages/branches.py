@@ -9,7 +9,7 @@ from facegear.config.branches import Branches, branch_plan
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.branches import operating_tables, tables
 from facegear.dynamics.branches.machine import machine_period_map, machine_survey, margins
-from facegear.dynamics.branches.margins import several
+from facegear.dynamics.branches.margins import coexistence_ranges
 from facegear.dynamics.branches.stored import from_arrays, special_arrays
 from facegear.dynamics.branches.summary import survey_summary, tell
 from facegear.dynamics.branches.swept import swept_motions
@@ -45,13 +45,13 @@ def branches(
     }
     swept = swept_motions(period_map, pieces, plan.from_rpm, plan.to_rpm)
     seen = machine_survey(model, plan, starting, swept, tell)
-    ranges, stability_limits = several(seen.branches), margins(model, plan, seen.branches)
+    ranges, stability_limits = coexistence_ranges(seen.branches), margins(model, plan, seen.branches)
     within = jumps[jumps["speed_before_rpm"].between(plan.from_rpm, plan.to_rpm)]
     spacing = (swept_plan.last_rpm - swept_plan.first_rpm) / (swept_plan.points - 1)
     content = {
         "branches": tables.branch_table(layout, seen.branches),
         "ends": tables.end_table(seen.branches),
-        "unfollowed": tables.unfollowed_table(seen.unfollowed),
+        "unfollowed": tables.unfollowed_table(seen.unfollowed_motions),
         "multipliers": tables.multiplier_table(seen.branches),
         "special": tables.special_table(layout, seen.branches),
         "coexistence": operating_tables.coexistence_table(starting, seen.branches),

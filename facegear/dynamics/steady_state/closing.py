@@ -1,4 +1,4 @@
-"""How nearly a run comes back to where it was, and whether it does so more and more."""
+"""Measure how nearly a run comes back to where it was, and whether it does so more and more."""
 
 from dataclasses import dataclass
 
@@ -12,19 +12,27 @@ from facegear.dynamics.steady_state.orbits import changes, largest
 TREND = 7
 """Periods over which the largest change is taken, twice in succession, to see it fall."""
 SMALL, VERY_SMALL = 0.02, 1e-3
-FALLING = 0.9
-"""A change that falls by less than this over a trend is no sign of closing."""
+"""Changes over a period, over the length scale, that are a sign of closing: if they fall, and in any case."""
+MAX_TREND = 0.9
+"""Ratio of the changes over a trend above which they are not falling."""
 NO_DIFFERENCE, SPLIT = 10.0, 100.0
-"""A change over a part of a period that has closed is none below the first, for certain one above the second,
-times the goal."""
+"""Change over a part of a closed period, in goals: below the first there is none, above the second there is
+one.
+"""
 
 
 @dataclass(frozen=True)
-class Closing:
-    """The best return of a run: after `period` periods, to within `residual` of the length scale.
+class BestReturn:
+    """The best return of a run.
 
-    trend: largest change of the last TREND periods over that of the TREND before; NaN if it was not run so
-    long.
+    Attributes
+    ----------
+    period : int
+        Number of mesh periods after which the run returns.
+    residual : float
+        Its change over them, over the length scale.
+    trend : float
+        Largest change of the last TREND periods over that of the TREND before; NaN if the run was shorter.
     """
 
     period: int
@@ -34,46 +42,105 @@ class Closing:
     @property
     def shrinking(self) -> bool:
         """Whether the run shows signs of closing: the change is small and falls, or is very small."""
-        return self.residual < (SMALL if self.trend < FALLING else VERY_SMALL)
+        return self.residual < (SMALL if self.trend < MAX_TREND else VERY_SMALL)
 
     @property
     def rate(self) -> float:
-        """By which factor the change falls each period."""
+        """Factor by which the change falls each period."""
         return self.trend ** (1.0 / TREND)
 
     def periods_left(self, goal: float) -> float:
-        """Periods until the change is the goal if it goes on falling as it does; infinite if it does not."""
+        """Number of periods until the change is the goal if it continues to fall as it does.
+
+        Parameters
+        ----------
+        goal : float
+            Change over the length scale, dimensionless.
+
+        Returns
+        -------
+        float
+            Number of mesh periods; infinite if the change does not fall.
+        """
         if self.residual <= goal:
             return 0.0
         return np.log(goal / self.residual) / np.log(self.rate) if 0.0 < self.trend < 1.0 else np.inf
 
 
-def closing(integrator: Integrator, ends: Array, settings: Settings) -> Closing:
-    """The period with the smallest change at the end of a run; a shorter one wins if nearly as good."""
+def best_return(integrator: Integrator, ends: Array, settings: Settings) -> BestReturn:
+    """Find the period with the smallest change at the end of a run; a shorter one wins if nearly as good.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    ends : (periods, 2, n) array
+        States at the ends of mesh periods, m and m/rad.
+    settings : Settings
+        Settings of the run.
+
+    Returns
+    -------
+    BestReturn
+        Period, change and trend.
+    """
     best_period, best = 1, np.inf
     for index, last in enumerate(changes(integrator, ends, settings.longest_period).tolist()):
         if last < 0.2 * best and not best <= settings.periodic_residual:
             best_period, best = index + 1, last
-    return Closing(best_period, best, trend(integrator, ends, best_period))
+    return BestReturn(best_period, best, trend(integrator, ends, best_period))
 
 
 def trend(integrator: Integrator, ends: Array, period: int) -> float:
-    """Largest change over a period at the last TREND periods, over that at the TREND before."""
+    """Largest change over a period in the last TREND periods, over that in the TREND before.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    ends : (periods, 2, n) array
+        States at the ends of mesh periods, m and m/rad.
+    period : int
+        Number of mesh periods.
+
+    Returns
+    -------
+    float
+        Ratio of the changes; NaN if the run was too short.
+    """
     if len(ends) < 2 * TREND + period:
         return np.nan
-    kept = ends[-2 * TREND - period :]
-    gaps = largest(integrator, kept[period:] - kept[:-period])
+    last_states = ends[-2 * TREND - period :]
+    gaps = largest(integrator, last_states[period:] - last_states[:-period])
     early, late = gaps[:TREND].max(), gaps[TREND:].max()
     return float(late / early) if early > 0.0 else 0.0
 
 
-def closed(integrator: Integrator, ends: Array, near: Closing, settings: Settings) -> int:
-    """The period that a run has closed on by itself, 0 if it has not.
+def closed_period(integrator: Integrator, ends: Array, near: BestReturn, settings: Settings) -> int:
+    """Find the period on which a run has closed by itself.
 
     A small change is not enough: a run that creeps past the place where an orbit has just vanished, or off an
-    unstable one, changes little too. What is still to come, if the change goes on falling as it does, must be
-    small. And where a part of the period closes as well, but is still on its way (a slow spiral is nearer
-    after three periods than after one), that part must decide.
+    unstable one, changes little, too. The change that is still to come, if it continues to fall as it does,
+    must
+    be small. And a part of the period may close as well but still be on its way (a slow spiral is nearer
+    after
+    three periods than after one). Then that part must decide.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    ends : (periods, 2, n) array
+        States at the ends of mesh periods, m and m/rad.
+    near : BestReturn
+        Result of best_return().
+    settings : Settings
+        Settings of the run.
+
+    Returns
+    -------
+    int
+        Number of mesh periods, 0 if the run has not closed.
     """
     goal = settings.periodic_residual
     if not _at_rest(near, goal):
@@ -82,7 +149,7 @@ def closed(integrator: Integrator, ends: Array, near: Closing, settings: Setting
     for part in range(1, near.period):
         if near.period % part:
             continue
-        short = Closing(part, float(returns[part - 1]), trend(integrator, ends, part))
+        short = BestReturn(part, float(returns[part - 1]), trend(integrator, ends, part))
         if short.residual <= NO_DIFFERENCE * goal:
             return part
         if short.residual <= SPLIT * goal and short.trend < 0.5 * (1.0 + near.trend):
@@ -91,9 +158,21 @@ def closed(integrator: Integrator, ends: Array, near: Closing, settings: Setting
 
 
 def wanders(integrator: Integrator, ends: Array, period: int) -> bool:
-    """Whether what changes over a period adds up instead of coming round: a drift, and no torus.
+    """Whether the changes over a period add up instead of coming round: a drift, and no torus.
 
-    Nothing is known of a window of one period or less.
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    ends : (periods, 2, n) array
+        States at the ends of mesh periods, m and m/rad.
+    period : int
+        Number of mesh periods.
+
+    Returns
+    -------
+    bool
+        False for a window of one period or less, about which nothing is known.
     """
     gaps = ends[period:] - ends[:-period] if period else ends[:0]
     if not len(gaps):
@@ -102,7 +181,7 @@ def wanders(integrator: Integrator, ends: Array, period: int) -> bool:
     return bool(steady > 0.5 * (integrator.weights * np.abs(gaps)).max())
 
 
-def _at_rest(near: Closing, goal: float) -> bool:
+def _at_rest(near: BestReturn, goal: float) -> bool:
     if near.residual > goal or np.isnan(near.trend):
         return False
     return near.residual <= 10.0 * goal * max(1.0 - near.rate, 1e-3)

@@ -1,33 +1,44 @@
-"""States that a run has passed through."""
+"""History of the states through which a run has passed."""
 
 import numpy as np
 
 from facegear.arrays import Array
 
 
-class Passed:
-    """The last `kept` states (periods, 2, n) that a run passed through at the end of a period."""
+class StateHistory:
+    """The last `capacity` states (periods, 2, n) of a run at the ends of periods."""
 
-    def __init__(self, kept: int, shape: tuple[int, ...]) -> None:
-        self.kept, self.filled = kept, 0
-        self.room = np.empty((2 * kept, *shape))
+    def __init__(self, capacity: int, shape: tuple[int, ...]) -> None:
+        self.capacity, self.count = capacity, 0
+        self.buffer = np.empty((2 * capacity, *shape))
 
     @property
     def states(self) -> Array:
-        """All that are kept, oldest first."""
-        return self.room[max(self.filled - self.kept, 0) : self.filled]
+        """Stored states, oldest first."""
+        return self.buffer[max(self.count - self.capacity, 0) : self.count]
 
-    def room_for(self, periods: int) -> Array:
-        """Places (periods, 2, n) behind those kept, which now count as filled."""
-        if self.filled + periods > len(self.room):
-            held = self.states.copy()
-            if len(held) + periods > len(self.room):
-                self.room = np.empty((len(held) + periods, *self.room.shape[1:]))
-            self.room[: len(held)] = held
-            self.filled = len(held)
-        self.filled += periods
-        return self.room[self.filled - periods : self.filled]
+    def reserve(self, periods: int) -> Array:
+        """Reserve space behind the stored states; it counts as filled from now on.
+
+        Parameters
+        ----------
+        periods : int
+            Number of states.
+
+        Returns
+        -------
+        (periods, 2, n) array
+            View to write the states to, m and m/rad.
+        """
+        if self.count + periods > len(self.buffer):
+            last_states = self.states.copy()
+            if len(last_states) + periods > len(self.buffer):
+                self.buffer = np.empty((len(last_states) + periods, *self.buffer.shape[1:]))
+            self.buffer[: len(last_states)] = last_states
+            self.count = len(last_states)
+        self.count += periods
+        return self.buffer[self.count - periods : self.count]
 
     def forget(self) -> None:
-        """Keep none."""
-        self.filled = 0
+        """Remove all states."""
+        self.count = 0

@@ -99,7 +99,7 @@ class OrbitFollower:
         integrator, orbit = self._near(speed, last.state, last.period)
         if orbit is None:
             return last.state
-        off = orbit.leaving(integrator, 0.0 * orbit.state)
+        off = orbit.leading_disturbance(integrator, 0.0 * orbit.state)
         return integrator.by_time(orbit.state + kick * off)
 
     def _stable(self, speed: float, state: State, period: int) -> HeldOrbit | None:

@@ -12,7 +12,7 @@ from facegear.dynamics.courses import Course, alone, side_by_side
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
-from facegear.dynamics.steady_state.simulate import Model, Started, started, static_start
+from facegear.dynamics.steady_state.simulate import Model, StartedRun, start_run, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.symmetries import Symmetry
@@ -142,7 +142,7 @@ def run_speeds(
 
     held: symmetries of what the start belongs to, by default of the start itself.
     """
-    responses = carried_over(model, speeds, settings, start, Started.followed, step, held)
+    responses = carried_over(model, speeds, settings, start, StartedRun.follow, step, held)
     return zip(speeds.tolist(), responses, strict=True)
 
 
@@ -151,7 +151,7 @@ def carried_over(
     speeds: Array,
     settings: Settings,
     start: State | None,
-    follow: Callable[[Started], Course[T]],
+    follow: Callable[[StartedRun], Course[T]],
     step: Callable[[], None] = lambda: None,
     held: Sequence[Symmetry] | None = None,
 ) -> Iterator[T]:
@@ -165,8 +165,8 @@ def carried_over(
     for first in range(0, len(speeds), TOGETHER):
         motions = []
         for speed in speeds[first : first + TOGETHER]:
-            motions.append(alone(started(model, float(speed), settings, state, held=held)))
-            state, held = motions[-1].state, motions[-1].held
+            motions.append(alone(start_run(model, float(speed), settings, state, start_symmetries=held)))
+            state, held = motions[-1].state, motions[-1].motion_symmetries
             step()
         yield from side_by_side([follow(motion) for motion in motions])
 
