@@ -173,7 +173,7 @@ def zero(test: Callable[[float], float], low: float, high: float, goal: float) -
     test : callable
         Function of the fraction.
     low, high : float
-        Fractions between which the test changes its sign.
+        Two fractions of the chord between which the test changes its sign.
     goal : float
         Magnitude of the test, in the test's unit, that counts as zero.
 
