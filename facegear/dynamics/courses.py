@@ -1,7 +1,7 @@
-"""What is watched of a motion as a course of stretches, each of which depends on what the last has shown.
+"""Run plans: computations made of runs, each of which depends on what the last one has shown.
 
-A course asks for a stretch by yielding it and is given its run. The same code watches one machine alone
-and many whose stretches run side by side.
+A run plan requests a run by yielding it and receives its result. The same code watches one machine alone and
+many whose runs are integrated side by side.
 """
 
 from collections import defaultdict
@@ -10,52 +10,86 @@ from typing import TypeAlias, TypeVar
 
 from facegear.dynamics.integrator.integrator import RunResult
 from facegear.dynamics.side_by_side import run_stretches
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
 
 T = TypeVar("T")
 
 
-Course: TypeAlias = Generator[Stretch, RunResult, T]
-"""A NotConverged of a stretch is raised where it was asked for."""
+RunPlan: TypeAlias = Generator[RunRequest, RunResult, T]
+"""Computation that yields RunRequests, receives their results, and returns a value.
+
+A NotConverged of a run is raised where it was requested.
+"""
 
 
-def alone(course: Course[T]) -> T:
-    """What a course comes to when each of its stretches runs by itself. Raises NotConverged."""
-    return side_by_side([course])[0]
+def alone(plan: RunPlan[T]) -> T:
+    """Run a single plan to completion.
 
+    Parameters
+    ----------
+    plan : RunPlan
+        Computation.
 
-def side_by_side(courses: Sequence[Course[T]]) -> list[T]:
-    """What each of many courses comes to; stretches of one kind run in lanes where they can, whatever their
-    lengths.
+    Returns
+    -------
+    T
+        Value that the plan returns.
 
-    The kind that most courses ask for at a time is run, while the others wait for more of their own: so lanes
-    are as full as they can be. Raises NotConverged if any of the courses does.
+    Raises
+    ------
+    NotConverged
+        If the plan raises it.
     """
-    ended: dict[int, T] = {}
-    asked: dict[int, Stretch] = {}
-    answers: dict[int, RunResult | NotConverged | None] = dict.fromkeys(range(len(courses)))
+    return side_by_side([plan])[0]
+
+
+def side_by_side(plans: Sequence[RunPlan[T]]) -> list[T]:
+    """Run many plans to completion; requests of one kind are integrated together, whatever their lengths.
+
+    The kind that most plans request at a time is run, while the others wait for more of their own. So lanes
+    are
+    as full as they can be.
+
+    Parameters
+    ----------
+    plans : sequence of RunPlan
+        Computations.
+
+    Returns
+    -------
+    list of T
+        Value that each plan returns.
+
+    Raises
+    ------
+    NotConverged
+        If any of the plans raises it.
+    """
+    results: dict[int, T] = {}
+    requests: dict[int, RunRequest] = {}
+    answers: dict[int, RunResult | NotConverged | None] = dict.fromkeys(range(len(plans)))
     while answers:
         for number, answer in answers.items():
             try:
-                asked[number] = _next_of(courses[number], answer)
+                requests[number] = _next_of(plans[number], answer)
             except StopIteration as end:
-                ended[number] = end.value
-        alike = _largest_group(asked)
-        answers = dict(zip(alike, run_stretches([asked.pop(number) for number in alike]), strict=True))
-    return [ended[number] for number in range(len(courses))]
+                results[number] = end.value
+        group = _largest_group(requests)
+        answers = dict(zip(group, run_stretches([requests.pop(number) for number in group]), strict=True))
+    return [results[number] for number in range(len(plans))]
 
 
-def _largest_group(asked: Mapping[int, Stretch]) -> list[int]:
-    """Numbers of the courses in the largest group that asks for stretches of one kind."""
+def _largest_group(requests: Mapping[int, RunRequest]) -> list[int]:
+    """Numbers of the plans in the largest group that requests runs of one kind."""
     groups: dict[tuple[object, ...], list[int]] = defaultdict(list)
-    for number, stretch in asked.items():
-        groups[stretch.asks].append(number)
+    for number, stretch in requests.items():
+        groups[stretch.kind].append(number)
     return max(groups.values(), key=len, default=[])
 
 
-def _next_of(course: Course[T], answer: RunResult | NotConverged | None) -> Stretch:
-    """The stretch that a course asks for after an answer. Raises StopIteration at its end."""
+def _next_of(plan: RunPlan[T], answer: RunResult | NotConverged | None) -> RunRequest:
+    """Return the run that a plan requests after an answer. Raises StopIteration at its end."""
     if isinstance(answer, NotConverged):
-        return course.throw(answer)
-    return next(course) if answer is None else course.send(answer)
+        return plan.throw(answer)
+    return next(plan) if answer is None else plan.send(answer)

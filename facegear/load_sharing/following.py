@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.dynamics.between_samples import located_extremes
-from facegear.dynamics.following import Followed, follow
+from facegear.dynamics.following import FollowedMotion, follow
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.load_sharing.groups import LoadGroup
@@ -36,7 +36,7 @@ def running(
     machine: Machine, speed_rpm: float, cycles: int, positions: int = 64, settings: Settings | None = None
 ) -> Running:
     """The first `cycles` mesh cycles of the hunting cycle at a speed. Raises NotConverged."""
-    following: Followed = follow(build_model(machine), speed_rpm, 0, cycles, positions, settings)
+    following: FollowedMotion = follow(build_model(machine), speed_rpm, 0, cycles, positions, settings)
     return Running(
         machine=machine,
         positions=positions,

@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import Course, alone, side_by_side
+from facegear.dynamics.courses import RunPlan, alone, side_by_side
 from facegear.dynamics.dense_motion import DenseMotion
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings, State
@@ -107,11 +107,11 @@ class _Run:
     settings: Settings
     options: SharingOptions
 
-    def motion(self, state: State) -> Course[SteadyState]:
+    def motion(self, state: State) -> RunPlan[SteadyState]:
         """The motion that counts."""
         return watching(self.model, self.speed_rpm, self.settings, self.options, state)
 
-    def other(self, state: State, known: KnownOrbit | None) -> Course[SteadyState | None]:
+    def other(self, state: State, known: KnownOrbit | None) -> RunPlan[SteadyState | None]:
         """That from another start, coarsely sampled; None where it comes to the known orbit."""
         coarse = replace(self.settings, samples=min(SAMPLES, self.options.samples))
         watched = watched_for(coarse, self.options, WATCHED)
@@ -185,7 +185,7 @@ def watching(
     options: SharingOptions,
     start: State,
     guide: Guide | None = None,
-) -> Course[SteadyState]:
+) -> RunPlan[SteadyState]:
     """The motion from a start: what has not closed after a few times the cycles averaged is measured.
 
     `guide`: an orbit of a like machine.
@@ -196,7 +196,7 @@ def watching(
 
 def followed(
     model: Model, motion: StartedRun, settings: Settings, options: SharingOptions
-) -> Course[SteadyState]:
+) -> RunPlan[SteadyState]:
     """What comes of a motion that was watched for the first time.
 
     A body that is pushed through its backlash for long, or an orbit that is approached slowly, looks like a
@@ -220,7 +220,7 @@ def disturb(model: Model, start: State, spread: float, random: np.random.Generat
     """A start moved by normal displacements of size `spread` (m; rotations at the mesh radius)."""
     linear = model.machine.linear
     moved = spread * random.normal(size=linear.size) / linear.lengths
-    return replace(start, displacement=start.displacement + model.reduced.basis.T @ linear.momentum(moved))
+    return replace(start, displacement=start.displacement + model.reduction.basis.T @ linear.momentum(moved))
 
 
 def cycle_forces(motion: DenseMotion) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array, Integers
-from facegear.harmonics.series import Harmonics, stacked, stacked_values
+from facegear.harmonics.series import Harmonics, stack_series, stacked_values
 from facegear.mesh_law.laws_at_phases import LinearHeld
 
 
@@ -172,7 +172,7 @@ def linear_law(series: Sequence[Harmonics]) -> LinearLaw:
 
 def different(series: Sequence[Harmonics]) -> tuple[Array, Integers]:
     """The different ones among Fourier series, (kinds, 2, harmonics + 1), and the kind of each."""
-    rows = stacked(series)
+    rows = stack_series(series)
     distinct, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
     return distinct.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
 

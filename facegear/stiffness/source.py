@@ -71,12 +71,11 @@ def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Contact
     if request.source == "fem_scaled":
         assert request.mean is not None
         scale = request.mean / fit.series.mean
-    whole = fit.series.scaled(scale).varied(request.variation)
-    series = whole.kept(request.kept)
+    whole = fit.series.scale(scale).scale_variation(request.variation)
+    series = whole.truncate(request.kept)
     if series.minimum <= 0.0:
-        allowed = (
-            f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
-        )
+        largest = _largest_variation(fit.series.truncate(request.kept))
+        allowed = f"at most {largest:.4g}, so that k(t) stays positive"
         raise InvalidInput("variation of the mesh stiffness", request.variation, allowed)
     error, cut = unloaded_series(ltca, series.order)
     return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
@@ -111,8 +110,8 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
 
 def stiffness_given(request: StiffnessRequest) -> Stiffness:
     """Curve of the series that the config gives."""
-    whole = request.given.varied(request.variation)
-    series = whole.kept(request.kept)
+    whole = request.given.scale_variation(request.variation)
+    series = whole.truncate(request.kept)
     positions = np.arange(DRAWN) / DRAWN
     return Stiffness(
         curve_table(positions, whole(positions), series),

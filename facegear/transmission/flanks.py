@@ -97,7 +97,7 @@ def _line_contacts(machine: Machine) -> MeshContacts:
     half = machine.half_backlash
     return MeshContacts(
         law=line_law(machine),
-        error=tuple(machine.error.shifted(float(phase)) for phase in phases),
+        error=tuple(machine.error.shift(float(phase)) for phase in phases),
         lower=-half,
         upper=half,
         damping=np.full(phases.size, machine.damping.mesh),
@@ -179,7 +179,7 @@ def line_law(machine: Machine) -> MeshLaw:
 
 @kept_by_content(4)
 def _line_linear_law(stiffness: Harmonics, lags: tuple[float, ...]) -> MeshLaw:
-    return linear_law([stiffness.shifted(lag) for lag in lags])
+    return linear_law([stiffness.shift(lag) for lag in lags])
 
 
 @kept_by_content(4)
@@ -294,7 +294,7 @@ def _both(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
     """Drive flanks and their mirror images, each as its mesh passes through the cycle."""
     flanks = [*drive, *(mirrored(own) for own in drive)]
     lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
-    return tuple(own.shifted(lag) for own, lag in zip(flanks, lags, strict=True))
+    return tuple(own.shift(lag) for own, lag in zip(flanks, lags, strict=True))
 
 
 def _flanks(tangential: Array, separating: Array) -> Array:

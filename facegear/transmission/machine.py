@@ -194,11 +194,11 @@ class Machine:
     @cached_property
     def mesh_stiffness(self) -> tuple[Harmonics, ...]:
         """Stiffness of each mesh over the reference's mesh cycle with its factor and its softening, N/m."""
-        own = [self.stiffness.scaled(float(factor)) for factor in self.imperfections.stiffness]
+        own = [self.stiffness.scale(float(factor)) for factor in self.imperfections.stiffness]
         if self.own_softening is None:
             return tuple(own)
         return tuple(
-            series.softened(float(soft)) for series, soft in zip(own, self.own_softening, strict=True)
+            series.add_compliance(float(soft)) for series, soft in zip(own, self.own_softening, strict=True)
         )
 
     @property

@@ -81,6 +81,6 @@ def flank_ratios(ratios: Array, phases: Array) -> Array:
     both = np.concatenate([ratios, ratios * mirror])
     shifted = np.empty_like(both)
     for flank, lag in zip(np.ndindex(both.shape[:2]), np.repeat(np.tile(phases, 2), len(PARTS)), strict=True):
-        series = Harmonics(*both[flank]).shifted(float(lag))
+        series = Harmonics(*both[flank]).shift(float(lag))
         shifted[flank] = series.sine, series.cosine
     return shifted

@@ -1,5 +1,5 @@
-"""Find which motions exist at a speed: random starts, the fraction of them that ends on each, and what is
-new.
+"""Find which motions exist at a speed: random starts, the fraction of them that ends on each, and
+what is new.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -145,8 +145,8 @@ class _Runs:
             path.extend(ends[BLOCK - 1 :: BLOCK])
 
     def nearby_motion(self, path: list[Array]) -> int | None:
-        """Number of the motion whose orbit a path comes near to, and then nearer still; None if there is
-        none.
+        """Number of the motion whose orbit a path comes near to, and then nearer still; None if there
+        is none.
         """
         if not self.images:
             return None

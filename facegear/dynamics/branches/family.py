@@ -144,7 +144,7 @@ def scale_parameter(model: Model, parameter: str, factor: float) -> System:
         return system
     if parameter == "torque":
         load = system.load.copy()
-        load[:, 1, 0] += (factor - 1.0) * (model.reduced.basis.T @ linear.torques)
+        load[:, 1, 0] += (factor - 1.0) * (model.reduction.basis.T @ linear.torques)
         return replace(system, load=load)
     if parameter == "backlash":
         return replace(system, lower=system.lower * factor, upper=system.upper * factor)

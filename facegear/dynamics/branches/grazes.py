@@ -15,7 +15,8 @@ EDGES = (-1, 1)
 LOOKED_AT = np.linspace(0.0, 1.0, 33)[1:-1]
 """Fractions of a stretch at which a cubic is evaluated."""
 ALMOST = 0.1
-"""A cubic is examined where it comes this near to an edge, as a fraction of the lesser distance at the ends.
+"""A cubic is examined where it comes this near to an edge, as a fraction of the lesser distance at
+the ends.
 """
 
 

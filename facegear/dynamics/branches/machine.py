@@ -154,7 +154,7 @@ def scattered(model: Model, spread: float, count: int, seed: int) -> Array:
     """
     linear = model.machine.linear
     random = np.random.default_rng(seed).uniform(-1.0, 1.0, size=(count, 2, linear.size))
-    return spread * random / linear.lengths @ linear.momentum(model.reduced.basis)
+    return spread * random / linear.lengths @ linear.momentum(model.reduction.basis)
 
 
 def machine_survey(

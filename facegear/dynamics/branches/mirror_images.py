@@ -15,7 +15,8 @@ from facegear.dynamics.symmetries import Symmetry
 from facegear.errors import NotConverged
 
 WORST = 100.0
-"""An image whose change over its period exceeds this, in tolerances of the map, is no motion of the system.
+"""An image whose change over its period exceeds this, in tolerances of the map, is no motion of the
+system.
 """
 
 

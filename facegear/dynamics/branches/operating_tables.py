@@ -217,7 +217,7 @@ def jump_table(
 def _last_class(
     direction: str, before: float, after: float, sweep_motions: Sequence[SweptMotion], spacing: float
 ) -> str | None:
-    """Return the class of the sweep's periodic motion at most one step of the sweep before a jump, or None."""
+    """Return the class of the sweep's periodic motion at most one step before a jump, or None."""
     onward = np.sign(after - before)
     behind = {
         onward * (before - row.speed_rpm): row.label
@@ -230,8 +230,8 @@ def _last_class(
 def _explain_jump(
     before: float, after: float, label: str, branches: Sequence[Branch], resolution: float, spacing: float
 ) -> dict[str, object]:
-    """Return the special point that explains a jump as entries of its row, or a note that says why there is
-    none.
+    """Return the special point that explains a jump as entries of its row, or a note that says why
+    there is none.
     """
     if not label.startswith("period-"):
         return {"note": f"the motion before it is {label}: no branch of periodic motions ends there"}

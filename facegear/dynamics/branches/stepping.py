@@ -12,8 +12,8 @@ STRAIGHT = 0.9
 CORRECTION = 0.2
 """Largest correction, as a fraction of the step."""
 TURN, AIM, FASTEST = 0.3, 0.15, 2.5
-"""Angle between tangents, rad, and ratio of correction to step for which a step is chosen; largest growth of
-steps.
+"""Angle between tangents, rad, and ratio of correction to step for which a step is chosen; largest
+growth of steps.
 """
 DRIFT = 0.3
 """Largest change of the multipliers' moduli near the unit circle over a step."""

@@ -133,8 +133,8 @@ class _Search:
             todo += self._children(todo.pop(0))
 
     def _children(self, parent: Branch) -> list[Branch]:
-        """Return new branches that leave a branch; a special point at which a branch begins or ends is left
-        once.
+        """Return new branches that leave a branch; a special point at which a branch begins or ends
+        is left once.
         """
         children = []
         for special in parent.of(Kind.DOUBLING, Kind.BRANCH):

@@ -16,12 +16,12 @@ from facegear.dynamics.sweeps.sweep import Piece
 from facegear.errors import NotConverged
 
 REPEATS = 1e-5
-"""Distance, in length scales, of states one divisor of the period apart below which that divisor is the
-period.
+"""Distance, in length scales, of states one divisor of the period apart below which that divisor is
+the period.
 """
 ON = 1e-5
-"""Distance, in length scales, of a branch's orbit at the same speed below which the motion lies on the
-branch.
+"""Distance, in length scales, of a branch's orbit at the same speed below which the motion lies on
+the branch.
 """
 ELSEWHERE = 0.1
 """An orbit farther than this from the sweep's state is not the sweep's motion."""

@@ -118,8 +118,8 @@ def _from(
 def _first_stretch(
     period_map: PeriodMap, root: BranchPoint, start: BranchPoint
 ) -> tuple[list[BranchPoint], list[Special]]:
-    """Return the points from a special point up to the orbit beside it, without that one, and the special
-    points.
+    """Return the points from a special point up to the orbit beside it, without that one, and the
+    special points.
     """
     near = Segment(period_map, replace(root, linear=start.linear), start).at(NEAR_ROOT)
     division = locate(period_map, near, start)

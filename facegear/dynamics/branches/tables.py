@@ -130,8 +130,8 @@ def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
 
 
 def _edge(special: Special, meshes: int) -> str:
-    """Return the edge that is grazed; for one-sided flanks "upper" is the drive flank and "lower" the back
-    flank.
+    """Return the edge that is grazed; for one-sided flanks "upper" is the drive flank and "lower" the
+    back flank.
     """
     if not special.meshes:
         return ""

@@ -16,8 +16,8 @@ SMALL, VERY_SMALL = 0.02, 1e-3
 MAX_TREND = 0.9
 """Ratio of the changes over a trend above which they are not falling."""
 NO_DIFFERENCE, SPLIT = 10.0, 100.0
-"""Change over a part of a closed period, in goals: below the first there is none, above the second there is
-one.
+"""Change over a part of a closed period, in goals: below the first there is none, above the second
+there is one.
 """
 
 

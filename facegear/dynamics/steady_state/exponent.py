@@ -6,18 +6,18 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import Course
+from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.averages import BATCHES, independent_interval
 from facegear.dynamics.steady_state.window import Window, window
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.stretch import RunRequest
 
 ALIGN, MIN_ALIGN = 2, 32
 """Number of batches, and least number of periods, in which a disturbance turns before its growth counts."""
 MIN_WINDOW = 8 * BATCHES
-"""Least number of periods: growth over shorter batches swings from one to the next, and its mean says nothing
-yet.
+"""Least number of periods: growth over shorter batches swings from one to the next, and its mean says
+nothing yet.
 """
 NEUTRAL = 2e-3
 """An exponent known to lie within this of zero, per mesh period, is neutral."""
@@ -57,7 +57,7 @@ class Exponent:
     window: Window
 
 
-def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> Course[Exponent]:
+def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> RunPlan[Exponent]:
     """Compute the largest exponent by one tangent vector over the settings' window.
 
     The vector is scaled back to length one after every period (Parker and Chua 1989). While the exponent
@@ -75,18 +75,18 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
 
     Returns
     -------
-    Course of Exponent
+    RunPlan of Exponent
         Computation that returns the exponent.
     """
     tangent = np.random.default_rng(0).normal(size=(1, *state.shape))
     tangent /= np.sqrt(((integrator.weights * tangent) ** 2).sum())
     # The vector first turns into the direction of fastest growth.
     align = max(ALIGN * settings.window // BATCHES, MIN_ALIGN)
-    run = yield Stretch(integrator, state, align, tangent, growth=True)
+    run = yield RunRequest(integrator, state, align, tangent, growth=True)
     ends, rates, tangent = run.ends, np.zeros(0), run.tangents
     if settings.window < MIN_WINDOW:
         extra_periods = MIN_WINDOW - settings.window
-        run = yield Stretch(integrator, ends[-1], extra_periods, tangent, growth=True)
+        run = yield RunRequest(integrator, ends[-1], extra_periods, tangent, growth=True)
         rates, tangent = run.growth, run.tangents
         ends = np.concatenate([ends, run.ends])
     for windows in range(1, 2**settings.extensions + 1):

@@ -152,7 +152,7 @@ def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Ar
     best, ratio = change(integrator, state, end), 0.0
     for _ in range(STEPS):
         state = state + guide.step(end - state)
-        end = integrator.returned(state)
+        end = integrator.advance_period(state)
         residual = change(integrator, state, end)
         if residual <= ROUNDING:
             return state, residual

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import Course
+from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.averages import Moments
@@ -220,7 +220,7 @@ def held_after(first_watch: FirstWatch, system: System) -> tuple[Symmetry, ...]:
 
 def with_chosen_image(
     first_watch: FirstWatch, system: System, start_symmetries: Sequence[Symmetry]
-) -> Course[FirstWatch]:
+) -> RunPlan[FirstWatch]:
     """Take the image of a first watch's motion that the rule prefers, where the run has broken a symmetry.
 
     Parameters
@@ -234,7 +234,7 @@ def with_chosen_image(
 
     Returns
     -------
-    Course of FirstWatch
+    RunPlan of FirstWatch
         The same first watch if the motion is not periodic or keeps these symmetries. Else that of a run which
         settles on the image with the largest AC RMS in the first mesh in which images differ, or the
         largest mean.

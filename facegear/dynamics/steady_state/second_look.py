@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import Course
+from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.closing import SMALL
@@ -35,7 +35,7 @@ def disagreeing(
     motion: Motion,
     states: Array,
     before: int,
-) -> Course[SettlingResult | None]:
+) -> RunPlan[SettlingResult | None]:
     """Where another start (2, n) settles if that takes the class of the first back; None if the class holds.
 
     A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import Course, alone
+from facegear.dynamics.courses import RunPlan, alone
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
@@ -20,7 +20,7 @@ from facegear.dynamics.steady_state.orbits import (
     shoot,
 )
 from facegear.dynamics.steady_state.passed import StateHistory
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.stretch import RunRequest
 
 NEWTON_COST = 20
 """Number of mesh periods that take as much time as one with all tangents."""
@@ -34,7 +34,8 @@ BLOCK, LONG_BLOCK = 16, 128
 Each call of the kernels has a price.
 """
 KICK = 0.01
-"""Size, as by change(), of the disturbance along the leading direction of an unstable orbit that holds a run.
+"""Size, as by change(), of the disturbance along the leading direction of an unstable orbit that
+holds a run.
 """
 MAX_KICKS = 2
 """Maximum number of kicks in a run."""
@@ -115,7 +116,7 @@ def settling(
     settings: Settings,
     ends: Array | None = None,
     known_orbit: KnownOrbit | None = None,
-) -> Course[SettlingResult]:
+) -> RunPlan[SettlingResult]:
     """Run until the state repeats after 1 .. longest_period periods, or the maximum number of periods is
     reached.
 
@@ -139,7 +140,7 @@ def settling(
 
     Returns
     -------
-    Course of SettlingResult
+    RunPlan of SettlingResult
         Computation that returns where the run came to rest.
     """
     return SettlingRun(integrator, state, settings, ends, known_orbit).settle()
@@ -177,12 +178,12 @@ class SettlingRun:
         """The last states at the end of a period, oldest first."""
         return self.history.states
 
-    def settle(self) -> Course[SettlingResult]:
+    def settle(self) -> RunPlan[SettlingResult]:
         """Continue, block by block, until the run has settled or the maximum number of periods is reached.
 
         Returns
         -------
-        Course of SettlingResult
+        RunPlan of SettlingResult
             Computation that returns where the run came to rest.
         """
         while True:
@@ -216,21 +217,21 @@ class SettlingRun:
             self._result(self.known_orbit.orbit.period, off, None), state=state, is_known_orbit=True
         )
 
-    def _advance(self) -> Course[None]:
+    def _advance(self) -> RunPlan[None]:
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
         if not self.initial_count and self.known_orbit is None:
             block = max(block, self.dwell - self.periods_run)
         if self.periods_run < settings.settle:
             block = min(block, settings.settle - self.periods_run)
-        run = yield Stretch(self.integrator, self.state, block)
+        run = yield RunRequest(self.integrator, self.state, block)
         self.state = run.state
         self.history.reserve(block)[:] = run.ends
         self.periods_run += block
 
     def _find_orbit(self, near: BestReturn, last: bool) -> SettlingResult | None:
-        """Return the result for the orbit that attracts the run, if there is one; it is sought where that
-        saves time.
+        """Return the result for the orbit that attracts the run, if there is one; it is sought where
+        that saves time.
         """
         if self._worth_trying(near, last):
             self.tried_residuals[near.period] = near.residual
@@ -299,8 +300,8 @@ class SettlingRun:
         return self._result(orbit.period, near.residual, orbit if self.settings.refine else None)
 
     def _is_here(self, orbit: Orbit) -> bool:
-        """Whether an orbit is the one that the run is on, up to what is left to decay and the errors of
-        steps.
+        """Whether an orbit is the one that the run is on, up to what is left to decay and the errors
+        of steps.
         """
         distance = orbit.distance(self.integrator, self.state)
         settings, slow = self.settings, max(1.0 - abs(orbit.multipliers[0]), 1e-3)
@@ -317,8 +318,8 @@ class SettlingRun:
         return whole and left <= 10.0 * self.settings.periodic_residual and self._is_here(orbit)
 
     def _kick(self, near: BestReturn) -> None:
-        """Move a run off an unstable orbit that holds it, in the direction in which it leaves already, if it
-        does.
+        """Move a run off an unstable orbit that holds it, in the direction in which it leaves
+        already, if it does.
         """
         orbit = self.orbit
         assert orbit is not None

@@ -8,10 +8,10 @@ from functools import lru_cache
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import Course, alone
+from facegear.dynamics.courses import RunPlan, alone
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.reduction import Reduced, reduce
+from facegear.dynamics.integrator.reduction import Reduction, reduce
 from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.guide import Guide
@@ -37,7 +37,7 @@ class Model:
     """A machine with its reduction and equations of motion, to be used at many speeds."""
 
     machine: Machine
-    reduced: Reduced
+    reduction: Reduction
     system: System
 
     def displacements(self, response: SteadyState) -> Array:
@@ -53,7 +53,7 @@ class Model:
         (K, 4 bodies) array
             Displacements, m and rad.
         """
-        return response.coordinates @ self.reduced.basis.T
+        return response.coordinates @ self.reduction.basis.T
 
 
 def build_model(machine: Machine) -> Model:
@@ -97,7 +97,7 @@ def _excited(machine: Machine, basis: Array, system: System) -> System:
 
 
 @lru_cache(maxsize=8)
-def _cached_reduction(machine: Machine) -> Reduced:
+def _cached_reduction(machine: Machine) -> Reduction:
     return reduce(machine.linear, machine.layout.contacts, machine.pushes)
 
 
@@ -115,7 +115,7 @@ def static_start(model: Model) -> State:
         Displacement (n,) and velocity (n,), which is zero.
     """
     displacements = static_equilibrium(model.machine).displacements
-    displacement = model.reduced.basis.T @ model.machine.linear.momentum(displacements)
+    displacement = model.reduction.basis.T @ model.machine.linear.momentum(displacements)
     return State(displacement, np.zeros_like(displacement))
 
 
@@ -160,7 +160,7 @@ def simulating(
     settings: Settings | None = None,
     start: State | None = None,
     guide: Guide | None = None,
-) -> Course[SteadyState]:
+) -> RunPlan[SteadyState]:
     """Run plan of simulate(), for many computations side by side.
 
     Parameters
@@ -178,7 +178,7 @@ def simulating(
 
     Returns
     -------
-    Course of SteadyState
+    RunPlan of SteadyState
         Computation that returns the response.
     """
     return (yield from (yield from start_run(model, speed_rpm, settings, start, guide)).follow())
@@ -220,14 +220,14 @@ class StartedRun:
         """Symmetries of the motion that the run hands on."""
         return held_after(self.first_watch, self.system)
 
-    def follow(self) -> Course[SteadyState]:
+    def follow(self) -> RunPlan[SteadyState]:
         """Watch the run until its class is known, and check the class from other starts.
 
         For a motion that has settled only after its first watch, the mirror image is chosen here.
 
         Returns
         -------
-        Course of SteadyState
+        RunPlan of SteadyState
             Computation that returns the response.
         """
         with _naming(self.speed_rpm):
@@ -251,7 +251,7 @@ def start_run(
     guide: Guide | None = None,
     known_orbit: KnownOrbit | None = None,
     start_symmetries: Sequence[Symmetry] | None = None,
-) -> Course[StartedRun]:
+) -> RunPlan[StartedRun]:
     """Run plan of the first watch of simulate(); it ends where the run comes to a known orbit of the model.
 
     Where the run breaks a symmetry of its start, a rule decides which of the mirror images is taken. A guide
@@ -276,7 +276,7 @@ def start_run(
 
     Returns
     -------
-    Course of StartedRun
+    RunPlan of StartedRun
         Computation that returns the run after its first watch.
     """
     model = build_model(model) if isinstance(model, Machine) else model
@@ -331,7 +331,7 @@ def steady_state(
         Response.
     """
 
-    def run_plan() -> Course[SteadyState]:
+    def run_plan() -> RunPlan[SteadyState]:
         return (
             yield from _steady(system, (yield from _begin_watch(system, frequency, settings, start, guide)))
         )
@@ -346,7 +346,7 @@ def _begin_watch(
     start: State,
     guide: Guide | None,
     known_orbit: KnownOrbit | None = None,
-) -> Course[FirstWatch]:
+) -> RunPlan[FirstWatch]:
     """Run plan of the first watch of a system from a start."""
     guide = guide if guide is not None and settings.refine and guide.serves(system) else None
     like = None if guide is None else guide.integrator
@@ -354,8 +354,8 @@ def _begin_watch(
     return begin(integrator, integrator.by_phase(start), settings, guide, known_orbit)
 
 
-def _steady(system: System, first_watch: FirstWatch) -> Course[SteadyState]:
-    """Run plan of the steady state to which a run comes, and of the check whether it holds from other starts."""
+def _steady(system: System, first_watch: FirstWatch) -> RunPlan[SteadyState]:
+    """Run plan of the steady state of a run, and of the check whether it holds from other starts."""
     integrator, settings = first_watch.integrator, first_watch.settings
     watch_result = yield from watch(first_watch)
     first, states = watch_result.settling_result, watch_result.window.ends

@@ -13,7 +13,8 @@ from facegear.dynamics.steady_state.averages import (
 )
 
 SMOOTH = 0.02
-"""Von Neumann's ratio below which the RMS from period to period is a smooth curve (2 for independent values).
+"""Von Neumann's ratio below which the RMS from period to period is a smooth curve (2 for independent
+values).
 """
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import Course
+from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.closing import MAX_TREND, SMALL, best_return, wanders
@@ -19,8 +19,8 @@ from facegear.dynamics.steady_state.window import Window, run_window
 CLASSES = {Growth.GROWS: Motion.CHAOTIC, Growth.NEUTRAL: Motion.QUASI_PERIODIC}
 """Class of a motion that does not close, by the growth of small disturbances."""
 ESCAPING = 1e-3
-"""Growing disturbances of a motion that repeats as closely as this (over the length scale) show its end, not
-chaos.
+"""Growing disturbances of a motion that repeats as closely as this (over the length scale) show its
+end, not chaos.
 """
 
 
@@ -88,7 +88,7 @@ def begin(
     settings: Settings,
     guide: Guide | None = None,
     known_orbit: KnownOrbit | None = None,
-) -> Course[FirstWatch]:
+) -> RunPlan[FirstWatch]:
     """Watch a run until it settles or the maximum number of periods is reached for the first time.
 
     Parameters
@@ -107,7 +107,7 @@ def begin(
 
     Returns
     -------
-    Course of FirstWatch
+    RunPlan of FirstWatch
         Computation that returns the first watch.
     """
     settling_result = None if guide is None else settle_by_guide(integrator, state, guide)
@@ -121,7 +121,7 @@ def begin(
     return FirstWatch(integrator, settings, state, settling_result, watch_result)
 
 
-def watch(first_watch: FirstWatch) -> Course[WatchResult]:
+def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
     """Watch a run until its class is known or the maximum number of periods is reached.
 
     For a run that shows no sign of closing while it is watched, the largest Lyapunov exponent is computed on
@@ -137,7 +137,7 @@ def watch(first_watch: FirstWatch) -> Course[WatchResult]:
 
     Returns
     -------
-    Course of WatchResult
+    RunPlan of WatchResult
         Computation that returns the result.
     """
     if first_watch.watch_result is not None:
@@ -176,7 +176,7 @@ def _periodic(
 
 def not_settled(
     integrator: Integrator, watch_result: WatchResult, other_result: SettlingResult, settings: Settings
-) -> Course[WatchResult]:
+) -> RunPlan[WatchResult]:
     """Result where another start came to another motion: not settled, measured on one of the two.
 
     It is measured on the run that did not close, if there is one.
@@ -194,7 +194,7 @@ def not_settled(
 
     Returns
     -------
-    Course of WatchResult
+    RunPlan of WatchResult
         Computation that returns the result.
     """
     settling_result = other_result if watch_result.settling_result.period else watch_result.settling_result

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import Course, alone
+from facegear.dynamics.courses import RunPlan, alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.averages import BATCHES, Averages, averages
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.stretch import RunRequest
 
 MAX_SAMPLES = 4096
 """Maximum number of samples in a period."""
@@ -74,7 +74,7 @@ def run_window(integrator: Integrator, state: Array, periods: int, samples: int)
 
 def window(
     integrator: Integrator, state: Array, periods: int, samples: int, tangent: Array | None = None
-) -> Course[Window]:
+) -> RunPlan[Window]:
     """Run some periods and measure them.
 
     A periodic motion over its own period needs one batch; BATCHES batches of other motions give confidence
@@ -95,7 +95,7 @@ def window(
 
     Returns
     -------
-    Course of Window
+    RunPlan of Window
         Computation that returns the window.
 
     Raises
@@ -104,7 +104,7 @@ def window(
         If a step fails.
     """
     per_period = samples_needed(integrator, samples, periods)
-    result = yield Stretch(
+    result = yield RunRequest(
         integrator,
         state,
         periods,

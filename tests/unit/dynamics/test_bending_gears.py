@@ -144,7 +144,7 @@ def test_steady_motion_of_gears_that_bend_balances_power_reactions_and_torques(r
     """
     bent, model, response = running
     linear, w = bent.linear, OMEGA
-    q = response.coordinates @ model.reduced.basis.T
+    q = response.coordinates @ model.reduction.basis.T
     rate = derivative(q, w)
     flanks = q @ linear.rows.T
     forces = np.concatenate([np.maximum(response.forces, 0.0), np.maximum(-response.forces, 0.0)], axis=1)

@@ -9,7 +9,7 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.side_by_side import FEWEST, WIDTH, _in_lanes
 from facegear.dynamics.steady_state.settle import settle, settling
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
 
 SETTINGS = Settings(tolerance=1e-10, periodic_residual=1e-9)
@@ -37,7 +37,7 @@ def asking(integrator, start, periods):
     """A course of stretches of one period each; what fails ends it with the number of those run before."""
     for number in range(periods):
         try:
-            start = (yield Stretch(integrator, start, 1)).state
+            start = (yield RunRequest(integrator, start, 1)).state
         except NotConverged:
             return number
         if number == 1:

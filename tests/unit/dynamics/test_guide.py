@@ -95,7 +95,7 @@ def test_scratch_space_is_shared_by_systems_of_the_same_sizes_alone_and_changes_
     first.run(start, 3)
     assert beside.work is first.work and alone.work is not first.work
     assert np.array_equal(beside.run(start, 3).ends, alone.run(start, 3).ends)
-    assert np.array_equal(beside.returned(start), alone.run(start, 1, fine=True).state)
+    assert np.array_equal(beside.advance_period(start), alone.run(start, 1, fine=True).state)
     assert Integrator(moved.system, 2e3, order=7, like=first).work is not first.work
     assert Integrator(build_model(tight).system, 2e3, like=first).work is not first.work
 

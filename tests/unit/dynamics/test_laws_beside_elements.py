@@ -76,7 +76,7 @@ def assert_follows_its_accelerations(machine):
     model = build_model(machine)
     integrator = Integrator(model.system, frequency(model, SPEED_RPM), 1e-11)
     kick = np.random.default_rng(5).normal(size=(2, model.system.size))
-    kick *= 0.2 * model.system.scale / np.abs(model.reduced.mesh_jacobian).max()
+    kick *= 0.2 * model.system.scale / np.abs(model.reduction.mesh_jacobian).max()
     start = integrator.by_phase(static_start(model)) + kick
 
     def rates(phase, state):

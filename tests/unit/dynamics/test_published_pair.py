@@ -70,11 +70,11 @@ def computed_deflection():
     machine = model.machine
     standing = np.zeros(machine.linear.size)
     standing[machine.torque_coordinates[0]] = machine.error(np.zeros(1))[0] / RADIUS
-    displacement = model.reduced.basis.T @ machine.linear.momentum(standing)
+    displacement = model.reduction.basis.T @ machine.linear.momentum(standing)
     start = State(displacement, np.zeros_like(displacement))
     run = record(model.system, FREQUENCY * NATURAL, start, PERIODS, Settings(tolerance=1e-12))
     assert (run.states == 0).any() and (run.states == 1).any(), "contact is lost"
-    return (model.reduced.mesh_jacobian[0] @ run.at(PHASES)[0].T - machine.error(PHASES / TAU)) / HALF
+    return (model.reduction.mesh_jacobian[0] @ run.at(PHASES)[0].T - machine.error(PHASES / TAU)) / HALF
 
 
 def published_deflection():
