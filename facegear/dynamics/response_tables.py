@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.steady_state.spectra import MAX_ORDER, spectrum

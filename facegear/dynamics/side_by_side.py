@@ -9,8 +9,8 @@ import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import make_runner, packed_system
 from facegear.dynamics.integrator.integrator import Integrator, RunResult, result_of, run_machines
+from facegear.dynamics.integrator.kernel_system import make_runner, packed_system
 from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
 
@@ -71,7 +71,7 @@ def run_stretches(
 
     Parameters
     ----------
-    stretches : sequence of Stretch
+    stretches : sequence of RunRequest
         The stretches, in any order.
     last_periods : int, optional
         Number of last periods whose end states are returned; all if None.

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, ComplexArray
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.response import SteadyState
 
 

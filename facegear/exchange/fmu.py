@@ -14,7 +14,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import numpy as np
 
 from facegear.arrays import AnyArray
-from facegear.dynamics.integrator.compiled import system_numbers
+from facegear.dynamics.integrator.kernel_system import system_numbers
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
 from facegear.io.atomic import atomic_path

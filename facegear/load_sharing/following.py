@@ -20,7 +20,7 @@ from facegear.transmission.machine import Machine
 
 @dataclass(frozen=True, eq=False)
 class Running(LoadHistory):
-    """The motion at a speed; `lead` and `memory` as in facegear.dynamics.following.Followed."""
+    """The motion at a speed; `lead` and `memory` as in facegear.dynamics.following.FollowedMotion."""
 
     speed_rpm: float
     lead: int

@@ -7,10 +7,10 @@ from itertools import islice
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import RunPlan, alone, side_by_side
 from facegear.dynamics.dense_motion import DenseMotion
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.run_plans import RunPlan, alone, side_by_side
 from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.response import SteadyState

@@ -10,11 +10,11 @@ from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.branches import operating_tables, tables
 from facegear.dynamics.branches.machine import machine_period_map, machine_survey, margins
 from facegear.dynamics.branches.margins import coexistence_ranges
-from facegear.dynamics.branches.stored import from_arrays, special_arrays
+from facegear.dynamics.branches.motion_arrays import from_arrays, special_arrays
 from facegear.dynamics.branches.summary import survey_summary, tell
-from facegear.dynamics.branches.swept import swept_motions
+from facegear.dynamics.branches.sweep_orbits import swept_motions
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.stored import from_arrays as chunk_from_arrays
+from facegear.dynamics.sweeps.chunk_arrays import from_arrays as chunk_from_arrays
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
 

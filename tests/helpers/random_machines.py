@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import Model, static_start
 from facegear.harmonics.series import Harmonics

@@ -4,7 +4,7 @@ import pandas as pd
 
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
+from facegear.dynamics.sweeps.chunk_arrays import SHAPES, from_arrays
 from facegear.dynamics.sweeps.sweep import join_pieces
 from facegear.dynamics.symmetries import mesh_images
 from facegear.io import arrays, tables

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.reduction import modal_damping
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.steady_state.simulate import Model

@@ -16,7 +16,7 @@ from facegear.dynamics.branches.plan import BranchPlan
 from facegear.dynamics.branches.points import BranchPoint, at_parameter
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.survey import Survey, survey
-from facegear.dynamics.branches.swept import SweptMotion
+from facegear.dynamics.branches.sweep_orbits import SweptMotion
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, simulate, static_start
 from facegear.errors import NotConverged

@@ -10,7 +10,7 @@ from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.segment import SMALL
 from facegear.dynamics.branches.special import Special
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.symmetries import Symmetry
 from facegear.errors import NotConverged
 

@@ -9,7 +9,7 @@ from facegear.dynamics.branches.columns import JUMP_COLUMNS, SWEPT_COLUMNS
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import SettledMotion, lies_on
 from facegear.dynamics.branches.margins import StabilityLimit, passed_by
-from facegear.dynamics.branches.swept import SweptMotion, nearest_branch
+from facegear.dynamics.branches.sweep_orbits import SweptMotion, nearest_branch
 from facegear.dynamics.motion import Motion
 
 IRREGULAR = "not periodic"

@@ -10,7 +10,8 @@ import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import (
+from facegear.dynamics.integrator.dense import Extrema, Steps, extrema_of, steps_of
+from facegear.dynamics.integrator.kernel_system import (
     TAU,
     edges_of,
     fastest,
@@ -19,7 +20,6 @@ from facegear.dynamics.integrator.compiled import (
     packed_system,
     weights_of,
 )
-from facegear.dynamics.integrator.dense import Extrema, Steps, extrema_of, steps_of
 from facegear.dynamics.integrator.sums import Sums, sums_of
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings, State

@@ -7,8 +7,8 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.sums import Sums
 
 BATCHES = 16

@@ -6,9 +6,9 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.run_plans import RunPlan
 from facegear.dynamics.steady_state.averages import BATCHES, independent_interval
 from facegear.dynamics.steady_state.window import Window, window
 from facegear.dynamics.stretch import RunRequest

@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import State
+from facegear.dynamics.run_plans import RunPlan
 from facegear.dynamics.steady_state.averages import Moments
 from facegear.dynamics.steady_state.orbits import Orbit
 from facegear.dynamics.steady_state.response import SteadyState
-from facegear.dynamics.steady_state.watching import FirstWatch, begin
+from facegear.dynamics.steady_state.watch import FirstWatch, begin
 from facegear.dynamics.symmetries import Symmetry, symmetries
 
 SAME_MOTION = 1e-4

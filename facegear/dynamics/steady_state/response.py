@@ -19,7 +19,7 @@ from facegear.dynamics.steady_state.mesh_samples import (
     past_law,
 )
 from facegear.dynamics.steady_state.orbits import Orbit
-from facegear.dynamics.steady_state.watching import WatchResult
+from facegear.dynamics.steady_state.watch import WatchResult
 
 
 @dataclass(frozen=True, eq=False)

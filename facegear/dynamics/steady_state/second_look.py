@@ -11,12 +11,12 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.closing import SMALL
+from facegear.dynamics.run_plans import RunPlan
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.orbits import change, largest
+from facegear.dynamics.steady_state.periodicity import SMALL
 from facegear.dynamics.steady_state.settle import SettlingResult, settling
 
 WANDERED = 16

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import RunPlan, alone
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, BestReturn, best_return, closed_period
+from facegear.dynamics.run_plans import RunPlan, alone
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.orbits import (
     MATRICES,
@@ -19,7 +18,14 @@ from facegear.dynamics.steady_state.orbits import (
     drawn_in,
     shoot,
 )
-from facegear.dynamics.steady_state.passed import StateHistory
+from facegear.dynamics.steady_state.periodicity import (
+    TREND,
+    VERY_SMALL,
+    BestReturn,
+    best_return,
+    closed_period,
+)
+from facegear.dynamics.steady_state.state_history import StateHistory
 from facegear.dynamics.stretch import RunRequest
 
 NEWTON_COST = 20

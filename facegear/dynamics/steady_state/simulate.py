@@ -8,12 +8,12 @@ from functools import lru_cache
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import RunPlan, alone
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.reduction import Reduction, reduce
 from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.run_plans import RunPlan, alone
 from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.mirror_images import (
@@ -24,7 +24,7 @@ from facegear.dynamics.steady_state.mirror_images import (
 )
 from facegear.dynamics.steady_state.response import SteadyState, response_of
 from facegear.dynamics.steady_state.second_look import disagreeing
-from facegear.dynamics.steady_state.watching import FirstWatch, begin, not_settled, watch
+from facegear.dynamics.steady_state.watch import FirstWatch, begin, not_settled, watch
 from facegear.dynamics.symmetries import Symmetry
 from facegear.errors import NotConverged
 from facegear.transmission.loaded_modes import machine_in_motion

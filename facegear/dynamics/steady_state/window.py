@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import RunPlan, alone
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.run_plans import RunPlan, alone
 from facegear.dynamics.steady_state.averages import BATCHES, Averages, averages
 from facegear.dynamics.stretch import RunRequest
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.motion import Motion, State
+from facegear.dynamics.run_plans import RunPlan
 from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower

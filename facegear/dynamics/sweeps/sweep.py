@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.dynamics.courses import RunPlan, alone, side_by_side
 from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.run_plans import RunPlan, alone, side_by_side
 from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model, StartedRun, start_run, static_start

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-from facegear.dynamics.courses import RunPlan, side_by_side
+from facegear.dynamics.run_plans import RunPlan, side_by_side
 from facegear.dynamics.steady_state.simulate import Model, simulating
 from facegear.dynamics.sweeps.assemble import Seam, assemble
 from facegear.dynamics.sweeps.held_orbit import machine_follower

@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 import facegear
 from facegear.dynamics.bearing_forces import bearing_forces, bearing_history, bearing_table
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.track import SampledTrack, periodic_track, track

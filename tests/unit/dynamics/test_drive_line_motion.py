@@ -12,7 +12,7 @@ from facegear.dynamics.bearing_forces import (
     bearing_table,
     shaft_bearing_history,
 )
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.track import track

@@ -9,8 +9,8 @@ from random_machines import FINE, frequency, kicked, machines, speeds
 from recorded_motion import Trajectory, record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy

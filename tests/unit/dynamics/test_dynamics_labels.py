@@ -13,9 +13,9 @@ from facegear.config.dynamics import SECOND_LOOKS
 from facegear.config.load import load_config
 from facegear.config.machines import MachineInputs
 from facegear.config.model import resolved
-from facegear.dynamics.courses import alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.run_plans import alone
 from facegear.dynamics.steady_state import second_look
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.orbits import change

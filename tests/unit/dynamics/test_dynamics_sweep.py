@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 from scipy.signal import find_peaks
 
-from facegear.dynamics.courses import alone
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.run_plans import alone
 from facegear.dynamics.steady_state.simulate import build_model, simulate, start_run
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import maxima, resonance
+from facegear.dynamics.sweeps.chunk_arrays import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.jump_margin import jump_margin
 from facegear.dynamics.sweeps.maxima import local_maxima
 from facegear.dynamics.sweeps.plan import JumpRange, SweepPlan
-from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
 from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep

@@ -10,7 +10,7 @@ from random_machines import FINE, frequency, kicked, machines, speeds
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
 from facegear.harmonics.series import Harmonics

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.steady_state.passed import StateHistory
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import build_model, static_start
+from facegear.dynamics.steady_state.state_history import StateHistory
 from facegear.transmission.machine import mesh_frequency
 
 TOLERANCE = 1e-8

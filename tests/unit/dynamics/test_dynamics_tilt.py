@@ -8,7 +8,7 @@ from lumped_machines import make_layout, make_machine
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.harmonics.series import Harmonics

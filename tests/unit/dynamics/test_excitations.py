@@ -14,7 +14,7 @@ from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
 import facegear
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import ConfigError, ConfigErrors

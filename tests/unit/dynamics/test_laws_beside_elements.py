@@ -11,8 +11,8 @@ from references import against, agrees
 from scipy.integrate import solve_ivp
 from test_bending_gears import machine as build_bending_gears
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.mesh_law.power import PowerLaw
 from facegear.transmission.imperfections import perfect

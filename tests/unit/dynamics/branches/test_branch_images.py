@@ -13,10 +13,10 @@ from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.explore import explore, lies_on
 from facegear.dynamics.branches.family import Family, speed_family
 from facegear.dynamics.branches.margins import coexistence_ranges, stability_limits, stable_at
+from facegear.dynamics.branches.motion_arrays import special_arrays
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.stored import special_arrays
 from facegear.dynamics.branches.survey import survey
 from facegear.dynamics.branches.tables import end_table
 from facegear.dynamics.motion import Settings, State

@@ -20,7 +20,7 @@ from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter, without_neutral
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.survey import survey
-from facegear.dynamics.branches.swept import SweptMotion
+from facegear.dynamics.branches.sweep_orbits import SweptMotion
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 

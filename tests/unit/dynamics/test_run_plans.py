@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.courses import alone, side_by_side
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.run_plans import alone, side_by_side
 from facegear.dynamics.side_by_side import FEWEST, WIDTH, _in_lanes
 from facegear.dynamics.steady_state.settle import settle, settling
 from facegear.dynamics.stretch import RunRequest

@@ -3,14 +3,14 @@
 from dataclasses import dataclass, replace
 
 from facegear.arrays import Array
-from facegear.dynamics.courses import RunPlan
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.closing import MAX_TREND, SMALL, best_return, wanders
+from facegear.dynamics.run_plans import RunPlan
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
 from facegear.dynamics.steady_state.guide import Guide, settle_by_guide
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
+from facegear.dynamics.steady_state.periodicity import MAX_TREND, SMALL, best_return, wanders
 from facegear.dynamics.steady_state.second_look import wandering
 from facegear.dynamics.steady_state.settle import SettlingResult, settling
 from facegear.dynamics.steady_state.statistics import drifts
