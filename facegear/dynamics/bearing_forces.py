@@ -56,8 +56,7 @@ def bearing_forces(model: Model, motion: Track) -> Array:
     """Compute the force of every body on its bearing: springs, their damping of equation (21), and dampers.
 
     The force is K q + beta K q' + D q'. Mass damping acts from outside and not through a bearing. With
-    clearance
-    the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
+    clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
 
     Parameters
     ----------
@@ -116,8 +115,7 @@ def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
 
 def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Integers) -> tuple[Array, Array]:
     """Matrices (n, coordinates) that map reduced displacement and velocity to the force or moment on springs
-    and
-    dampers along some coordinates.
+    and dampers along some coordinates.
     """
     basis = reduction.basis
     springs = basis.T @ linear.stiffness[:, coordinates]
@@ -172,8 +170,7 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
     """Tabulate the bearing forces: four rows a body, along x, y, z, and the magnitude of x and y together.
 
     Below them stand the rows of each bearing of a pinion's shaft, such as `right input bearing A`. A pinion's
-    x
-    is tangential and y along the gears' axis, both radial for its bearing; a face gear's axis is z.
+    x is tangential and y along the gears' axis, both radial for its bearing; a face gear's axis is z.
 
     Parameters
     ----------

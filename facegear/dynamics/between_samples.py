@@ -131,8 +131,8 @@ def finer(values: Array, factor: int, wraps: bool) -> Array:
     """Interpolate even samples by a cubic spline at a multiple of their instants.
 
     Where two neighbouring samples do not differ in sign, the values between have no other sign: a contact
-    that
-    is open at both is open between them. Without wrapping the last value is repeated after the last sample.
+    that is open at both is open between them. Without wrapping the last value is repeated after the last
+    sample.
 
     Parameters
     ----------
@@ -174,8 +174,7 @@ def _parabolas(values: Array, rows: Integers, wraps: bool) -> tuple[Array, Mask]
     a peak.
 
     The curve must bend down at the sample and at its higher neighbour, between which the peak lies. It does
-    not
-    where a contact opens and its force stays zero.
+    not where a contact opens and its force stays zero.
     """
     count = len(values)
 

@@ -62,8 +62,8 @@ class DenseMotion:
 
     @property
     def past_law(self) -> Array:
-        """Fraction of the instants (contacts,) at which a contact is compressed beyond the last level
-        of its law.
+        """Fraction of the instants (contacts,) at which a contact is compressed beyond the last level of
+        its law.
         """
         law = self.response.system.law
         if law.straight:

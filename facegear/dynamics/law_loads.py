@@ -32,9 +32,8 @@ def law_loads_table(
         One row a mesh: mesh, flank, and LAW_LOAD_COLUMNS.
 
         - last_level_n: mean force at the last level of the table of the flank that carries the load
-        - smallest_n, mean_n, largest_n: elastic force at the nominal speed, counted on that flank;
-        extremes are
-          located between the samples
+        - smallest_n, mean_n, largest_n: elastic force at the nominal speed, counted on that flank; extremes
+          are located between the samples
         - past_fraction: largest fraction of the samples past the last level there
         - sweep_largest_n, sweep_past_fraction: the largest of both over the sweep
     """

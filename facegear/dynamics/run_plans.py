@@ -48,8 +48,7 @@ def side_by_side(plans: Sequence[RunPlan[T]]) -> list[T]:
     """Run many plans to completion; requests of one kind are integrated together, whatever their lengths.
 
     The kind that most plans request at a time is run, while the others wait for more of their own. So lanes
-    are
-    as full as they can be.
+    are as full as they can be.
 
     Parameters
     ----------

@@ -129,8 +129,7 @@ class _Search:
         """Shifts at which the first contact that changes over the mesh period may be like another contact.
 
         The change may be in its force law, or in its error or load, both up to their sign. Where nothing
-        changes,
-        only the shift 0 is examined.
+        changes, only the shift 0 is examined.
         """
         forces = self._forces(0.0)[0]
         signed_signals = np.stack([self._errors(0.0), self._load(0.0)[0] @ self.jacobian.T])
@@ -233,8 +232,7 @@ class _Search:
         """Rows (rows, n) whose images are known, and these images.
 
         They are those of the Jacobian, friction and load, their products with the couplings, and the
-        directions that
-        bearings with clearance feel beside them.
+        directions that bearings with clearance feel beside them.
         """
         sign_column = signs[:, None, None]
         known_pairs = [

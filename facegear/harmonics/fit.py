@@ -23,8 +23,7 @@ class Fit:
         Largest deviation from the samples if the series is cut after each order, N/m.
     sampling : (H+1,) array
         Estimated error of each amplitude, from leaving out every second sample, whose aliasing is that of
-        half
-        the points, N/m; NaN for orders that half the points do not reach.
+        half the points, N/m; NaN for orders that half the points do not reach.
     peak_to_peak : float
         Range of the samples, N/m.
     """

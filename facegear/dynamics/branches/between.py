@@ -29,8 +29,8 @@ SHORTEST_LENGTH = 1e-3
 TRUSTED = 0.25
 """Fraction of a multiplier's approach to the circle, beyond that at the ends, that may be an error."""
 STEEP = 3.0
-"""Ratio of a matrix slope to the chord and the other end's slope above which it belongs to a graze
-and is left out.
+"""Ratio of a matrix slope to the chord and the other end's slope above which it belongs to a graze and
+is left out.
 """
 
 

@@ -287,8 +287,8 @@ def _images(period_map: PeriodMap, start: BranchPoint) -> list[Array]:
 def _closing_point(
     period_map: PeriodMap, images: list[Array], current_point: BranchPoint, next_point: BranchPoint
 ) -> BranchPoint | None:
-    """Return the point at which the branch comes back to its start, at any of the start's mesh periods, or
-    None.
+    """Return the point at which the branch comes back to its start, at any of the start's mesh periods,
+    or None.
     """
     chord = next_point.x - current_point.x
     length = np.linalg.norm(chord)

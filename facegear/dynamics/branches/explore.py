@@ -1,5 +1,5 @@
-"""Find which motions exist at a speed: random starts, the fraction of them that ends on each, and
-what is new.
+"""Find which motions exist at a speed: random starts, the fraction of them that ends on each, and what
+is new.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -119,8 +119,7 @@ class _Runs:
     """Runs at one value of the parameter, and the motions to which they have come.
 
     A path holds the weighted states (2 n,) of a run at the ends of blocks of periods, the start first. `u` is
-    the
-    parameter's logarithm. `images` are states of stable orbits, each with the number of its motion.
+    the parameter's logarithm. `images` are states of stable orbits, each with the number of its motion.
     """
 
     period_map: PeriodMap
@@ -145,8 +144,8 @@ class _Runs:
             path.extend(ends[BLOCK - 1 :: BLOCK])
 
     def nearby_motion(self, path: list[Array]) -> int | None:
-        """Number of the motion whose orbit a path comes near to, and then nearer still; None if there
-        is none.
+        """Number of the motion whose orbit a path comes near to, and then nearer still; None if there is
+        none.
         """
         if not self.images:
             return None
@@ -261,8 +260,7 @@ def distance(branch: Branch, orbit: BranchPoint, period: int) -> float:
     """Distance of an orbit from the nearest one of a branch at the same parameter.
 
     Where bodies float in either orbit, their position is free and not compared: along a branch such a body
-    stays
-    where it is until a mesh pushes it.
+    stays where it is until a mesh pushes it.
 
     Parameters
     ----------

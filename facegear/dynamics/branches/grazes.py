@@ -14,9 +14,13 @@ EDGES = (-1, 1)
 """Number of each backlash edge: -1 lower, 1 upper."""
 LOOKED_AT = np.linspace(0.0, 1.0, 33)[1:-1]
 """Fractions of a stretch at which a cubic is evaluated."""
+SYMMETRY_TOLERANCE = 1e-7
+"""Distance of extremes, in length scales, up to which symmetry moves their meshes alike; they differ by
+rounding, while grazes that lie together by chance differ by more (free choice, as orbits are known to 1e-9).
+"""
 ALMOST = 0.1
-"""A cubic is examined where it comes this near to an edge, as a fraction of the lesser distance at
-the ends.
+"""A cubic is examined where it comes this near to an edge, as a fraction of the lesser distance at the
+ends.
 """
 
 
@@ -43,8 +47,7 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
     """Find the extrema that have passed an edge between two points.
 
     The number of maxima less that of minima above an edge gives its passages. A maximum and a minimum that
-    are
-    born together change neither. Meshes that symmetry moves in the same way make one graze.
+    are born together change neither. Meshes that symmetry moves in the same way make one graze.
 
     Parameters
     ----------
@@ -60,7 +63,7 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
     bool
         Whether some of them cannot be told apart yet.
     """
-    first_passed: dict[tuple, Graze] = {}
+    graze_ends: list[tuple[Array, Graze]] = []
     is_ambiguous = False
     levels = _levels(period_map, first.u)
     before, after = (_above(point.extrema, levels) for point in (first, second))
@@ -70,10 +73,21 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
         is_ambiguous = is_ambiguous or bool(changes.all()) or abs(changes[kind]) > 1
         rank = int(min(before[side, mesh, kind], after[side, mesh, kind]))
         test = _distance(float(levels[side, mesh]), int(mesh), kind, rank)
-        signature = (side, kind, *(round(test(point.extrema), 7) for point in (first, second)))
-        meshes = (*first_passed[signature].meshes, int(mesh)) if signature in first_passed else (int(mesh),)
-        first_passed[signature] = Graze(test, meshes, EDGES[side])
-    return list(first_passed.values()), is_ambiguous
+        ends = np.array([side, kind, *(test(point.extrema) for point in (first, second))])
+        index = next(
+            (
+                i
+                for i, (known_ends, _) in enumerate(graze_ends)
+                if np.abs(ends - known_ends).max() < SYMMETRY_TOLERANCE
+            ),
+            None,
+        )
+        if index is None:
+            graze_ends.append((ends, Graze(test, (int(mesh),), EDGES[side])))
+        else:
+            graze = graze_ends[index][1]
+            graze_ends[index] = ends, Graze(test, (*graze.meshes, int(mesh)), graze.edge)
+    return [graze for _, graze in graze_ends], is_ambiguous
 
 
 def _levels(period_map: PeriodMap, u: float) -> Array:
@@ -101,8 +115,7 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     """Find where the passages of an edge go against their change from end to end of a stretch.
 
     Cubics through the extrema with their slopes along the branch show where to look: where they come close to
-    an
-    edge, or come back over one that they pass.
+    an edge, or come back over one that they pass.
 
     Parameters
     ----------

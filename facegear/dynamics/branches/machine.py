@@ -167,8 +167,7 @@ def machine_survey(
     """Compute all branches of a machine.
 
     They are those of period one, those that leave them, and those of motions that were found elsewhere.
-    Motions
-    that are not periodic, or longer than the plan's longest_start_period, are left out.
+    Motions that are not periodic, or longer than the plan's longest_start_period, are left out.
 
     Parameters
     ----------

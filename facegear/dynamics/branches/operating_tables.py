@@ -89,9 +89,8 @@ def margin_table(stability_limits: Sequence[StabilityLimit]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns branch, period, parameter, direction, start, kind, value, margin. `kind` is `none` where
-        the range
-        ends first; `margin` is value less start.
+        Columns branch, period, parameter, direction, start, kind, value, margin. `kind` is `none` where the
+        range ends first; `margin` is value less start.
     """
     rows = [
         {
@@ -172,9 +171,8 @@ def jump_table(
 
     A point counts within the jump's bracket or up to `resolution_rpm` beside it. Else it counts up to
     `spacing_rpm` before it in the direction of running: a run stays on a motion that has just lost its
-    stability
-    until disturbances have grown. A motion that has not settled there is taken for that of the sweep's last
-    speed, if it was periodic.
+    stability until disturbances have grown. A motion that has not settled there is taken for that of the
+    sweep's last speed, if it was periodic.
 
     Parameters
     ----------
@@ -230,8 +228,8 @@ def _last_class(
 def _explain_jump(
     before: float, after: float, label: str, branches: Sequence[Branch], resolution: float, spacing: float
 ) -> dict[str, object]:
-    """Return the special point that explains a jump as entries of its row, or a note that says why
-    there is none.
+    """Return the special point that explains a jump as entries of its row, or a note that says why there
+    is none.
     """
     if not label.startswith("period-"):
         return {"note": f"the motion before it is {label}: no branch of periodic motions ends there"}

@@ -68,8 +68,7 @@ class PeriodMap:
     """Map P(z, u) of a weighted state over `period` mesh periods at one parameter.
 
     `z` (2 n,) holds positions, then velocities by mesh phase, as mesh deflections over the length scale. `u`
-    is
-    the logarithm of the family's parameter.
+    is the logarithm of the family's parameter.
 
     Attributes
     ----------
@@ -330,9 +329,8 @@ class PeriodMap:
         Returns
         -------
         (m, 2, most) array
-            Maxima, then minima of each mesh in falling order, over the length scale (dimensionless);
-            minus infinity
-            fills the rows that have fewer.
+            Maxima, then minima of each mesh in falling order, over the length scale (dimensionless); minus
+            infinity fills the rows that have fewer.
         """
         integrator = self.integrator(u)
         values = extrema(integrator, self._by_phase(integrator, z), self.period)

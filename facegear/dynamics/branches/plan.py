@@ -8,8 +8,7 @@ class BranchPlan:
     """Settings of the branches stage.
 
     Speeds are in rpm, lengths in m. `spread` is the half width of the box of random starts: displacements,
-    and
-    rotations at the mesh radius.
+    and rotations at the mesh radius.
     """
 
     from_rpm: float

@@ -297,8 +297,8 @@ def _bordered_inverse(linear: Linear, row: Array) -> Array:
 
 
 def _inverse(matrix: Array) -> Array:
-    """Inverse of a matrix; the pseudoinverse where the matrix is singular, as bordered ones are at branch
-    points.
+    """Inverse of a matrix; the pseudoinverse where the matrix is singular, as bordered ones are at
+    branch points.
     """
     try:
         inverse = np.asarray(np.linalg.inv(matrix), float)

@@ -214,8 +214,7 @@ def reversal(
     -------
     tuple of BranchPoint or None
         Point shortly before, and the orbit of half the period at which another branch doubles its period.
-        None
-        if the branch does not meet its image between the points.
+        None if the branch does not meet its image between the points.
     """
     if period_map.period % 2:
         return None

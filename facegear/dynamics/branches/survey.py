@@ -70,15 +70,12 @@ def survey(
     """Follow the branch through `start`, all that leave it, and those through motions found elsewhere.
 
     Every branch that a symmetry of the system does not map to itself is followed by its images in the list.
-    The
-    images are mapped, not followed. The result contains all periodic motions that are connected with a motion
-    of
-    `start` or `motions` by branches of up to longest_period mesh periods, within these bounds. Motions to
-    which
-    no branch leads and which no start has found are missing, also where a branch of `motions` ends on such a
-    branch. Where several multipliers pass one together, as with equal pinions all around, one of the branches
-    that leave the point is followed, with its images. Motions that leave a Neimark-Sacker point are not
-    periodic.
+    The images are mapped, not followed. The result contains all periodic motions that are connected with a
+    motion of `start` or `motions` by branches of up to longest_period mesh periods, within these bounds.
+    Motions to which no branch leads and which no start has found are missing, also where a branch of
+    `motions` ends on such a branch. Where several multipliers pass one together, as with equal pinions all
+    around, one of the branches that leave the point is followed, with its images. Motions that leave a
+    Neimark-Sacker point are not periodic.
 
     Parameters
     ----------
@@ -89,9 +86,8 @@ def survey(
     run : ContinuationSettings
         Range and steps of all branches.
     longest_period : int
-        Longest period, in mesh periods, to which branches that leave by period doubling or broken
-        symmetry are
-        followed.
+        Longest period, in mesh periods, to which branches that leave by period doubling or broken symmetry
+        are followed.
     max_branches : int
         Largest number of branches that are followed, without their images.
     progress : callable
@@ -133,8 +129,8 @@ class _Search:
             todo += self._children(todo.pop(0))
 
     def _children(self, parent: Branch) -> list[Branch]:
-        """Return new branches that leave a branch; a special point at which a branch begins or ends
-        is left once.
+        """Return new branches that leave a branch; a special point at which a branch begins or ends is
+        left once.
         """
         children = []
         for special in parent.of(Kind.DOUBLING, Kind.BRANCH):

@@ -16,12 +16,12 @@ from facegear.dynamics.sweeps.sweep import Piece
 from facegear.errors import NotConverged
 
 REPEATS = 1e-5
-"""Distance, in length scales, of states one divisor of the period apart below which that divisor is
-the period.
+"""Distance, in length scales, of states one divisor of the period apart below which that divisor is the
+period.
 """
 ON = 1e-5
-"""Distance, in length scales, of a branch's orbit at the same speed below which the motion lies on
-the branch.
+"""Distance, in length scales, of a branch's orbit at the same speed below which the motion lies on the
+branch.
 """
 ELSEWHERE = 0.1
 """An orbit farther than this from the sweep's state is not the sweep's motion."""
@@ -108,8 +108,7 @@ def _next_to(period_map: PeriodMap, z: Array, u: float, period: int) -> tuple[Br
     """Return the orbit next to a state and its least period.
 
     Where a long orbit magnifies the state's error too much for Newton's method, the orbit is that of a run
-    from
-    the state at the branches' tolerance.
+    from the state at the branches' tolerance.
     """
     try:
         point = at_parameter(period_map.over(period), z, u)

@@ -149,9 +149,8 @@ def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried. `image_of`
-        is the
-        branch of which it is the image under a symmetry of the machine, or empty.
+        Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried. `image_of` is
+        the branch of which it is the image under a symmetry of the machine, or empty.
     """
     rows = [
         {

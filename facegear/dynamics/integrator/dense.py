@@ -25,8 +25,7 @@ class Extrema(NamedTuple):
     """Deflections where they change direction.
 
     `values` (m, 2, K) are maxima, then minima, in the order in which they are met. `counts` (m, 2) include
-    those
-    that have not been stored.
+    those that have not been stored.
     """
 
     values: Array

@@ -37,8 +37,7 @@ class Reduction:
         Displacements of unit coordinates.
     mesh_jacobian : (contacts, n) array
         Mesh deflections of unit coordinates, followed by x, y and a row of zeros of each bearing with
-        clearance.
-        These bearings are not in omega_squared.
+        clearance. These bearings are not in omega_squared.
     omega_squared : (n,) array
         Bearing frequencies squared, 1/s2.
     damping : (n,) array
@@ -183,8 +182,8 @@ def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Ar
 def _basis(
     linear: LinearModel, stiffness: Array, directions: Array, coupling: Coupling | None
 ) -> tuple[Array, Array]:
-    """Basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled
-    to them.
+    """Basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
+    them.
     """
     axes, mass, principal = _principal_axes(linear, stiffness)
     while True:

@@ -104,8 +104,7 @@ def settle_by_guide(integrator: Integrator, state: Array, guide: Guide) -> Settl
     """Find where a run settles, if that is an orbit near the guide's.
 
     The orbit counts only once it is seen to attract the run: each of the last returns must be what the
-    guide's
-    multipliers make of the one before, but for less than half of what they take away.
+    guide's multipliers make of the one before, but for less than half of what they take away.
 
     Parameters
     ----------
@@ -145,8 +144,7 @@ def _orbit_near(integrator: Integrator, states: Array, guide: Guide) -> tuple[Ar
     """Find the orbit (2, n) to which the chord method comes, and the change over its period.
 
     It starts from the last two states (2, 2, n) of a run, a period apart. The last step is not run: it gains
-    at
-    least what the least of those before it has gained.
+    at least what the least of those before it has gained.
     """
     state, end = states
     best, ratio = change(integrator, state, end), 0.0

@@ -31,8 +31,8 @@ class KnownOrbit:
         Returns
         -------
         tuple or None
-            State (2, n) of the orbit, m and m/rad, and the distance over the length scale; None if the
-            run may leave.
+            State (2, n) of the orbit, m and m/rad, and the distance over the length scale; None if the run
+            may leave.
         """
         distances = largest(integrator, self.states - ends[-1])
         nearest = int(distances.argmin())

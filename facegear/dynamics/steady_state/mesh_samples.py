@@ -204,8 +204,7 @@ def mesh_fractions(system: System, fractions: Array, contact_deflections: Array)
     """Fraction of the time that each mesh is open, on its drive flank and on its back flank.
 
     Time with both flanks wedged counts on both, so that the three may add up to more than one. A flank that
-    is
-    never compressed by more than rounding is open.
+    is never compressed by more than rounding is open.
 
     Parameters
     ----------

@@ -236,8 +236,8 @@ def with_chosen_image(
     -------
     RunPlan of FirstWatch
         The same first watch if the motion is not periodic or keeps these symmetries. Else that of a run which
-        settles on the image with the largest AC RMS in the first mesh in which images differ, or the
-        largest mean.
+        settles on the image with the largest AC RMS in the first mesh in which images differ, or the largest
+        mean.
     """
     cycle = _cycle_of_first_watch(first_watch, system)
     if cycle is None or first_watch.watch_result is None:

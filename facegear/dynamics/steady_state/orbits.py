@@ -255,10 +255,8 @@ def shoot(
     """Solve for an orbit by Newton's method on the change over the period.
 
     A matrix is used as long as each step with it gains a digit. It is the orbit's own if the orbit lies
-    within
-    ten steps' errors of where it was computed. An orbit is accepted when the change is so small that the
-    orbit is
-    known to the goal.
+    within ten steps' errors of where it was computed. An orbit is accepted when the change is so small that
+    the orbit is known to the goal.
 
     Parameters
     ----------
@@ -363,8 +361,7 @@ def near_for_ever(integrator: Integrator, orbit: Orbit, distance: float) -> bool
     """Whether a run at some distance from a stable orbit stays there.
 
     It does if the distance is within the error of the steps, and small beside what the slowest disturbance
-    loses
-    in a period.
+    loses in a period.
 
     Parameters
     ----------

@@ -16,8 +16,8 @@ SMALL, VERY_SMALL = 0.02, 1e-3
 MAX_TREND = 0.9
 """Ratio of the changes over a trend above which they are not falling."""
 NO_DIFFERENCE, SPLIT = 10.0, 100.0
-"""Change over a part of a closed period, in goals: below the first there is none, above the second
-there is one.
+"""Change over a part of a closed period, in goals: below the first there is none, above the second there
+is one.
 """
 
 
@@ -121,10 +121,8 @@ def closed_period(integrator: Integrator, ends: Array, near: BestReturn, setting
 
     A small change is not enough: a run that creeps past the place where an orbit has just vanished, or off an
     unstable one, changes little, too. The change that is still to come, if it continues to fall as it does,
-    must
-    be small. And a part of the period may close as well but still be on its way (a slow spiral is nearer
-    after
-    three periods than after one). Then that part must decide.
+    must be small. And a part of the period may close as well but still be on its way (a slow spiral is nearer
+    after three periods than after one). Then that part must decide.
 
     Parameters
     ----------

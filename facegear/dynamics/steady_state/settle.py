@@ -40,8 +40,8 @@ BLOCK, LONG_BLOCK = 16, 128
 Each call of the kernels has a price.
 """
 KICK = 0.01
-"""Size, as by change(), of the disturbance along the leading direction of an unstable orbit that
-holds a run.
+"""Size, as by change(), of the disturbance along the leading direction of an unstable orbit that holds a
+run.
 """
 MAX_KICKS = 2
 """Maximum number of kicks in a run."""
@@ -128,8 +128,7 @@ def settling(
 
     With `refine` the orbit to which the run tends is found by Newton's method as soon as that pays. It is
     accepted only once it attracts the run. An unstable orbit, on which exact symmetry may hold a run, is left
-    by
-    a kick.
+    by a kick.
 
     Parameters
     ----------
@@ -306,8 +305,8 @@ class SettlingRun:
         return self._result(orbit.period, near.residual, orbit if self.settings.refine else None)
 
     def _is_here(self, orbit: Orbit) -> bool:
-        """Whether an orbit is the one that the run is on, up to what is left to decay and the errors
-        of steps.
+        """Whether an orbit is the one that the run is on, up to what is left to decay and the errors of
+        steps.
         """
         distance = orbit.distance(self.integrator, self.state)
         settings, slow = self.settings, max(1.0 - abs(orbit.multipliers[0]), 1e-3)
@@ -324,8 +323,8 @@ class SettlingRun:
         return whole and left <= 10.0 * self.settings.periodic_residual and self._is_here(orbit)
 
     def _kick(self, near: BestReturn) -> None:
-        """Move a run off an unstable orbit that holds it, in the direction in which it leaves
-        already, if it does.
+        """Move a run off an unstable orbit that holds it, in the direction in which it leaves already,
+        if it does.
         """
         orbit = self.orbit
         assert orbit is not None

@@ -309,8 +309,7 @@ def steady_state(
     """Compute the steady state of any system.
 
     If a class of motion does not come out again from starts a little aside, it is withdrawn. Then the motion
-    is
-    not settled, and `looks` says why.
+    is not settled, and `looks` says why.
 
     Parameters
     ----------

@@ -19,8 +19,8 @@ from facegear.dynamics.steady_state.window import Window, run_window
 CLASSES = {Growth.GROWS: Motion.CHAOTIC, Growth.NEUTRAL: Motion.QUASI_PERIODIC}
 """Class of a motion that does not close, by the growth of small disturbances."""
 ESCAPING = 1e-3
-"""Growing disturbances of a motion that repeats as closely as this (over the length scale) show its
-end, not chaos.
+"""Growing disturbances of a motion that repeats as closely as this (over the length scale) show its end,
+not chaos.
 """
 
 
@@ -100,8 +100,8 @@ def begin(
     settings : Settings
         Settings of the run.
     guide : Guide, optional
-        Orbit of a system with the same coordinates; it shortens the run where it leads to an orbit like
-        its own.
+        Orbit of a system with the same coordinates; it shortens the run where it leads to an orbit like its
+        own.
     known_orbit : KnownOrbit, optional
         Orbit of this system at which the run ends without a window.
 
@@ -125,10 +125,8 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
     """Watch a run until its class is known or the maximum number of periods is reached.
 
     For a run that shows no sign of closing while it is watched, the largest Lyapunov exponent is computed on
-    the
-    window on which the motion is measured. That is a second watch. Where the two disagree the run is watched
-    for
-    longer.
+    the window on which the motion is measured. That is a second watch. Where the two disagree the run is
+    watched for longer.
 
     Parameters
     ----------

@@ -27,8 +27,7 @@ class Seam:
     """Where two chunks meet, and how many speeds had to be run again from the end of the first.
 
     With `irregular`, both are in irregular motion there, whose state is never forgotten; the chunks agree in
-    RMS
-    only.
+    RMS only.
     """
 
     direction: str

@@ -151,8 +151,7 @@ class OrbitFollower:
         """Return a start at a speed at which an orbit is lost.
 
         It lies beside the orbit along its leading direction, where the orbit continues unstable. Else it is
-        the last
-        state of the orbit.
+        the last state of the orbit.
 
         Parameters
         ----------

@@ -11,10 +11,8 @@ def jump_margin(model: Model, speed_rpm: float, within: JumpRange) -> float:
     """Compute the distance from a speed to the nearest jump of sweeps up and down.
 
     A jump is defined in `facegear.dynamics.sweeps.jumps`, and lies at the nearer end of its bracket: the
-    margin
-    is 0 at a speed inside it. Jumps farther away than the range are not seen, nor are motions that neither
-    sweep
-    meets.
+    margin is 0 at a speed inside it. Jumps farther away than the range are not seen, nor are motions that
+    neither sweep meets.
 
     Parameters
     ----------

@@ -109,8 +109,7 @@ def suspects(piece: Piece) -> dict[int, bool]:
     """Find the positions i at which the response may jump on the way from speed i to i + 1.
 
     A change is abrupt if it is larger than the changes around it. Between periodic motions every change that
-    is
-    large enough for a jump counts, since following the orbit tells a jump from a steep curve.
+    is large enough for a jump counts, since following the orbit tells a jump from a steep curve.
 
     Parameters
     ----------
@@ -255,8 +254,7 @@ def _preferred(before: Array, after: Array, images: Integers) -> Integers:
     """Image (meshes,) of the motion after a jump that is reported.
 
     Of the images that the symmetries of the motion before the jump allow, it is the one with the largest AC
-    RMS
-    in the first mesh in which they differ.
+    RMS in the first mesh in which they differ.
     """
     candidates = [image for image in images if distance(before, before[image]) <= SAME_ORBIT]
     digits = np.round(-np.log10(SAME_ORBIT)).astype(int)

@@ -261,10 +261,8 @@ def carried_over(
     """Run plans for the motions at speeds in the given order, each started from the state of the one before.
 
     The state that a motion hands on is known after its first watch. Where the motion has settled, this is a
-    state
-    of the motion on which it has settled. Else it is the last state, as good as any other of an irregular
-    motion.
-    The rest of TOGETHER speeds runs side by side.
+    state of the motion on which it has settled. Else it is the last state, as good as any other of an
+    irregular motion. The rest of TOGETHER speeds runs side by side.
 
     Parameters
     ----------

@@ -41,8 +41,7 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     """Tabulate the numbers of a sweep over speed.
 
     Directions in which a body moves by rounding alone are left out. `past_law_fraction` is present where a
-    mesh
-    is past its law at some speed.
+    mesh is past its law at some speed.
 
     Parameters
     ----------
