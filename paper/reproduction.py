@@ -5,7 +5,7 @@ from pathlib import Path
 from pydantic import Field
 
 from facegear.config.base import Section, parse
-from facegear.config.load import located
+from facegear.config.load import relative_to_cwd
 from facegear.config.yaml_file import read_yaml
 
 
@@ -35,4 +35,4 @@ def read_reproduction(path: str | Path) -> Reproduction:
     """
     read, folder = parse(Reproduction, read_yaml(path), str(path)), Path(path).parent
     files = {key: file for key, file in read.model_dump(exclude={"inputs"}).items() if file is not None}
-    return read.model_copy(update={key: located(file, folder) for key, file in files.items()})
+    return read.model_copy(update={key: relative_to_cwd(file, folder) for key, file in files.items()})

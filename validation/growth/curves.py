@@ -19,7 +19,7 @@ from facegear.dynamics.sweeps.sweep import run_speeds
 from facegear.gear_body.body import SolvedBody, solve_body
 from facegear.gear_body.reduction import reduced_body
 from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 from validation.contact.benchmark import Level, compliances, level
 from validation.growth.machines import PERIODS, Running, bending, resized, shipped
 

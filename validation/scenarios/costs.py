@@ -10,7 +10,7 @@ import pandas as pd
 
 from facegear.io import columnar
 from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 
 MODELS = ("quasi_static", "dynamic")
 WANTED, CORES = 10_000, 2

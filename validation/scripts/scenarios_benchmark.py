@@ -4,7 +4,7 @@ from facegear.contact.gear_flank import STORED
 from facegear.io import arrays, tables
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 from validation.scenarios.costs import costs
 from validation.scenarios.errors import statistics_errors
 

@@ -14,7 +14,7 @@ for name, module in list(sys.modules.items()):  # the profile may have imported 
         del sys.modules[name]
 
 from facegear.config.cases import expand_cases
-from facegear.config.load import extended, load_config
+from facegear.config.load import base_path, load_config
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.pipeline.needs import require_section, resolved_needs, shared_sources, value_at

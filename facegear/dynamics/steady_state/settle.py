@@ -19,6 +19,7 @@ from facegear.dynamics.steady_state.orbits import (
     shoot,
 )
 from facegear.dynamics.steady_state.periodicity import (
+    SMALL,
     TREND,
     VERY_SMALL,
     BestReturn,
@@ -75,6 +76,8 @@ class SettlingResult:
         Last states at the end of a period.
     is_known_orbit : bool
         Whether it is the orbit that was known before.
+    aperiodic_until : int
+        Number of periods after which the run was last seen to be near no periodic motion.
     """
 
     state: Array
@@ -84,6 +87,7 @@ class SettlingResult:
     periods_run: int
     ends: Array
     is_known_orbit: bool = False
+    aperiodic_until: int = 0
 
 
 def settle(
@@ -172,7 +176,7 @@ class SettlingRun:
         if ends is not None:
             self.history.reserve(len(ends))[:] = ends
         self.initial_count = len(self.ends)
-        self.periods_run = self.kicks = self.newton_cost = 0
+        self.periods_run = self.kicks = self.newton_cost = self.aperiodic_until = 0
         self.orbit: Orbit | None = None
         self.orbit_at = 0
         self.tried_residuals: dict[int, float] = {}
@@ -199,6 +203,8 @@ class SettlingRun:
                 continue
             last = self.periods_run >= self.settings.settle
             near = best_return(self.integrator, self.ends, self.settings)
+            if near.residual > SMALL:
+                self.aperiodic_until = self.periods_run
             result = self._find_orbit(near, last) if self.settings.refine else None
             if result is None and len(self.ends):
                 result = self._by_itself(near, last)
@@ -341,7 +347,9 @@ class SettlingRun:
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> SettlingResult:
         state = self.state if orbit is None else orbit.state
         residual = residual if orbit is None else orbit.residual
-        return SettlingResult(state, period, residual, orbit, self.periods_run, self.ends)
+        return SettlingResult(
+            state, period, residual, orbit, self.periods_run, self.ends, aperiodic_until=self.aperiodic_until
+        )
 
 
 def _blocks(integrator: Integrator, settings: Settings) -> tuple[int, int]:

@@ -12,7 +12,7 @@ from references import against, agrees
 from facegear.config.dynamics import SECOND_LOOKS
 from facegear.config.load import load_config
 from facegear.config.machines import MachineInputs
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.run_plans import alone
@@ -181,7 +181,7 @@ def test_a_short_window_does_not_take_a_torus_for_chaos():
         np.array([0.0, 3.0997e7, -3.841e6, -3.383e6]), np.array([4.32232e8, 3.2811e7, 1.0362e7, -5.75e5])
     )
     example = Path(__file__).parents[3] / "examples" / "machines" / "unequal_inputs.yaml"
-    model = build_model(MachineInputs.of_config(resolved(load_config(example)), stiffness).build())
+    model = build_model(MachineInputs.of_config(resolved_values(load_config(example)), stiffness).build())
     settings = Settings(tolerance=1e-6, settle=100, window=50)
     assert simulate(model, 5000.0, settings).motion is Motion.QUASI_PERIODIC
 
