@@ -14,7 +14,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import numpy as np
 
 from facegear.arrays import AnyArray
-from facegear.dynamics.integrator.compiled import system_numbers
+from facegear.dynamics.integrator.kernel_system import system_numbers
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
 from facegear.io.atomic import atomic_path
@@ -161,13 +161,15 @@ def unique_words(names: Sequence[str]) -> list[str]:
 def _header(model: Model, speed_rpm: float) -> str:
     """Write the numbers of the machine as C++; TOKEN stands for what the sources are recognised by."""
     machine, linear, law = model.machine, model.machine.linear, model.system.law
-    spins = model.reduced.basis[machine.torque_coordinates].T  # load of each coordinate by each body's torque
+    spins = model.reduction.basis[
+        machine.torque_coordinates
+    ].T  # load of each coordinate by each body's torque
     load = model.system.load.copy()
     load[:, 1, 0] -= spins @ machine.torques
     kernel_law = type(law.kernel_law).__name__
     translations = linear.translations.ravel()
-    bearing = linear.stiffness[translations] @ model.reduced.basis
-    dampers = linear.bearing_damping * bearing + linear.dampers[translations] @ model.reduced.basis
+    bearing = linear.stiffness[translations] @ model.reduction.basis
+    dampers = linear.bearing_damping * bearing + linear.dampers[translations] @ model.reduction.basis
     in_rings = (3 * linear.rings.body[:, None] + [0, 1]).ravel()  # their forces are the motion's own
     bearing[in_rings] = dampers[in_rings] = 0.0
     constants = {

@@ -7,19 +7,19 @@ from itertools import islice
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import Course, alone, side_by_side
 from facegear.dynamics.dense_motion import DenseMotion
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.run_plans import RunPlan, alone, side_by_side
 from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import (
     Model,
-    Started,
+    StartedRun,
     build_model,
     simulating,
-    started,
+    start_run,
     static_start,
 )
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
@@ -170,20 +170,22 @@ class _Run:
     settings: Settings
     options: SharingOptions
 
-    def motion(self, state: State) -> Course[SteadyState]:
+    def motion(self, state: State) -> RunPlan[SteadyState]:
         """Plan the motion that counts."""
         return steady_motion(self.model, self.speed_rpm, self.settings, self.options, state)
 
-    def motion_from_start(self, state: State, orbit: KnownOrbit | None) -> Course[SteadyState | None]:
+    def motion_from_start(self, state: State, orbit: KnownOrbit | None) -> RunPlan[SteadyState | None]:
         """Plan the motion from another start, coarsely sampled; it is None where it comes to the known
         orbit.
         """
         coarse = replace(self.settings, samples=min(SAMPLES, self.options.samples))
         window_settings = watched_for(coarse, self.options, FIRST_WINDOW)
-        first_window = yield from started(self.model, self.speed_rpm, window_settings, state, known=orbit)
+        first_window = yield from start_run(
+            self.model, self.speed_rpm, window_settings, state, known_orbit=orbit
+        )
         return (
             None
-            if first_window.known
+            if first_window.is_known_orbit
             else (yield from follow_first_window(self.model, first_window, coarse, self.options))
         )
 
@@ -300,7 +302,7 @@ def steady_motion(
     options: SharingOptions,
     start: State,
     guide: Guide | None = None,
-) -> Course[SteadyState]:
+) -> RunPlan[SteadyState]:
     """Plan the motion from a start; a motion that has not closed after its windows is measured as it is.
 
     Parameters
@@ -323,15 +325,15 @@ def steady_motion(
     Course[SteadyState]
         Steps that end with the response.
     """
-    first_window = yield from started(
+    first_window = yield from start_run(
         model, speed_rpm, watched_for(settings, options, FIRST_WINDOW), start, guide
     )
     return (yield from follow_first_window(model, first_window, settings, options))
 
 
 def follow_first_window(
-    model: Model, motion: Started, settings: Settings, options: SharingOptions
-) -> Course[SteadyState]:
+    model: Model, motion: StartedRun, settings: Settings, options: SharingOptions
+) -> RunPlan[SteadyState]:
     """Classify a motion after its first window; extend the window if it looks quasi-periodic.
 
     A body that is pushed through its backlash for long, or an orbit that is approached slowly, looks like a
@@ -354,7 +356,7 @@ def follow_first_window(
     Course[SteadyState]
         Steps that end with the response.
     """
-    state = yield from motion.followed()
+    state = yield from motion.follow()
     if state.motion is not Motion.QUASI_PERIODIC:
         return state
     longer = watched_for(settings, options, TORUS_WINDOW)
@@ -404,7 +406,7 @@ def disturb(model: Model, start: State, spread: float, random: np.random.Generat
     linear = model.machine.linear
     displacements = spread * random.normal(size=linear.size) / linear.lengths
     return replace(
-        start, displacement=start.displacement + model.reduced.basis.T @ linear.momentum(displacements)
+        start, displacement=start.displacement + model.reduction.basis.T @ linear.momentum(displacements)
     )
 
 

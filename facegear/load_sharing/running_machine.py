@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.dynamics.between_samples import located_extremes
-from facegear.dynamics.following import Followed, follow
+from facegear.dynamics.following import FollowedMotion, follow
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.load_sharing.groups import LoadGroup
@@ -20,7 +20,7 @@ from facegear.transmission.machine import Machine
 
 @dataclass(frozen=True, eq=False)
 class Running(LoadHistory):
-    """Motion at a speed; `lead` and `memory` as in facegear.dynamics.following.Followed."""
+    """Motion at a speed; `lead` and `memory` as in facegear.dynamics.following.FollowedMotion."""
 
     speed_rpm: float
     lead: int
@@ -60,7 +60,7 @@ def running(
     NotConverged
         If the integration fails.
     """
-    history: Followed = follow(build_model(machine), speed_rpm, 0, cycles, positions, settings)
+    history: FollowedMotion = follow(build_model(machine), speed_rpm, 0, cycles, positions, settings)
     return Running(
         machine=machine,
         positions=positions,

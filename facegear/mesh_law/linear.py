@@ -9,7 +9,7 @@ import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array, Integers
-from facegear.harmonics.series import Harmonics, stacked, stacked_values
+from facegear.harmonics.series import Harmonics, stack_series, stacked_values
 from facegear.mesh_law.laws_at_phases import LinearHeld
 
 
@@ -248,7 +248,7 @@ def different(series: Sequence[Harmonics]) -> tuple[Array, Integers]:
     tuple of (kinds, 2, harmonics + 1) array and (series,) array of int
         Different series in the same unit, and index of the kind.
     """
-    rows = stacked(series)
+    rows = stack_series(series)
     distinct, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
     return distinct.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
 

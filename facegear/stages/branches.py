@@ -9,12 +9,12 @@ from facegear.config.branches import Branches, branch_plan
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.branches import operating_tables, tables
 from facegear.dynamics.branches.machine import machine_period_map, machine_survey, margins
-from facegear.dynamics.branches.margins import several
-from facegear.dynamics.branches.stored import from_arrays, special_arrays
+from facegear.dynamics.branches.margins import coexistence_ranges
+from facegear.dynamics.branches.motion_arrays import from_arrays, special_arrays
 from facegear.dynamics.branches.summary import survey_summary, tell
-from facegear.dynamics.branches.swept import swept_motions
+from facegear.dynamics.branches.sweep_orbits import swept_motions
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.stored import from_arrays as chunk_from_arrays
+from facegear.dynamics.sweeps.chunk_arrays import from_arrays as chunk_from_arrays
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
 
@@ -69,13 +69,13 @@ def branches(
     }
     motions_of_sweep = swept_motions(period_map, pieces, plan.from_rpm, plan.to_rpm)
     survey = machine_survey(model, plan, start_motions, motions_of_sweep, tell)
-    ranges, stability_limits = several(survey.branches), margins(model, plan, survey.branches)
+    ranges, stability_limits = coexistence_ranges(survey.branches), margins(model, plan, survey.branches)
     within = jumps[jumps["speed_before_rpm"].between(plan.from_rpm, plan.to_rpm)]
     spacing = (swept_plan.last_rpm - swept_plan.first_rpm) / (swept_plan.points - 1)
     content = {
         "branches": tables.branch_table(layout, survey.branches),
         "ends": tables.end_table(survey.branches),
-        "unfollowed": tables.unfollowed_table(survey.unfollowed),
+        "unfollowed": tables.unfollowed_table(survey.unfollowed_motions),
         "multipliers": tables.multiplier_table(survey.branches),
         "special": tables.special_table(layout, survey.branches),
         "coexistence": operating_tables.coexistence_table(start_motions, survey.branches),

@@ -3,7 +3,7 @@
 from facegear.arrays import Arrays
 from facegear.config.branches import Branches, branch_plan
 from facegear.dynamics.branches.machine import machine_loci, machine_period_map
-from facegear.dynamics.branches.stored import special_points
+from facegear.dynamics.branches.motion_arrays import special_points
 from facegear.dynamics.branches.summary import loci_summary, tell
 from facegear.dynamics.branches.tables import locus_table
 from facegear.dynamics.steady_state.simulate import build_model

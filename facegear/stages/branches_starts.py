@@ -2,7 +2,7 @@
 
 from facegear.config.branches import Branches, branch_plan
 from facegear.dynamics.branches.machine import random_starts
-from facegear.dynamics.branches.stored import to_arrays
+from facegear.dynamics.branches.motion_arrays import to_arrays
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome

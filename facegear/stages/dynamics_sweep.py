@@ -8,7 +8,7 @@ from facegear.arrays import AnyArray, Arrays
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.steady_state.spectra import ORDERS
-from facegear.dynamics.sweeps.stored import from_arrays
+from facegear.dynamics.sweeps.chunk_arrays import from_arrays
 from facegear.dynamics.sweeps.summary import sweep_summary
 from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, seam_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import Direction, whole_sweep

@@ -2,7 +2,7 @@
 
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.stored import to_arrays
+from facegear.dynamics.sweeps.chunk_arrays import to_arrays
 from facegear.dynamics.sweeps.sweep import run_chunk
 from facegear.number_format import count_noun
 from facegear.progress import Progress

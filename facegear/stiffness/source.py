@@ -99,12 +99,11 @@ def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Contact
     if request.source == "fem_scaled":
         assert request.mean is not None
         scale = request.mean / fit.series.mean
-    whole = fit.series.scaled(scale).varied(request.variation)
-    series = whole.kept(request.order)
+    whole = fit.series.scale(scale).scale_variation(request.variation)
+    series = whole.truncate(request.order)
     if series.minimum <= 0.0:
-        requirement = (
-            f"at most {_largest_variation(fit.series.kept(request.order)):.4g}, so that k(t) stays positive"
-        )
+        largest = _largest_variation(fit.series.truncate(request.order))
+        requirement = f"at most {largest:.4g}, so that k(t) stays positive"
         raise InvalidInput("variation of the mesh stiffness", request.variation, requirement)
     error, cut = unloaded_series(ltca, series.order)
     return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
@@ -167,8 +166,8 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
     Stiffness
         N/m.
     """
-    whole = request.given_series.varied(request.variation)
-    series = whole.kept(request.order)
+    whole = request.given_series.scale_variation(request.variation)
+    series = whole.truncate(request.order)
     positions = np.arange(CURVE_POINTS) / CURVE_POINTS
     return Stiffness(
         curve_table(positions, whole(positions), series),

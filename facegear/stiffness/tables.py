@@ -90,7 +90,7 @@ def unloaded_error(table: pd.DataFrame) -> Harmonics | None:
     error_table = table[["order", "e_sin_um", "e_cos_um"]].set_axis(
         ["order", "sin_n_per_m", "cos_n_per_m"], axis=1
     )
-    return series_of(error_table).scaled(1e-6)
+    return series_of(error_table).scale(1e-6)
 
 
 def curve_table(positions: Array, samples: Array, series: Harmonics) -> pd.DataFrame:

@@ -33,7 +33,7 @@ def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
     if np.ptp(samples) <= ROUNDING_UM:
         return Harmonics(np.zeros(order + 1), np.zeros(order + 1)), 0.0
     fit = fit_harmonics(1e-6 * (samples - samples.mean()))
-    series = fit.series.kept(order)
+    series = fit.series.truncate(order)
     cosine = series.cosine.copy()
     cosine[0] = 0.0
     return Harmonics(series.sine, cosine), float(fit.truncation[order])

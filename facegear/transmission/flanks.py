@@ -131,7 +131,7 @@ def _line_contacts(machine: Machine) -> MeshContacts:
     half = machine.half_backlash
     return MeshContacts(
         law=line_law(machine),
-        error=tuple(machine.error.shifted(float(phase)) for phase in phases),
+        error=tuple(machine.error.shift(float(phase)) for phase in phases),
         lower=-half,
         upper=half,
         damping=np.full(phases.size, machine.damping.mesh),
@@ -250,7 +250,7 @@ def line_law(machine: Machine) -> MeshLaw:
 
 @kept_by_content(4)
 def _line_linear_law(stiffness: Harmonics, lags: tuple[float, ...]) -> MeshLaw:
-    return linear_law([stiffness.shifted(lag) for lag in lags])
+    return linear_law([stiffness.shift(lag) for lag in lags])
 
 
 @kept_by_content(4)
@@ -435,7 +435,7 @@ def _flank_series(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonic
     """Return the series of drive flanks and of their mirror images, each with the lag of its mesh."""
     flanks = [*drive, *(mirror_series(series) for series in drive)]
     lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
-    return tuple(series.shifted(lag) for series, lag in zip(flanks, lags, strict=True))
+    return tuple(series.shift(lag) for series, lag in zip(flanks, lags, strict=True))
 
 
 def _flanks(tangential: Array, separating_error: Array) -> Array:

@@ -206,11 +206,11 @@ class Machine:
     @cached_property
     def mesh_stiffness(self) -> tuple[Harmonics, ...]:
         """Stiffness of each mesh over the reference's mesh cycle with its factor and its softening, N/m."""
-        series_of_teeth = [self.stiffness.scaled(float(factor)) for factor in self.imperfections.stiffness]
+        series_of_teeth = [self.stiffness.scale(float(factor)) for factor in self.imperfections.stiffness]
         if self.own_softening is None:
             return tuple(series_of_teeth)
         return tuple(
-            series.softened(float(soft))
+            series.add_compliance(float(soft))
             for series, soft in zip(series_of_teeth, self.own_softening, strict=True)
         )
 

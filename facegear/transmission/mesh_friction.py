@@ -123,6 +123,6 @@ def flank_ratios(ratios: Array, phases: Array) -> Array:
     for flank, lag in zip(
         np.ndindex(flank_series.shape[:2]), np.repeat(np.tile(phases, 2), len(PARTS)), strict=True
     ):
-        series = Harmonics(*flank_series[flank]).shifted(float(lag))
+        series = Harmonics(*flank_series[flank]).shift(float(lag))
         lagged_series[flank] = series.sine, series.cosine
     return lagged_series

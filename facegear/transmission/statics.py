@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.harmonics.series import stacked, stacked_values
+from facegear.harmonics.series import stack_series, stacked_values
 from facegear.mesh_law.law import LawAtPhases, MeshLaw
 from facegear.transmission.balance import balance, bearing_loads
 from facegear.transmission.block_statics import has_kernel, settle_all
@@ -134,7 +134,7 @@ def equilibria(machine: Machine, cycles: Array) -> Equilibria:
     NotConverged
         If forces and moments stay out of balance at a position.
     """
-    errors = constant_errors(machine) + stacked_values(stacked(error_series(machine)), cycles)
+    errors = constant_errors(machine) + stacked_values(stack_series(error_series(machine)), cycles)
     if machine.imperfections.any_slow:
         errors += slow_errors(machine, cycles)
     return settle(machine, flank_law(machine), cycles, errors, [f"mesh position {at:.4f}" for at in cycles])

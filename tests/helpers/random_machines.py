@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import Model, static_start
 from facegear.harmonics.series import Harmonics
@@ -73,5 +73,5 @@ def kicked(model: Model, seed: int = 0) -> State:
     """Static equilibrium with a random velocity that opens contacts within a period."""
     start = static_start(model)
     kick = np.random.default_rng(seed).normal(size=start.velocity.size)
-    reach = np.abs(model.reduced.mesh_jacobian).max()
+    reach = np.abs(model.reduction.mesh_jacobian).max()
     return replace(start, velocity=0.5 * model.system.scale / reach * kick * 2e3)

@@ -120,12 +120,12 @@ def test_machines_that_differ_in_errors_and_clearances_share_reduction_and_law_a
         )
         models.append(build_model(make_machine(layout, imperfections=flaws)))
     tight, narrow, wide = models
-    assert narrow.reduced is wide.reduced and narrow.system.law is wide.system.law
-    assert tight.reduced is not wide.reduced
+    assert narrow.reduction is wide.reduction and narrow.system.law is wide.system.law
+    assert tight.reduction is not wide.reduction
     assert (wide.system.ring_clearance == 20e-6).all() and (narrow.system.ring_clearance == 10e-6).all()
     assert (wide.system.upper != narrow.system.upper).any()
     for model in models:
         machine = model.machine
         alone = reduce(machine.linear, layout.contacts, machine.pushes)
         for name in ("basis", "mesh_jacobian", "omega_squared", "damping", "load"):
-            assert np.array_equal(getattr(alone, name), getattr(model.reduced, name)), name
+            assert np.array_equal(getattr(alone, name), getattr(model.reduction, name)), name

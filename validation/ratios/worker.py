@@ -105,7 +105,7 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
     speed = gearbox.values["dynamics"]["speed_rpm"]
     frequency = 2.0 * np.pi * mesh_frequency(model.machine.layout, speed)
     integrator = Integrator(model.system, frequency, STEP_TOLERANCE)
-    random, basis, linear = np.random.default_rng(1), model.reduced.basis, model.machine.linear
+    random, basis, linear = np.random.default_rng(1), model.reduction.basis, model.machine.linear
 
     def aside(size: float) -> Any:
         """A random state (2, n) by phase whose largest mesh deflection is `size` length scales."""

@@ -14,7 +14,9 @@ ROWS = (
         needs=BRANCHES,
         section="branches",
         upstream=MOTION_INPUTS,
-        files={"motions": File("branches/starts/{number}.npz", "facegear.dynamics.branches.stored:SHAPES")},
+        files={
+            "motions": File("branches/starts/{number}.npz", "facegear.dynamics.branches.motion_arrays:SHAPES")
+        },
         wildcards={"number": NUMBER},
         minutes=30,
         priority=50,
@@ -58,7 +60,9 @@ ROWS = (
                 may_be_empty=True,
                 text=("class_before", "branch", "kind", "note"),
             ),
-            "orbits": File("branches/special_points.npz", "facegear.dynamics.branches.stored:SPECIAL_SHAPES"),
+            "orbits": File(
+                "branches/special_points.npz", "facegear.dynamics.branches.motion_arrays:SPECIAL_SHAPES"
+            ),
         },
         condition=asked.branches,
         memory_mb=1300,

@@ -79,7 +79,7 @@ ROWS = (
         upstream=MOTION_INPUTS,
         files={
             "chunk": File(
-                "dynamics/chunks/{direction}_{number}.npz", "facegear.dynamics.sweeps.stored:SHAPES"
+                "dynamics/chunks/{direction}_{number}.npz", "facegear.dynamics.sweeps.chunk_arrays:SHAPES"
             )
         },
         wildcards={"direction": "up|down", "number": NUMBER},

@@ -139,7 +139,7 @@ def test_any_csv_is_used_or_refused_in_one_line(tmp_path_factory, text, headed):
     except ConfigErrors as error:
         assert len(error.lines) == 1
     else:
-        assert stiffness_request(own).given_series.kept(own.harmonics_kept).minimum > 0.0
+        assert stiffness_request(own).given_series.truncate(own.harmonics_kept).minimum > 0.0
 
 
 @given(st.integers(2, 40), st.integers(0, 2**32 - 1))

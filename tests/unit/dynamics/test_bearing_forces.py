@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 import facegear
 from facegear.dynamics.bearing_forces import bearing_forces, bearing_history, bearing_table
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.track import SampledTrack, periodic_track, track
@@ -142,7 +142,7 @@ def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinema
     flank_rate = rate @ system.mesh_jacobian.T
     force = (4.1e8 * closed + machine.damping.mesh * (flank_rate - error_rate)) * touches
     by_meshes = (force * flank_rate).sum(axis=1).mean()
-    moving = rate @ model.reduced.basis.T
+    moving = rate @ model.reduction.basis.T
     by_masses = machine.damping.mass * (moving**2 @ mass_diagonal(machine.layout)).mean()
     at_bodies = moving.reshape(len(moving), -1, 4)[..., :3] * bearing_history(model, found)
     by_bearings = at_bodies.sum(axis=(1, 2)).mean()

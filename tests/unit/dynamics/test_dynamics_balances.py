@@ -9,8 +9,8 @@ from random_machines import FINE, frequency, kicked, machines, speeds
 from recorded_motion import Trajectory, record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
@@ -29,9 +29,9 @@ def contacts(machine):
     if machine.layout.kinematics.flanks_apart:
         both = *machine.mesh_stiffness, *map(mirror_series, machine.mesh_stiffness)
         phases = np.tile(machine.phases, 2)
-        return [own.shifted(lag) for own, lag in zip(both, phases, strict=True)], error_series(machine)
-    stiffness = [machine.stiffness.shifted(float(phase)) for phase in machine.phases]
-    return stiffness, [machine.error.shifted(float(phase)) for phase in machine.error_phases]
+        return [own.shift(lag) for own, lag in zip(both, phases, strict=True)], error_series(machine)
+    stiffness = [machine.stiffness.shift(float(phase)) for phase in machine.phases]
+    return stiffness, [machine.error.shift(float(phase)) for phase in machine.error_phases]
 
 
 def pressed(system, deflection, state):
@@ -152,7 +152,7 @@ def test_energy_audit_over_a_period(machine, speed):
     damper = force - stiffness * beyond
     place = np.einsum("kp,kpn->kn", powers, run.coordinates[step])
     # d/dt of kinetic + bearing + mesh energy: torques in, damping out, k'(t) stores, e'(t) pushes.
-    power = velocity @ model.reduced.load - velocity**2 @ system.damping - (damper * rate).sum(axis=1)
+    power = velocity @ model.reduction.load - velocity**2 @ system.damping - (damper * rate).sum(axis=1)
     power -= ring_dissipation(model, place, velocity)
     power += (0.5 * slope * beyond**2).sum(axis=1) - (force * error_rate).sum(axis=1)
 
@@ -199,7 +199,7 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
         order = np.arange(run.coordinates.shape[1])
         displacement = ahead**order @ run.coordinates[step]
         slope = (order[1:] * ahead ** order[:-1]) @ run.coordinates[step][1:]
-        ends.append((model.reduced.basis @ displacement, omega * (model.reduced.basis @ slope)))
+        ends.append((model.reduction.basis @ displacement, omega * (model.reduction.basis @ slope)))
     (angle, spin), (later_angle, later_spin) = ((q[layout.spins], v[layout.spins]) for q, v in ends)
     inertia = mass_diagonal(layout)[layout.spins]
     gained = inertia * (later_spin - spin + machine.damping.mass * (later_angle - angle))
