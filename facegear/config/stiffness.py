@@ -201,9 +201,9 @@ def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
         mean=section.mean,
         torque=section.torque_n_m,
         definition=section.definition,
-        kept=section.harmonics_kept,
+        order=section.harmonics_kept,
         variation=section.variation,
-        given=given_series(section),
+        given_series=given_series(section),
     )
 
 

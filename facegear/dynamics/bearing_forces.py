@@ -70,7 +70,7 @@ def bearing_forces(model: Model, motion: Track) -> Array:
     (bodies, 3, K) array
         Forces along x, y, z, N.
     """
-    linear, maps = model.machine.linear, _bearing_maps(model.machine.alike, model.reduction)
+    linear, maps = model.machine.linear, _bearing_maps(model.machine.without_errors, model.reduction)
     rings = linear.rings
     moving_parts = motion.along(maps.displacement_columns, maps.velocity_columns)
     first = len(moving_parts) - 4 * rings.body.size

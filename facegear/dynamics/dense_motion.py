@@ -10,7 +10,7 @@ from facegear.dynamics.at_instants import press_in, split_loads
 from facegear.dynamics.steady_state.mesh_samples import errors_of_period
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.track import Track
-from facegear.transmission.flanks import NO_LOAD, carried
+from facegear.transmission.flanks import NO_LOAD, significant_forces
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class DenseMotion:
     @cached_property
     def loads(self) -> Array:
         """Elastic mesh forces (meshes, K), N, without those that are rounding beside the largest."""
-        return carried(self.forces)
+        return significant_forces(self.forces)
 
     @property
     def flank_loads(self) -> Array:

@@ -370,7 +370,7 @@ def searched_contact(case: Case) -> bool:
     They have where a variable, or a cause of a percentile, moves the tooth pair, or an objective asks for
     what contact alone tells.
     """
-    from facegear.load_sharing.quantity_names import of_contact
+    from facegear.load_sharing.quantity_names import is_contact_quantity
 
     section = case.values["search"]
     if section is None:
@@ -378,7 +378,9 @@ def searched_contact(case: Case) -> bool:
     goals = [*section["objectives"], *section["constraints"]]
     robust = any(goal["percentile"] is not None for goal in goals)
     keys = [key for variable in section["variables"] for key in variable["sets"]]
-    asked = any(of_contact(text) for goal in goals for text in (*goal["largest_of"], *goal["smallest_of"]))
+    asked = any(
+        is_contact_quantity(text) for goal in goals for text in (*goal["largest_of"], *goal["smallest_of"])
+    )
     return asked or moves_pair(keys) or (robust and moves_pair(_causes(case.values["tolerances"])))
 
 

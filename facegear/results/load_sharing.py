@@ -49,13 +49,13 @@ class LoadSharingResult(Result):
 
         `beside`: results of other gearboxes by label, drawn in the same axes.
         """
-        from facegear.load_sharing.collect import collected
+        from facegear.load_sharing.collect import collect_tables
         from facegear.plots.load_sharing import sharing_figure
 
         require_answers(beside or {}, LoadSharingResult)
         results = {label: self, **(beside or {})}
         frames = {
-            part: collected({(STUDY, name): result.content[part] for name, result in results.items()})
+            part: collect_tables({(STUDY, name): result.content[part] for name, result in results.items()})
             for part in ("curve", "summary")
         }
         group_kinds = tuple(dict.fromkeys(self.content["summary"]["kind"]))

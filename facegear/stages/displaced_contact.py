@@ -15,7 +15,7 @@ from facegear.contact.gear_flank import from_arrays
 from facegear.contact.posed import met_contacts
 from facegear.errors import ConfigError, chosen
 from facegear.number_format import count_noun
-from facegear.poses.displaced import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
+from facegear.poses.displaced_flanks import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
 from facegear.stages.outcome import Outcome
 
 SHIFTS, TURNS = ("x_um", "y_um", "z_um"), ("tilt_x_deg", "tilt_y_deg", "theta_deg")
@@ -85,7 +85,7 @@ def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
                 "outward_um": 1e6 * flank.outward,
                 "approach_um": 1e6 * flank.approach,
                 "deflection_um": 1e6 * flank.deflection,
-                "closing_um": 1e6 * flank.closing,
+                "closing_um": 1e6 * flank.closure,
                 "backlash_um": 1e6 * flank.backlash,
                 "unloaded_path_mm": 1e3 * flank.path,
                 "to_inner_end_mm": 1e3 * flank.to_inner_end,

@@ -2,8 +2,8 @@
 
 from facegear.config.dynamics import Accuracy, settings
 from facegear.errors import ConfigError
-from facegear.load_sharing.following import running, running_mesh_table, running_table
 from facegear.load_sharing.hunting import hunting_cycle, hunting_length
+from facegear.load_sharing.running_machine import running, running_mesh_table, running_table
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
 

@@ -15,7 +15,7 @@ from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.gear_body import tables
 from facegear.gear_body.body import SolvedBody, solve_body
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome

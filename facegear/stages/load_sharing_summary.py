@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.load_sharing.collect import NOMINAL, collect_tables
 from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
 
@@ -20,9 +20,9 @@ def load_sharing_summary(
     keys = [(study, point) for study, point, _ in points]
     labels = {(study, point): label for study, point, label in points}
     frames = dict(zip([(NOMINAL, NOMINAL), *keys], summaries, strict=True))
-    summary, every = collected(frames, labels), dict(zip(keys, curves, strict=True))
+    summary, every = collect_tables(frames, labels), dict(zip(keys, curves, strict=True))
     studies = [
-        collected({key: frame for key, frame in every.items() if key[0] == name}, labels)
+        collect_tables({key: frame for key, frame in every.items() if key[0] == name}, labels)
         for name in dict.fromkeys(study for study, _ in keys)
     ]
     irregular = summary.loc[~summary["periodic"].astype(bool), ["study", "point"]].drop_duplicates()

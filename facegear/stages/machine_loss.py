@@ -24,7 +24,7 @@ from facegear.lubrication.machine_tables import (
 from facegear.stages.lubrication import loaded_pair, lubrication_section
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
-from facegear.transmission.ratings import mesh_table, rated
+from facegear.transmission.ratings import compute_ratings, mesh_table
 
 
 def machine_loss(
@@ -119,7 +119,7 @@ def _state(
         bin=number,
         hours=hours,
         speed_rpm=speed_rpm,
-        power_in=rated(machine, speed_rpm).power_in,
+        power_in=compute_ratings(machine, speed_rpm).power_in,
         meshes=names[0],
         flanks=names[1],
         bodies=layout.body_names,

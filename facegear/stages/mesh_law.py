@@ -50,8 +50,8 @@ def mesh_law(
     scale = _scale(ltca, request)
     largest = plan.torques[-1] / scale
     solved = [flank_contacts(model.of(other), plan.positions, largest, plan.options) for other in different]
-    tables, errors = fitted_tables(solved, request.kept)
-    tables = [table.scaled(scale) for table in tables]
+    tables, errors = fitted_tables(solved, request.order)
+    tables = [table.scale(scale) for table in tables]
     levels = level_table(tables, errors, numbers, design.pinion_base_radius)
     rms, largest = (100.0 * max(getattr(error, name) for error in errors) for name in ("rms", "largest"))
     summary = (

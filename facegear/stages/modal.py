@@ -53,7 +53,7 @@ def modal(
         f"{count_noun(rigid, 'rigid body mode')}, {elastic.size} elastic from {elastic[0]:.1f} to "
         f"{elastic[-1]:.1f} Hz, with a mesh stiffness of {size} N/um ({source_text})"
     )
-    return Outcome(content, summary + _remarks(contacts, vibration.decided))
+    return Outcome(content, summary + _remarks(contacts, vibration.is_decided))
 
 
 def _remarks(contacts: pd.DataFrame, decided: np.ndarray) -> str:

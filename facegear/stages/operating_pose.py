@@ -12,20 +12,20 @@ from facegear.contact.margins import pattern_margins
 from facegear.contact.posed import PosedContact, met_contacts
 from facegear.contact.reactions import REACTION_COLUMNS
 from facegear.geometry.design import PairDesign
-from facegear.poses.carrying import carrying_pairs
 from facegear.poses.fixed_point import OperatingPose
 from facegear.poses.fixed_point import operating_pose as fixed_point
-from facegear.poses.posed_flanks import assembled
+from facegear.poses.loaded_pairs import carrying_pairs
+from facegear.poses.posed_flanks import assembly_errors
 from facegear.poses.surface import STIFFNESS, PoseSurface
 from facegear.poses.tables import (
     PERCENT,
     REACTIONS,
+    gear_reactions,
     hardest_mesh,
     leaving_text,
     load_tables,
     margin_text,
     mesh_table,
-    pressing,
     with_margins,
 )
 from facegear.stages.outcome import Outcome
@@ -59,7 +59,7 @@ def operating_pose(
     pair_here, plan = pair(tooth_pair), replace(contact_plan(contact), root_stress=False)
     design, pairs = pair_here.design, carrying_pairs(result, pair_here.design)
     own = pairs.designs[pairs.numbers[worst]]
-    rest = assembled(machine, known, worst, bool(result.forces[worst] < 0.0))
+    rest = assembly_errors(machine, known, worst, bool(result.forces[worst] < 0.0))
     torque, torques = float(result.torque[worst]), [torque or plan.torques[0] for torque in pairs.torques]
     asked = [(replace(own, assembly=rest), (torque or plan.torques[0],))]
     asked += [(met, (at,)) for met, at in zip(pairs.designs, torques, strict=True)]
@@ -101,7 +101,7 @@ def _check(
     """
     at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
     known = {name: surface.at(name, *at) for name in surface.values if name in direct[1]}
-    known |= dict(zip(REACTIONS, pressing(result, surface)[mesh].tolist(), strict=True))
+    known |= dict(zip(REACTIONS, gear_reactions(result, surface)[mesh].tolist(), strict=True))
     rows = [
         (name, value, float(direct[1][name][0]), float(direct[0][name][0])) for name, value in known.items()
     ]

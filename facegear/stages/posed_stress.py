@@ -15,9 +15,9 @@ from facegear.contact.posed import met_contacts
 from facegear.geometry.bodies import BODIES
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.flank_errors import FLANKS
-from facegear.poses.carrying import carrying_pairs
 from facegear.poses.fixed_point import OperatingPose
 from facegear.poses.fixed_point import operating_pose as fixed_point
+from facegear.poses.loaded_pairs import carrying_pairs
 from facegear.poses.posed_flanks import nominal_contact
 from facegear.poses.surface import PoseSurface
 from facegear.stages.outcome import Outcome

@@ -2,7 +2,7 @@
 
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
-from facegear.transmission.ratings import body_table, mesh_table, number_table, rated
+from facegear.transmission.ratings import body_table, compute_ratings, mesh_table, number_table
 
 
 def ratings(
@@ -10,7 +10,7 @@ def ratings(
     speed_rpm: float,
 ) -> Outcome:
     """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
-    rating = rated(machine, speed_rpm)
+    rating = compute_ratings(machine, speed_rpm)
     content = {
         "ratings": number_table(rating),
         "bodies": body_table(machine, speed_rpm),

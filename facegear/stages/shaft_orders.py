@@ -45,17 +45,20 @@ def shaft_orders(
     orders, loaded = turn_orders(machine), loaded_machine(machine)
 
     def amplitudes(some: TurnOrders, speed: float) -> np.ndarray:
-        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.closed)
+        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.contact_mask)
 
-    running, still = amplitudes(orders, speed_rpm), mesh_amplitudes(loaded.at_rest(orders), loaded.closed)
-    error = 1e6 * mesh_amplitudes(orders.error, loaded.closed)
+    running, still = (
+        amplitudes(orders, speed_rpm),
+        mesh_amplitudes(loaded.at_rest(orders), loaded.contact_mask),
+    )
+    error = 1e6 * mesh_amplitudes(orders.error, loaded.contact_mask)
     nominal = mesh_frequency(layout, speed_rpm)
     rows = [
         (*_key(orders, row, nominal), name, error[row, mesh], running[row, mesh], still[row, mesh])
         for row in range(orders.order.size)
         for mesh, name in enumerate(names)
     ]
-    largest, over_speed = orders.kept(_largest(orders)), []
+    largest, over_speed = orders.select(_largest(orders)), []
     for speed in np.linspace(first_rpm, last_rpm, SPEEDS).tolist():
         for row, forces in enumerate(amplitudes(largest, speed)):
             key = _key(largest, row, mesh_frequency(layout, speed))
@@ -81,7 +84,7 @@ def _excited(machine: Machine, model: LoadedMachine, speeds: Sequence[float]) ->
             name = layout.body_names[excitation.body]
             key = (speed, name, excitation.order, excitation.of_mesh, frequency)
             motion = model.excited_motion(machine, excitation, speed)
-            forces = mesh_amplitudes(model.flank_forces(motion), model.closed)
+            forces = mesh_amplitudes(model.flank_forces(motion), model.contact_mask)
             rows += [(*key, *row, np.nan) for row in zip(layout.mesh_names, forces.tolist(), strict=True)]
             for spring in springs:
                 twist = motion[spring.second] - motion[spring.first]

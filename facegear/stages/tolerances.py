@@ -8,12 +8,12 @@ from facegear.config.tolerances import Tolerances
 from facegear.load_sharing.quantity_names import (
     BETTER_LARGE,
     CONTACT_TEMPERATURE,
+    CYCLE_SELECTION_ERRORS,
     LOSS,
-    MISSED,
-    OPEN,
+    OPEN_FRACTION,
     PAST_LAW,
-    REVERSED,
-    SIMPLIFIED,
+    REVERSED_FRACTION,
+    SIMPLIFICATION_ERRORS,
     UNSOLVED,
 )
 from facegear.number_format import count_noun
@@ -28,14 +28,14 @@ from facegear.scenarios.summary import (
 from facegear.stages.outcome import Outcome
 
 EVENTS = {
-    OPEN: "some mesh that shares a load opens",
-    REVERSED: "some mesh is loaded on the flank that it does not work on",
+    OPEN_FRACTION: "some mesh that shares a load opens",
+    REVERSED_FRACTION: "some mesh is loaded on the flank that it does not work on",
     PAST_LAW: "some mesh is past the last level of its load-dependent law",
     UNSOLVED: "some mesh loses under a torque outside those of the contact analysis",
 }
 CHECKS = {
-    **MISSED,
-    **{f"{name}, of few places of the contact": column for name, column in SIMPLIFIED.items()},
+    **CYCLE_SELECTION_ERRORS,
+    **{f"{name}, of few places of the contact": column for name, column in SIMPLIFICATION_ERRORS.items()},
 }
 """Quantity -> column that says of some samples what they miss."""
 
@@ -90,8 +90,8 @@ def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
     max_samples = sampling["samples"].max()
-    cycles = [part for part in parts if part.partition(" ")[0] in MISSED]
-    places = sampling.loc[~sampling["quantity"].isin(list(MISSED)), "largest_missed"]
+    cycles = [part for part in parts if part.partition(" ")[0] in CYCLE_SELECTION_ERRORS]
+    places = sampling.loc[~sampling["quantity"].isin(list(CYCLE_SELECTION_ERRORS)), "largest_missed"]
     missed = (
         [f"the mesh cycles taken miss at most {', '.join(cycles)} ({count_noun(max_samples, 'sample')})"]
         if cycles

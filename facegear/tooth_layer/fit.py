@@ -54,10 +54,10 @@ def layer_energies(layer: Layer, section: Section, rim: float) -> Array:
     """Twice the energy (2,), J, of a layer on a rim `rim` (m) thick in the waves of `tooth_energies`."""
     mesh = strip(layer, rim)
     corners = rectangle(layer.inner_radius, layer.outer_radius, layer.back - rim, layer.back)
-    whole = replace(section, corners=corners, held=(False,) * 4, layer=layer)
+    whole = replace(section, corners=corners, is_edge_held=(False,) * 4, layer=layer)
     elements = elements_of(mesh)
     stiffness = elastic_stiffness(whole, mesh, elements).at(ORDER)
-    r, height = elements.places
+    r, height = elements.shape_points
     back = np.flatnonzero(np.isclose(height, layer.back - rim, rtol=0.0, atol=1e-9))
     middle = 0.5 * (layer.inner_radius + layer.outer_radius)
     rising = np.stack([np.ones(back.size), r[back] - middle], axis=1)

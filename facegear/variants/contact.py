@@ -26,7 +26,7 @@ from facegear.geometry.bodies import BODIES
 from facegear.stiffness.curve import LoadTable
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.source import curve_from_contact
-from facegear.stiffness.unloaded import unloaded_samples
+from facegear.stiffness.unloaded_error import unloaded_samples
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passing_tension import PassingTension

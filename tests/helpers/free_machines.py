@@ -1,10 +1,10 @@
-"""What a machine without damping and clearance does: its modes, and how it turns as a whole."""
+"""Behaviour of a machine without damping and clearance: its modes, and its rotation as a whole."""
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.transmission.layout import DOF_PER_BODY, Layout
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 from facegear.transmission.modes import Modes, drive_flanks, modes_of
 
 

@@ -14,7 +14,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
 FINE = Settings(tolerance=1e-14)
 
@@ -47,7 +47,7 @@ def machines(draw, **fixed):
         "open_flanks": draw(st.sampled_from(list(OpenFlanks))),
     }
     symmetric = fixed.pop("symmetric", False)
-    if kinematics is PRINTED:
+    if kinematics is PRINTED_KINEMATICS:
         return make_machine(layout, **(options | fixed))
     if draw(st.booleans()):
         tilt = Tilt(0.3, draw(st.floats(1e6, 1e8)))

@@ -1,4 +1,4 @@
-"""What machines of one study have in common is computed once, and nothing else counts as common."""
+"""Common parts of the machines of one study are computed once, and nothing else counts as common."""
 
 from dataclasses import dataclass, replace
 
@@ -95,15 +95,18 @@ def test_machines_of_a_series_have_one_machine_without_errors_and_no_other_machi
         position=flaws.position + 1e-6,
         bearing_clearance=2.0 * flaws.bearing_clearance,
     )
-    assert replace(first, half_backlash=2.0 * first.half_backlash, imperfections=moved).alike is first.alike
+    assert (
+        replace(first, half_backlash=2.0 * first.half_backlash, imperfections=moved).without_errors
+        is first.without_errors
+    )
     for name, value in (
         ("stiffness", 2.0 * flaws.stiffness),
         ("clocking", flaws.clocking + 0.1),
         ("bearing_clearance", 0.0 * flaws.bearing_clearance),
     ):
         other = replace(first, imperfections=replace(flaws, **{name: value}))
-        assert other.alike is not first.alike, name
-    assert replace(first, torques=2.0 * first.torques).alike is not first.alike
+        assert other.without_errors is not first.without_errors, name
+    assert replace(first, torques=2.0 * first.torques).without_errors is not first.without_errors
 
 
 def test_machines_that_differ_in_errors_and_clearances_share_reduction_and_law_and_nothing_that_differs():

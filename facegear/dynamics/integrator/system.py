@@ -135,7 +135,7 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
     """
     contacts, rings = mesh_contacts(machine), machine.linear.rings
     zeros = 3 * rings.body.size * [0.0]
-    error, error_kind = _kinds(machine.alike)
+    error, error_kind = _kinds(machine.without_errors)
     load = np.zeros((reduction.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduction.load
     return System(

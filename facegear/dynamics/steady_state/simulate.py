@@ -77,7 +77,7 @@ def build_model(machine: Machine) -> Model:
         If a periodic torque does not repeat with the mesh.
     """
     machine = machine_in_motion(machine)
-    reduction = _cached_reduction(machine.alike)
+    reduction = _cached_reduction(machine.without_errors)
     return Model(machine, reduction, _excited(machine, reduction.basis, machine_system(machine, reduction)))
 
 

@@ -1,4 +1,4 @@
-"""What the sections of a config demand of one another, told before any work."""
+"""Demands of the sections of a config on one another, told before any work."""
 
 from copy import deepcopy
 from pathlib import Path
@@ -174,7 +174,7 @@ def test_a_study_of_the_teeth_moves_the_backlash_of_the_dynamics_with_them():
 
 
 def test_a_tooth_pair_alone_is_a_config():
-    """Some twenty keys of the transmission had to be invented by whoever wanted tooth contact only."""
+    """Whoever wanted tooth contact only had to invent some twenty keys of the transmission."""
     found = resolved_values(parse(Config, {"case": "teeth", "tooth_pair": QUICK["tooth_pair"]}))
     assert found["transmission"] is None
     assert found["mesh_stiffness"]["torque_n_m"] == found["contact"]["torques_n_m"][-1]

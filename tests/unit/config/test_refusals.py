@@ -1,4 +1,4 @@
-"""What no machine can be is refused before any work: every mistake at once, each line saying what must be."""
+"""Impossible machines are refused before any work: every mistake at once, each line saying what must be."""
 
 import shutil
 from pathlib import Path

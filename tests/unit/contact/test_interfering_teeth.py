@@ -42,7 +42,9 @@ def test_teeth_that_interfere_have_no_average_stiffness_and_say_so(model_of, tor
     assert max(result.fillet_share for result in results) > 0.1
     table = ltca_table(results, flank_pressure(results, model.flanks, (STEEL, STEEL)))
     assert np.isnan(contact_summary(table)["k_average_mean_n_per_m"][0])
-    with pytest.raises(FacegearError, match=r"the teeth interfere: tips stand up to .* um deep in fillets"):
+    with pytest.raises(
+        FacegearError, match=r"the teeth interfere. Tips penetrate the fillets by up to .* um"
+    ):
         load_table(table)
 
 

@@ -146,7 +146,8 @@ def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
 def test_largest_flash_and_thinnest_film_are_the_reference_s(
     loaded, torque, largest, place, thinnest, kept, ratio
 ):
-    """Those of the default mesh; here planes lie closer, so that the hottest place lies nearer to an edge.
+    """The reference is of the default mesh; here planes lie closer, so that the hottest place lies nearer to
+    an edge.
 
     The thinnest film at 1000 N m lies in a plane whose fillet touches in this pair without backlash.
     """
@@ -301,7 +302,7 @@ def test_a_hat_takes_the_value_of_its_own_plane_or_the_nearest_of_its_line(loade
 
 
 def test_the_back_flank_is_the_mirror_image_in_loss_and_in_friction_s_force(loaded):
-    """Of a pair out of place: what the drive flank does, seen in a mirror and turning the same way."""
+    """A pair out of place: the drive flank, seen in a mirror and turning the same way."""
     design, hats, _ = loaded
     moved = replace(design, assembly=replace(design.assembly, offset=3e-4))
     hats = at(hats, hats.torque == 1000.0)

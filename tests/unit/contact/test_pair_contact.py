@@ -23,18 +23,18 @@ from facegear.geometry.design import AssemblyErrors, Relief
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.stiffness.source import stiffness_from_contact
 from facegear.stiffness.tables import unloaded_error
-from facegear.stiffness.unloaded import unloaded_series
+from facegear.stiffness.unloaded_error import unloaded_series
 
 TORQUES = [100.0, 600.0]
 
 
 def misaligned(model, **errors):
-    """The same elastic bodies in another assembly."""
+    """Return the same elastic bodies in another assembly."""
     return model.assembled(AssemblyErrors(**errors))
 
 
 def redesigned(model, design):
-    """The same elastic bodies with other flanks, a few micrometres away."""
+    """Return the same elastic bodies with other flanks, a few micrometres away."""
     pinion, gear = (replace(flank, design=design) for flank in (model.flanks.pinion, model.flanks.gear))
     return replace(model, flanks=FlankPair(pinion, gear))
 

@@ -16,18 +16,18 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import error_series, mirrored
+from facegear.transmission.flanks import error_series, mirror_series
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.matrices import flank_jacobian, mass_diagonal
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
 
 def contacts(machine):
     """k and e of each contact of the system: meshes as printed, flanks where meshes are geometric."""
     if machine.layout.kinematics.flanks_apart:
-        both = *machine.mesh_stiffness, *map(mirrored, machine.mesh_stiffness)
+        both = *machine.mesh_stiffness, *map(mirror_series, machine.mesh_stiffness)
         phases = np.tile(machine.phases, 2)
         return [own.shift(lag) for own, lag in zip(both, phases, strict=True)], error_series(machine)
     stiffness = [machine.stiffness.shift(float(phase)) for phase in machine.phases]
@@ -241,7 +241,7 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
 @pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
     for torque, speed in ((800.0, 4500.0), (1500.0, 9000.0), (1500.0, 12_000.0)):
-        error = 50e-6 if kinematics is PRINTED else 5e-6
+        error = 50e-6 if kinematics is PRINTED_KINEMATICS else 5e-6
         machine = make_machine(make_layout(kinematics=kinematics), torque=torque, error=error)
         settings_ = Settings(tolerance=1e-12, periodic_residual=1e-9)
         model = build_model(machine)

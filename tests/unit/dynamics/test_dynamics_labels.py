@@ -157,7 +157,7 @@ def paper_machine():
 
 @pytest.mark.parametrize("refine", [True, False])
 def test_steps_that_alternate_do_not_make_a_motion_of_twice_its_period(refine):
-    """Some 170 steps a period at 1e-4, chosen by the motion itself, once made this period-2 at 200 rpm."""
+    """At 200 rpm some 170 steps a period at 1e-4, chosen by the motion itself, once made this period-2."""
     model = build_model(paper_machine())
     coarse = Settings(tolerance=1e-4, periodic_residual=1e-5, settle=128, samples=32, refine=refine)
     found = simulate(model, 200.0, coarse)

@@ -12,7 +12,7 @@ from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
 
 @against(
@@ -22,7 +22,7 @@ from facegear.transmission.printed import PRINTED
     module="facegear.dynamics.steady_state.simulate",
 )
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=PRINTED, backlash=0.0, mass_damping=800.0), speed=speeds)
+@given(machine=machines(kinematics=PRINTED_KINEMATICS, backlash=0.0, mass_damping=800.0), speed=speeds)
 def test_without_backlash_the_response_is_hills(machine, speed):
     """Harmonic balance of the linear system with periodic k, solved to rounding in the frequency domain."""
     model = build_model(machine)

@@ -14,13 +14,13 @@ from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import mirrored as backwards
+from facegear.transmission.flanks import mirror_series as backwards
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.matrices import mass_diagonal
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 from facegear.transmission.teeth import GEOMETRIC
 
 
@@ -63,7 +63,7 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
     module="facegear.dynamics.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=PRINTED), speed=speeds)
+@given(machine=machines(kinematics=PRINTED_KINEMATICS), speed=speeds)
 def test_negated_torques_and_error_negate_the_motion(machine, speed):
     model = build_model(machine)
     start = kicked(model)

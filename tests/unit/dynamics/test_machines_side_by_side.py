@@ -24,7 +24,7 @@ from facegear.mesh_law.power import PowerLaw
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.machine import FlankTables, OpenFlanks
 from facegear.transmission.mesh_friction import PARTS, MeshFriction
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 from facegear.transmission.teeth import GEOMETRIC
 
 SAME = 1e-9
@@ -119,7 +119,7 @@ def test_a_machine_moves_beside_others_as_it_does_alone(name):
 
 
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=PRINTED), speed=speeds, seed=st.integers(0, 99))
+@given(machine=machines(kinematics=PRINTED_KINEMATICS), speed=speeds, seed=st.integers(0, 99))
 def test_any_lumped_machine_moves_beside_others_as_it_does_alone(machine, speed, seed):
     model = build_model(machine)
     found = [Integrator(model.system, frequency(model, speed * factor)) for factor in (1.0, 1.1)]

@@ -1,4 +1,4 @@
-"""What the stage writes of a machine whose face gears bend."""
+"""Tables and arrays that the stage writes for a machine whose face gears bend."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +14,7 @@ from facegear.config.base import parse
 from facegear.config.gear_body import BodySection
 from facegear.config.load import load_config
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.tables import COUPLINGS, mode_table
 from facegear.results.gear_bodies import GearBodiesResult

@@ -1,4 +1,4 @@
-"""What a measuring machine is given: nominal points and normals, in a file that is read back as it is."""
+"""Nominal points and normals for a measuring machine, in a file that is read back as it is."""
 
 import numpy as np
 from references import against, agrees

@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.conjugate_slopes import conjugate_slopes
 from facegear.geometry.design import AssemblyErrors
 from facegear.mesh_law.force_table import ForceTable
 from facegear.poses.energy import mesh_energy
-from facegear.poses.fixed_point import operating_pose, pose_at, prepared
+from facegear.poses.fixed_point import operating_pose, pose_at, with_ideal_directions
 from facegear.poses.surface import STIFFNESS, Nodes, PoseSurface
 from facegear.poses.tables import scaled_load
 from facegear.transmission.elastic_gears import ElasticGears
@@ -28,7 +28,7 @@ from facegear.transmission.machine import FlankTables
 from facegear.transmission.static_gears import at_rest as static
 from facegear.transmission.statics import Equilibria, mean_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
-from validation.poses.measure import ASSEMBLIES, FROZEN, SURFACE, TILTING, TOUCHING
+from validation.poses.measure import ASSEMBLIES, FROZEN_REACTIONS, SURFACE, TILTING, TOUCHING_REACTIONS
 
 ANGLE = float(np.radians(0.05))
 PINION_BASE = 3.75e-3 * 23 / 2 * np.cos(np.radians(25.0))
@@ -60,12 +60,12 @@ def test_approach_and_reactions_are_the_derivatives_of_the_energy(surface, torqu
 
     def complementary(torque, path, angle):
         at = mesh_energy(surface, torque, path, angle)
-        return at.force * at.approach - at.stored
+        return at.force * at.approach - at.energy
 
     by_force = sixth_order(lambda d: complementary(torque + d, path, angle), 1e-3 * torque) * PINION_BASE
     assert by_force == pytest.approx(here.approach, rel=1e-8)
     by_path = sixth_order(lambda d: complementary(torque, path + d, angle), 2e-5)
-    assert by_path == pytest.approx(here.by_path, rel=1e-6, abs=1e-6 * here.stored / 1e-3)
+    assert by_path == pytest.approx(here.by_path, rel=1e-6, abs=1e-6 * here.energy / 1e-3)
     by_angle = sixth_order(lambda d: complementary(torque, path, angle + d), 2e-6)
     assert by_angle == pytest.approx(here.by_angle, rel=1e-6)
     law = sixth_order(lambda d: mesh_energy(surface, torque, path + d, angle).approach, 2e-5)
@@ -76,7 +76,9 @@ def test_approach_and_reactions_are_the_derivatives_of_the_energy(surface, torqu
 @settings(max_examples=10, deadline=None)
 @given(st.floats(-2.5e-4, 2e-4), st.floats(-1e-4, 1e-4), angles)
 def test_slopes_of_the_exact_unloaded_contact_are_its_differences(surface, offset, shift, angle):
-    """Of transmission error and path; the errors of differences are those of 2 um and 2e-6 rad."""
+    """The slopes are of transmission error and path; the errors of differences are those of 2 um and 2e-6
+    rad.
+    """
     errors = np.array([offset, shift, angle])
 
     def contact(moved):
@@ -123,11 +125,11 @@ def bending_machine(places=None, sides=(Side.LOWER, Side.UPPER)):
 
 def model_of(machine, surface):
     """All coordinates at rest, with all slopes of rims that bend."""
-    return static(prepared(machine, surface)).linear
+    return static(with_ideal_directions(machine, surface)).linear
 
 
 def generalized_forces(machine, surface, displacements):
-    """Of drive flanks on all coordinates, with the force of the law where each stands; and their energy."""
+    """Return the forces of drive flanks on all coordinates, by the law of each contact, and their energy."""
     meshes, model = len(machine.layout.meshes), model_of(machine, surface)
     logs, misses = [np.full(meshes, 9.0)], []
     for _ in range(20):
@@ -136,7 +138,7 @@ def generalized_forces(machine, surface, displacements):
         result = pose_at(machine, surface, at_rest)
         directions = result.machine.directions
         rows = replace(directions, slopes=np.zeros_like(directions.slopes))(model).rows[:meshes]
-        pressed = rows @ displacements + result.closing[:meshes]
+        pressed = rows @ displacements + result.flank_closure[:meshes]
         misses.append(np.log(machine.stiffness.mean * result.factor * pressed) - logs[-1])
         if len(logs) == 1:
             logs.append(logs[-1] + misses[-1])
@@ -146,7 +148,7 @@ def generalized_forces(machine, surface, displacements):
             step = logs[-1] - logs[-2]
             rise = np.where(step == 0.0, -1.0, (misses[-1] - misses[-2]) / np.where(step == 0.0, 1.0, step))
             logs.append(logs[-1] - misses[-1] / np.minimum(rise, -0.1))
-    return forces[0, :meshes] @ static(result.machine).linear.rows[:meshes], float(result.stored.sum())
+    return forces[0, :meshes] @ static(result.machine).linear.rows[:meshes], float(result.energy.sum())
 
 
 def random_motion(machine, model, seed):
@@ -199,7 +201,7 @@ def work_and_energy(machine, surface, first, last):
     def at(fraction):
         result = operating_pose(scaled_load(machine, fraction), surface)
         moved = mean_equilibrium(static(result.machine)).displacements[0]
-        return linear.loads @ moved, 0.5 * moved @ linear.stiffness @ moved + result.stored.sum()
+        return linear.loads @ moved, 0.5 * moved @ linear.stiffness @ moved + result.energy.sum()
 
     points, weights = np.polynomial.legendre.leggauss(4)
     # by parts: the integral of f L . dq is [f L . q] less the integral of L . q df
@@ -273,7 +275,7 @@ PARTS = ["offset", "axial_shift", "shaft_angle_error"]
 
 @pytest.fixture(scope="module")
 def tilting_surface():
-    """The same pair with two errors of the shaft angle, solved at default accuracy."""
+    """Surface of the pair with two errors of the shaft angle, solved at default accuracy."""
     with np.load(TILTING) as stored:
         return PoseSurface.of_arrays(dict(stored))
 
@@ -296,7 +298,7 @@ def reactions(surface, torque, errors):
 @pytest.mark.parametrize("torque", [420.0, 930.0])
 def test_reactions_of_the_surface_are_those_of_contact_that_is_moved(tilting_surface, torque):
     """Within 0.3 % of the force, and of its moment at 0.1 m; from `python -m validation.poses.measure`."""
-    rows = pd.read_csv(FROZEN).set_index(["torque_n_m", "error"]).loc[torque].loc[PARTS]
+    rows = pd.read_csv(FROZEN_REACTIONS).set_index(["torque_n_m", "error"]).loc[torque].loc[PARTS]
     known = -(rows["along_normals"] + rows["giving_way"]).to_numpy()
     energy, force = reactions(tilting_surface, torque, AssemblyErrors())
     agrees("reactions to offset and axial shift, N", energy[:2], known[:2], absolute=3e-3 * force)
@@ -306,7 +308,7 @@ def test_reactions_of_the_surface_are_those_of_contact_that_is_moved(tilting_sur
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 def test_reactions_of_the_surface_are_the_sums_of_the_touching_loads(tilting_surface, assembly):
     """But for how teeth give way differently, 0.45 % of the force; load itself moves it by 2 to 5 %."""
-    rows = pd.read_csv(TOUCHING).set_index("assembly").loc[assembly]
+    rows = pd.read_csv(TOUCHING_REACTIONS).set_index("assembly").loc[assembly]
     for row in rows.itertuples():
         energy, force = reactions(tilting_surface, row.torque_n_m, ASSEMBLIES[assembly])
         overturning = -energy[2] - tilting_surface.pair.mean_radius * energy[1]

@@ -21,7 +21,7 @@ from facegear.config.notes import notes
 from facegear.io import tables
 from facegear.report.case import case_report
 from facegear.report.machine import Base
-from validation.report_pages import A4, chromium, printed
+from validation.report_pages import A4, chromium, print_page
 
 ROOT = Path(__file__).parents[3]
 CONFIG = ROOT / "config" / "concentric.yaml"
@@ -76,7 +76,7 @@ def test_a_whole_machine_prints_on_at_most_25_pages_of_a4_with_every_column_of_e
         page = browser.new_page()
         page.goto(concentric.as_uri())
         unread = page.evaluate("[...document.images].filter(image => !image.naturalWidth).length")
-        pages, right_edges = printed(page)
+        pages, right_edges = print_page(page)
         figures = page.locator("figure[id] img").count()
     assert len(right_edges) >= 20 and figures >= 25, "a whole machine"
     assert pages <= MOST_PAGES

@@ -11,7 +11,7 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.gear_body.excitation import phase_factors
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears, coordinates
 from facegear.transmission.layout import Side
@@ -196,7 +196,9 @@ def test_softer_bodies_lower_every_natural_frequency_of_the_machine_and_turning_
 
 
 def factors_by_moving_loads(order, harmonic, angles):
-    """What turns with and against the body in the wave of an order, from forces at discrete times."""
+    """Factors of the parts that turn with and against the body in the wave of an order, from forces at
+    discrete times.
+    """
     times = np.arange(8 * harmonic) / (8 * harmonic)
     forces = np.cos(2 * np.pi * harmonic * times[:, None] - harmonic * TEETH * angles)
     spectrum = np.fft.fft(forces @ np.exp(1j * order * angles)) / times.size

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import eigsh
 from facegear.gear_body.matrices import body_matrices, rigid_motions
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.modes import order_modes
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.section import inertia_about, section_properties
 from facegear.load_sharing import sensitivity
@@ -29,7 +29,7 @@ from facegear.transmission.teeth import GEOMETRIC
 RADIAL, TILTING, CENTRE = 3e8, 4e6, -0.02
 """Bearings, N/m and N m/rad; height of the point about which the hub tilts, m."""
 MORE = 4.0, 0.03
-"""What the hub has beyond the section: kg and kg m2 about a diameter there."""
+"""Mass and inertia that the hub has beyond the section: kg and kg m2 about a diameter there."""
 MASS, POLAR, _, _ = section_properties(gear_bodies.section())
 INERTIA = inertia_about(gear_bodies.section(), CENTRE) + MORE[1]
 SPEED = 200.0
@@ -44,7 +44,7 @@ def matrices():
 @cache
 def body() -> ReducedBody:
     """Thirty modes of one nodal diameter and a few of none, without damping."""
-    orders = (order_modes(matrices(), 0, 6e3), order_modes(matrices(), 1, np.inf, expected=29))
+    orders = (order_modes(matrices(), 0, 6e3), order_modes(matrices(), 1, np.inf, expected_count=29))
     solved = SimpleNamespace(
         orders=orders,
         section=gear_bodies.section(),
@@ -88,8 +88,9 @@ def frequencies(turned, gear_speed, count):
 
 
 def free_hub(gear_speed, count):
-    """The same by finite elements with the hub's surface as a rigid body on springs: modes of that at rest,
-    among which the matrices of the turning body stand still in space.
+    """Solve by finite elements with the hub's surface as a rigid body on springs.
+
+    The modes are of the body at rest, among which the matrices of the turning body stand still in space.
     """
     whole, free = matrices(), matrices().free
     rigid = rigid_motions(whole.elements, 1)
