@@ -60,10 +60,10 @@ def body_waves(modes: pd.DataFrame) -> Figure:
     orders = Axis("Nodal diameters", "", integer=True)
     panels = []
     for gear in modes["gear"].drop_duplicates():
-        own = modes[modes["gear"] == gear]
-        waves = own[own["nodal_diameters"] > 0]
+        gear_modes = modes[modes["gear"] == gear]
+        waves = gear_modes[gear_modes["nodal_diameters"] > 0]
         rest: Look = {"line": "none", "marker": "line-ew", "size": 9.0}
-        marks = [Curve(own["nodal_diameters"], 1e-3 * own["frequency_hz"], "at rest", **rest)]
+        marks = [Curve(gear_modes["nodal_diameters"], 1e-3 * gear_modes["frequency_hz"], "at rest", **rest)]
         for name in ("forward", "backward"):
             look: Look = {"line": "none", "marker": MARKERS[name], "size": 3.5}
             values = 1e-3 * waves[f"{name}_hz"]
@@ -79,12 +79,12 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
     Marks: crossings with a mesh harmonic, larger where the phases of the meshes add up.
     """
     gear = modes["gear"].iloc[0] if len(modes) else ""
-    own, met = modes[modes["gear"] == gear], crossings[crossings["gear"] == gear]
-    top = 1.02 * own["frequency_hz"].max() if len(own) else 1.0
+    gear_modes, gear_crossings = modes[modes["gear"] == gear], crossings[crossings["gear"] == gear]
+    top = 1.02 * gear_modes["frequency_hz"].max() if len(gear_modes) else 1.0
     speeds = np.linspace(0.0, last_rpm, 60)
     marks: list[Mark] = []
     kinds = set()
-    for row in own.itertuples():
+    for row in gear_modes.itertuples():
         shift = (row.forward_hz - row.backward_hz) / 2.0
         for sign, kind in (
             ((1.0, "forward"), (-1.0, "backward")) if row.nodal_diameters else ((1.0, "standing"),)
@@ -93,8 +93,8 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
             curve = _wave(row.frequency_hz, bend, sign * shift, row.speed_rpm, speeds)
             marks.append(Curve(speeds, 1e-3 * curve, colour=COLOURS[kind], width=0.6, opacity=0.7))
             kinds.add(kind)
-    marks += mesh_harmonics(met["harmonic"], last_rpm, top, teeth)
-    marks += crossing_marks(met)
+    marks += mesh_harmonics(gear_crossings["harmonic"], last_rpm, top, teeth)
+    marks += crossing_marks(gear_crossings)
     keys = [wave_key(kind) for kind in COLOURS if kind in kinds]
     return Figure([frame(marks, last_rpm, top)], title=f"{gear} face gear, hub held", keys=keys)
 

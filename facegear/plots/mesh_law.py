@@ -117,8 +117,10 @@ def load_figures(
 
     `labels`: of this machine's law and of the others'. Meshes are those of the first gear.
     """
-    drawn = [loads_in_table(loads)]
+    law_figures = [loads_in_table(loads)]
     if others:
         side = loads["mesh"].str.rpartition("/")[2]
-        drawn.append(swept_laws([sweep, *others], labels, loads["mesh"][side == side.iloc[-1]].tolist()))
-    return drawn
+        law_figures.append(
+            swept_laws([sweep, *others], labels, loads["mesh"][side == side.iloc[-1]].tolist())
+        )
+    return law_figures

@@ -59,10 +59,10 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
 def _title(orders: tuple[int, ...], mode: pd.Series) -> str:
     if len(orders) == 1:
         return f"Mode {orders[0]}, {format_number(mode['frequency_hz'], 4)} Hz\n{mode['symbols']}"
-    which = (
+    order_text = (
         f"Modes {orders[0]} to {orders[-1]} (x {len(orders)}), {format_number(mode['frequency_hz'], 4)} Hz"
     )
-    return f"{which}, root sum of squares\n{mode['symbols']}"
+    return f"{order_text}, root sum of squares\n{mode['symbols']}"
 
 
 def figures(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> tuple[Figure, ...]:

@@ -10,7 +10,7 @@ from facegear.plots.description import Axis, Curve, Figure, LineStyle, Panel, st
 
 GEARS = {"pinion": BLUE, "face_gear": RED}
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
-SHOWN = 3
+ORDERS_SHOWN = 3
 """Orders of each gear that are drawn over speed."""
 
 
@@ -53,7 +53,7 @@ def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure
 
 def _over_speed(rows: pd.DataFrame, colour: str, name: str) -> Iterator[Curve]:
     """The orders whose forces become largest."""
-    peaks = rows.groupby("order")["force_n"].max().nlargest(SHOWN)
+    peaks = rows.groupby("order")["force_n"].max().nlargest(ORDERS_SHOWN)
     for line, order in zip(LINES, np.sort(peaks.index), strict=False):
         order_rows = rows[rows["order"] == order]
         yield Curve(order_rows["speed_rpm"], order_rows["force_n"], f"{name}, order {order}", colour, line)

@@ -14,7 +14,7 @@ from facegear.arrays import Array
 from facegear.geometry.conjugate import PairNumbers, exact_contact
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.flank_errors import FLANKS, errors_at
-from facegear.geometry.placement import RigidMotion, mirrored, pinion_angle
+from facegear.geometry.placement import RigidMotion, mirror_design, pinion_angle
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.poses.exact_pose import Pose, assembled_motion, body_motion, in_mesh_frame, pose_of
 
@@ -160,7 +160,7 @@ def displaced_flanks(
 def _pair_of_flank(design: PairDesign, errors: AssemblyErrors, flank: str) -> PairDesign:
     """Return the pair whose drive flank a flank is, by the errors that the drive flank meets."""
     design_at_pose = replace(design, assembly=errors)
-    return design_at_pose if flank == FLANKS[0] else mirrored(design_at_pose)
+    return design_at_pose if flank == FLANKS[0] else mirror_design(design_at_pose)
 
 
 def _contact(design: PairDesign, pose: Pose, flank: str, position: float) -> tuple[float, float, float]:

@@ -23,14 +23,28 @@ def dynamics_sweep(
     sweep: Sweep,
     threads: int = 1,
 ) -> Outcome:
-    """`sweep`, `jumps`, `resonances`, `seams` (tables) and `waterfall` (arrays).
+    """Join the chunks of a sweep.
 
-    `chunks`: the arrays of all chunks, direction by direction in the order of the config.
+    Parameters
+    ----------
+    chunks : Iterable[Arrays]
+        Arrays of all chunks, direction by direction in the order of the config.
+    machine : Machine
+        The machine.
+    sweep : Sweep
+        Section `sweep` of the config.
+    threads : int
+        Number of threads.
+
+    Returns
+    -------
+    Outcome
+        Tables `sweep`, `jumps`, `resonances` and `seams`, arrays `waterfall`.
     """
     model = build_model(machine)
     plan, layout = sweep_plan(sweep), model.machine.layout
-    stored = iter(chunks)
-    pieces = {name: [from_arrays(next(stored)) for _ in range(plan.chunks)] for name in plan.directions}
+    chunk_arrays = iter(chunks)
+    pieces = {name: [from_arrays(next(chunk_arrays)) for _ in range(plan.chunks)] for name in plan.directions}
     directions = whole_sweep(model, plan, pieces, threads)
     modes = loaded_modes(model.machine)
     content = {

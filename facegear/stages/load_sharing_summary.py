@@ -12,10 +12,21 @@ from facegear.stages.outcome import Outcome
 def load_sharing_summary(
     points: Sequence[Sequence[str]], summaries: Sequence[pd.DataFrame], curves: Sequence[pd.DataFrame]
 ) -> Outcome:
-    """`summary` (table) of all, and `studies` (a table of curves for each study).
+    """Collect the load sharing of the machine and of all points of its studies.
 
-    `points`: study, point and label of every point; `summaries`: tables of stage load_sharing, that of the
-    machine itself first; `curves`: those of the points alone.
+    Parameters
+    ----------
+    points : Sequence[Sequence[str]]
+        Study, point and label of every point.
+    summaries : Sequence[pd.DataFrame]
+        Tables `summary` of stage load_sharing, that of the machine itself first.
+    curves : Sequence[pd.DataFrame]
+        Tables `curve` of the points alone.
+
+    Returns
+    -------
+    Outcome
+        `summary` (table) of all, and `studies` (a table of curves for each study).
     """
     keys = [(study, point) for study, point, _ in points]
     labels = {(study, point): label for study, point, label in points}

@@ -9,7 +9,25 @@ def ratings(
     machine: Machine,
     speed_rpm: float,
 ) -> Outcome:
-    """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
+    """Compute ratio, speeds, torques and powers.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `ratings`, `bodies` and `meshes`.
+
+    Raises
+    ------
+    NotConverged
+        Where the equilibrium does not converge.
+    """
     rating = compute_ratings(machine, speed_rpm)
     content = {
         "ratings": number_table(rating),

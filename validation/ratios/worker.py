@@ -64,7 +64,7 @@ def _stage(request: dict[str, Any], inputs: str) -> Callable[[], Any]:
     gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
     stage = STAGES[request["stage"]]
     arguments = Chain(gearbox.values, Store(partial=PartialResults(Path(inputs)))).arguments(stage.name)
-    return lambda: call(stage, arguments, **stage.typed(request["wildcards"])).content
+    return lambda: call(stage, arguments, **stage.typed_wildcards(request["wildcards"])).content
 
 
 def _calls(request: dict[str, Any]) -> Callable[[], Any]:
