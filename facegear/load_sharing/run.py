@@ -322,7 +322,7 @@ def steady_motion(
 
     Returns
     -------
-    Course[SteadyState]
+    RunPlan[SteadyState]
         Steps that end with the response.
     """
     first_window = yield from start_run(
@@ -344,7 +344,7 @@ def follow_first_window(
     ----------
     model : Model
         Reduced model of the machine.
-    motion : Started
+    motion : StartedRun
         Motion after its first window.
     settings : Settings
         Settings of the integration.
@@ -353,7 +353,7 @@ def follow_first_window(
 
     Returns
     -------
-    Course[SteadyState]
+    RunPlan[SteadyState]
         Steps that end with the response.
     """
     state = yield from motion.follow()
