@@ -56,7 +56,18 @@ def _section(nodes: Array, quads: AnyArray, shape: Array) -> list[Area | Faces]:
 
 
 def body_waves(modes: pd.DataFrame) -> Figure:
-    """Frequencies at rest and of both waves in space over nodal diameters, a panel for each gear."""
+    """Draw frequencies at rest and of both waves in space over nodal diameters, a panel for each gear.
+
+    Parameters
+    ----------
+    modes : pd.DataFrame
+        Table `modes` of stage gear_bodies.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     orders = Axis("Nodal diameters", "", integer=True)
     panels = []
     for gear in modes["gear"].drop_duplicates():
@@ -74,9 +85,25 @@ def body_waves(modes: pd.DataFrame) -> Figure:
 
 
 def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float, teeth: int) -> Figure:
-    """Waves over pinion speed as meshes meet them, with mesh harmonics; one gear, as most are alike.
+    """Draw waves over pinion speed as meshes meet them, with mesh harmonics; one gear, as most are alike.
 
     Marks: crossings with a mesh harmonic, larger where the phases of the meshes add up.
+
+    Parameters
+    ----------
+    modes : pd.DataFrame
+        Table `modes` of stage gear_bodies.
+    crossings : pd.DataFrame
+        Table `crossings` of stage gear_bodies.
+    last_rpm : float
+        Last speed of the pinions, rpm.
+    teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     gear = modes["gear"].iloc[0] if len(modes) else ""
     gear_modes, gear_crossings = modes[modes["gear"] == gear], crossings[crossings["gear"] == gear]
@@ -116,6 +143,25 @@ def figures(
     last_rpm: float,
     teeth: int,
 ) -> tuple[Figure, ...]:
-    """Mode shapes on the section, waves over nodal diameters, and over speed."""
+    """Draw mode shapes on the section, waves over nodal diameters, and over speed.
+
+    Parameters
+    ----------
+    modes : pd.DataFrame
+        Table `modes` of stage gear_bodies.
+    crossings : pd.DataFrame
+        Table `crossings` of stage gear_bodies.
+    shapes : Mapping[str, AnyArray]
+        Arrays of stage gear_bodies (see `facegear.gear_body.tables.shape_arrays`).
+    last_rpm : float
+        Last speed of the pinions, rpm.
+    teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     campbell = body_campbell(modes, crossings, last_rpm, teeth)
     return body_shapes(modes, shapes), body_waves(modes), campbell

@@ -15,12 +15,38 @@ ORDERS_SHOWN = 3
 
 
 def figures(orders: pd.DataFrame, over_speed: pd.DataFrame) -> tuple[Figure, ...]:
-    """The figure."""
+    """Draw the figure of the orders.
+
+    Parameters
+    ----------
+    orders : pd.DataFrame
+        Table `orders` of stage shaft_orders.
+    over_speed : pd.DataFrame
+        Table `over_speed` of stage shaft_orders.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figure.
+    """
     return (shaft_order_figure(orders, over_speed),)
 
 
 def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure:
-    """Above the largest force of all meshes at each order, below the largest orders over speed."""
+    """Draw above the largest force of all meshes at each order, below the largest orders over speed.
+
+    Parameters
+    ----------
+    orders : pd.DataFrame
+        Table `orders` of stage shaft_orders.
+    over_speed : pd.DataFrame
+        Table `over_speed` of stage shaft_orders.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     above: list[Curve] = []
     below: list[Curve] = []
     for gear, colour in GEARS.items():

@@ -59,7 +59,18 @@ WORDS = {
 
 
 def in_words(quantity: str) -> str:
-    """A column of the table of samples as an axis label."""
+    """Return a column of the table of samples as an axis label.
+
+    Parameters
+    ----------
+    quantity : str
+        Name of the column.
+
+    Returns
+    -------
+    str
+        The label.
+    """
     return axis_of(quantity).label
 
 
@@ -82,14 +93,38 @@ def axis_of(quantity: str) -> Axis:
 
 
 def worst_first(percentiles: pd.DataFrame) -> list[str]:
-    """Path factors by their 99th percentile, the largest first, then what comes once a machine."""
+    """Sort path factors by their 99th percentile, the largest first, then what comes once a machine.
+
+    Parameters
+    ----------
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+
+    Returns
+    -------
+    list[str]
+        Names of the quantities.
+    """
     top = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
     factors = top[top.index.str.startswith("k_gamma")].sort_values(ascending=False, kind="stable")
     return [*factors.index[:MAX_PANELS], *(name for name in ONCE if (percentiles["quantity"] == name).any())]
 
 
 def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Figure:
-    """Share of the samples above each value, one panel a quantity, with its percentiles."""
+    """Draw the share of the samples above each value, one panel a quantity, with its percentiles.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table `samples` of stage tolerances.
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     names = worst_first(percentiles)
     up = Axis("", "", low=0.0, high=100.0)
     panels = [
@@ -112,7 +147,22 @@ def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Fig
 
 
 def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame) -> Figure:
-    """Which cause decides: total Sobol indices where they were computed, else rank correlations."""
+    """Draw which cause decides: total Sobol indices where they were computed, else rank correlations.
+
+    Parameters
+    ----------
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+    importance : pd.DataFrame
+        Table `importance` of stage tolerances.
+    indices : pd.DataFrame
+        Table `indices` of stage tolerances.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     table, value = _sizes(importance, indices)
     quantities = worst_first(percentiles)
     force = [
@@ -152,7 +202,24 @@ def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indic
 def scatter_figure(
     samples: pd.DataFrame, percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame
 ) -> Figure:
-    """The worst path's factor against the two causes that matter most for it."""
+    """Draw the worst path's factor against the two causes that matter most for it.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table `samples` of stage tolerances.
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+    importance : pd.DataFrame
+        Table `importance` of stage tolerances.
+    indices : pd.DataFrame
+        Table `indices` of stage tolerances.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     name = (worst_first(percentiles) or [""])[0]
     table, _ = _sizes(importance, indices)
     quantity_rows = table[table["quantity"] == name].sort_values("size", ascending=False)
@@ -171,10 +238,20 @@ def scatter_figure(
 
 
 def load_map_figure(table: pd.DataFrame) -> Figure:
-    """Median and 99th percentile of the worst path's factor over torque, or over speed for each torque.
+    """Draw median and 99th percentile of the worst path's factor over torque, or over speed for each torque.
 
-    `table`: as of `facegear.stages.tolerances_map`. The worst path is that of the largest 99th percentile;
-    where no meshes share a load, the largest mesh force stands in its place.
+    The worst path is that of the largest 99th percentile; where no meshes share a load, the largest mesh
+    force stands in its place.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `load_map` of stage tolerances_map.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     name = (worst_first(table) or [""])[0]
     quantity_rows = table[table["quantity"] == name]
@@ -230,7 +307,24 @@ def _exceedance(values: Array, percentiles: pd.DataFrame) -> Iterator[Curve | Li
 def figures(
     samples: pd.DataFrame, percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame
 ) -> tuple[Figure, ...]:
-    """Distributions, what matters most, and how."""
+    """Draw distributions, what matters most, and how.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table `samples` of stage tolerances.
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+    importance : pd.DataFrame
+        Table `importance` of stage tolerances.
+    indices : pd.DataFrame
+        Table `indices` of stage tolerances.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return (
         distribution_figure(samples, percentiles),
         importance_figure(percentiles, importance, indices),
@@ -239,5 +333,16 @@ def figures(
 
 
 def map_figures(load_map: pd.DataFrame) -> tuple[Figure, ...]:
-    """K_gamma of the worst path over torque and speed."""
+    """Draw K_gamma of the worst path over torque and speed.
+
+    Parameters
+    ----------
+    load_map : pd.DataFrame
+        Table `load_map` of stage tolerances_map.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return (load_map_figure(load_map),)
