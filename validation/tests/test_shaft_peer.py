@@ -28,7 +28,7 @@ def theirs(case, start):
     "third-party program",
     "ROSS 2.3.0 (docs/measured/shaft_peer.csv, `make peers`)",
     capability="shafts",
-    module="facegear.shafts.condensed",
+    module="facegear.shafts.condensed_shaft",
 )
 def test_a_pinion_gives_way_on_its_shaft_as_in_ross():
     for name, given in SHAFTS.items():
