@@ -99,6 +99,12 @@ def interrupted(command, begun):
     return message.splitlines()
 
 
+def running_in(folder):
+    """Return the commands that name a folder; a process that has ended meanwhile has none."""
+    commands = (one.info["cmdline"] or () for one in psutil.process_iter(["cmdline"]))
+    return [command for command in commands if str(folder) in " ".join(command)]
+
+
 def test_an_interrupted_run_ends_its_jobs_and_says_so_in_one_line(tmp_path):
     """It ended in some 500 lines of tracebacks, the jobs' own among them."""
     config = str(ROOT / "config" / "harmonics_only.yaml")
@@ -107,7 +113,7 @@ def test_an_interrupted_run_ends_its_jobs_and_says_so_in_one_line(tmp_path):
     message = interrupted(Project(tmp_path).command("--configfile", config, "--", target), log)
     assert message[-1] == "the run has ended early; the same command goes on from here"
     assert len(message) <= 5, message
-    assert not [one for one in psutil.process_iter() if str(tmp_path) in " ".join(one.cmdline())]
+    assert not running_in(tmp_path)
     assert not list((tmp_path / "results").rglob(".[0-9]*"))
 
 
