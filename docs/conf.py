@@ -1,4 +1,4 @@
-"""How Sphinx builds the documentation: `make docs`."""
+"""Configuration with which Sphinx builds the documentation: `make docs`."""
 
 import importlib.metadata
 import sys

@@ -21,7 +21,7 @@ from facegear.errors import FacegearError
 from facegear.io import documents, tables
 
 REPEATABLE = 1e-10
-"""What two runs of the same code on the same input may differ by, relative to the largest of the column."""
+"""Difference that two runs of the same code on one input may show, relative to the largest of the column."""
 LEFT_OUT = ("logs", "benchmarks", "figures", "chunks")
 """Folders that hold no answers."""
 UNDETERMINED = ("shapes.csv",)
@@ -52,7 +52,7 @@ CHANGES = (Verdict.MOVED, Verdict.NO_ERROR, Verdict.LABEL, Verdict.GONE, Verdict
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """What was compared.
+    """Result of a comparison of two folders of results.
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ Declaration = TypeVar("Declaration")
 MOTION_COLUMNS = ("class", "motion", "class_before", "class_after")
 """Columns that name a class of motion."""
 REGULAR = "period"
-"""How the name of a class begins whose numbers repeat; the numbers of the others are statistics."""
+"""Prefix of the name of a class whose numbers repeat; the numbers of the other classes are statistics."""
 OPEN_CLASSES = ("not settled", "undecided")
 """Classes that leave open which irregular motion it is: they contradict none of the others."""
 AFTER_IRREGULAR = "after_irregular"

@@ -134,7 +134,7 @@ class GearBody(Section):
 
 
 class Position(Section):
-    """Where a pinion's bearings stand beside their nominal place."""
+    """Position of a pinion's bearings relative to their nominal place."""
 
     x: float = Field(0.0, ge=-5000, le=5000, description="as the upper gear's teeth move")
     y: float = Field(0.0, ge=-5000, le=5000, description="towards the upper gear")

@@ -9,7 +9,7 @@ from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Se
 
 
 class RefinementSection(Section):
-    """How often the layer of elements under the flank is cut."""
+    """Subdivision of the layer of elements under the flank."""
 
     profile: int = Field(default=3, ge=1, le=32, description="across the profile")
     width: int = Field(default=1, ge=1, le=16, description="along the face")
@@ -18,7 +18,7 @@ class RefinementSection(Section):
 
 
 class SectorSection(Section):
-    """How much of each gear is modelled."""
+    """Modelled part of each gear."""
 
     pinion_teeth: Literal["full"] | Annotated[int, Field(ge=5, le=500)] = Field(
         default="full", description="teeth of the pinion that are modelled"

@@ -33,7 +33,7 @@ class CsvTable(NamedTuple):
 
 
 class CsvFault(Exception):
-    """Why a file cannot be used, with the line where there is one; the text is one line."""
+    """Reason why a file cannot be used, with the line where there is one; the text is one line."""
 
 
 def read_numbers(path: str | Path, columns: Sequence[str], unread: Sequence[str] = ()) -> list[CsvRow]:

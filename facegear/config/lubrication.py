@@ -44,7 +44,7 @@ class DoleschelConstants(Section):
 
 
 class FrictionSection(Section):
-    """How the coefficient of friction follows from load, speed, oil and roughness."""
+    """Coefficient of friction as a function of load, speed, oil and roughness."""
 
     model: Literal[
         "constant", "schlenk", "iso_6336_20", "iso_6336_22", "benedict_kelley", "xu", "doleschel"
@@ -239,7 +239,7 @@ def limits_of(section: LubricationSection) -> Limits:
 
 
 def _source_of_contact_temperature(section: LubricationSection) -> str:
-    """Where the allowed contact temperature is from, in words."""
+    """Source of the allowed contact temperature, in words."""
     if section.scuffing.temperature_c:
         return "lubrication.scuffing.temperature_c"
     if section.oil.scuffing_temperature_c:

@@ -31,7 +31,7 @@ class SizesSection(Section):
 
 
 class Mesh(Section):
-    """How fine both bodies are meshed."""
+    """Mesh resolution of both bodies."""
 
     resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = Field(
         default="coarse", description="sizes that follow from the module, or own sizes"

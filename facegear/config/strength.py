@@ -110,7 +110,7 @@ class Strength(Section):
                 refuse(key, getattr(self, key), "left out where load_factors is machine")
 
     def _check_counted(self) -> None:
-        """How flanks are loaded is either given or counted in the machine."""
+        """Check that the loading of flanks is either given or counted in the machine."""
         for name in BODIES:
             for key in ("cycles_per_turn", "both_ways"):
                 if self.load_factors == "machine" and (value := getattr(getattr(self, name), key)):

@@ -76,4 +76,4 @@ TOOTH_ERROR_ARRAYS = {f"{body}_{side}_m": (None,) for body in BODIES for side in
 turns, m."""
 
 EDGES = ("inside", "pinion tip", "gear tip", "end")
-"""Where a loaded plane's strip of contact lies: `where` of the line loads numbers these."""
+"""Locations of a loaded plane's strip of contact; `where` of the line loads numbers these."""

@@ -10,7 +10,7 @@ Element = Literal["hex27", "hex8", "tet4"]
 
 @dataclass(frozen=True)
 class Refinement:
-    """How often the elements under the flank are cut: across the profile, along the width and in depth.
+    """Subdivision of the elements under the flank: across the profile, along the width and in depth.
 
     `grading` is the ratio of neighbouring sizes in depth, the smallest at the surface.
     """
@@ -23,7 +23,7 @@ class Refinement:
 
 @dataclass(frozen=True)
 class Sector:
-    """How much of each gear is modelled: all teeth (None) or so many, and what holds the cut faces then."""
+    """Modelled part of each gear: all teeth (None) or so many, and then the support of the cut faces."""
 
     pinion_teeth: int | None = None
     face_gear_teeth: int | None = None

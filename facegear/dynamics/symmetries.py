@@ -364,7 +364,7 @@ def _near(first: Array, second: Array, scale: float = 0.0) -> AnyArray:
 
 
 def _curves_agree(curves: Array, other_curves: Array, scale: float = 0.0) -> AnyArray:
-    """Which curves (..., contacts) agree with which other curves, (contacts, contacts)."""
+    """Mask (contacts, contacts) of the curves (..., contacts) and other curves that agree with each other."""
     first, second = (values.reshape(-1, values.shape[-1]) for values in (curves, other_curves))
     size = max(np.abs(first).max(initial=0.0), scale, 1e-300)
     return np.asarray(np.abs(first[:, :, None] - second[:, None]).max(axis=0) <= SYMMETRIC * size)

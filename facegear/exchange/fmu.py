@@ -55,7 +55,7 @@ class Variable:
 
     @property
     def causality(self) -> str:
-        """As FMI calls it."""
+        """Name of the variable's causality in FMI."""
         return "output" if self.start is None else "input"
 
 

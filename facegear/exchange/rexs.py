@@ -173,7 +173,7 @@ def _refuse_other_forms(path: Path) -> None:
 
 
 class _Fault(Exception):
-    """Why a REXS file cannot be used, in one line without its name."""
+    """Reason why a REXS file cannot be used, in one line without its name."""
 
 
 def _unit(root: Xml.Element) -> Unit:

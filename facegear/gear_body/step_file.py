@@ -34,7 +34,7 @@ DECIMALS = 9
 
 
 class StepFault(Exception):
-    """Why a file cannot be used; the text is one line."""
+    """Reason why a file cannot be used; the text is one line."""
 
 
 def read_section(path: str | Path) -> list[tuple[float, float]]:

@@ -16,7 +16,7 @@ PAIRS = np.arange(-2, 3)
 _ACROSS, _ALONG = (part.ravel() for part in np.meshgrid(*2 * [np.linspace(-1.0, 1.0, 5)], indexing="ij"))
 """Places (25,) of a grid's points in half widths, across the roll and along y."""
 _ON_BORDER = np.stack([np.abs(_ACROSS) == 1.0, np.abs(_ALONG) == 1.0], axis=-1)
-"""Which of the points (25, 2) are on the border, both ways."""
+"""Mask (25, 2) of the points that are on the border, across the roll and along y."""
 _SHRINK, _GROWTH, _MAX_STEPS = 0.55, 1.5, 60
 _GAIN = 1e-13
 """By how much (m) a gap must be less to count as such."""

@@ -97,7 +97,7 @@ class PairNumbers:
 
 @dataclass(frozen=True)
 class ConjugateContact:
-    """Where flanks that go on beyond their edges touch on the drive side, the same at every pinion angle.
+    """Contact of the drive flanks, extended beyond their edges; it is the same at every pinion angle.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How transmission error and path of the exact unloaded contact change with the pose of a pair.
+"""Derivatives of transmission error and path of the exact unloaded contact by the pose of a pair.
 
 The transmission error is stationary in the slope psi of the common normal, so that its derivatives are those
 at constant psi: by offset and axial shift they are the normal itself. The path follows psi, whose derivatives

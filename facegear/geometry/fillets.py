@@ -1,4 +1,4 @@
-"""How sharp the fillets of both gears are."""
+"""Smallest radius of curvature of the fillets of both gears."""
 
 import numpy as np
 

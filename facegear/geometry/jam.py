@@ -1,4 +1,4 @@
-"""How far the gear can turn between both sides of the teeth, fillets, tips and lands included."""
+"""Free rotation of the gear between both sides of the teeth, with fillets, tips and lands included."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Where a face gear's teeth can exist: inner radius from undercut, outer radius from pointing."""
+"""Radial limits of a face gear's teeth: inner radius from undercut, outer radius from pointing."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -18,8 +18,8 @@ FILLET_SAMPLES = 2000
 
 @dataclass(frozen=True)
 class GearHits:
-    """Where the normals of n pinion points meet a gear tooth at p placements, all (p, n), nan where not; or
-    (n,) of points in one placement each.
+    """Hits of the normals of n pinion points on a gear tooth at p placements, all (p, n), nan where none; or
+    (n,) for points in one placement each.
 
     gap (m); radius: gear radius (m). One of three says how far from the flank's tip edge: on the flank
     `flank`, 0..1 of its roll angles there, on the fillet `fillet`, 0..1 of its normal's turn from flank to
@@ -35,7 +35,7 @@ class GearHits:
 
 @dataclass(frozen=True)
 class EdgeFeet:
-    """Where pinion normals through n points of the gear's tip edge stand on p pinion teeth, all (p, n).
+    """Feet, on p pinion teeth, of the pinion normals through n points of the gear's tip edge, all (p, n).
 
     gap (m), inf where there is none; lever_arm (m) of the normal about the pinion's axis; y (m). Either
     `flank`, 0..1 in the square of the roll angle from tip to fillet, or `fillet`, the angle gamma (rad)
@@ -156,7 +156,7 @@ def tip_edge_feet(
 
 
 def _flank_feet(design: PairDesign, section: Array) -> EdgeFeet:
-    """Where the involute's normals through points (..., 3) meet it.
+    """Find the feet of the involute's normals through points (..., 3).
 
     All normals touch the base circle, so that the distance along them is that of two parallel involutes.
     """

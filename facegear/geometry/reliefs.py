@@ -1,4 +1,4 @@
-"""How much a modification takes off by the distance from where it is measured."""
+"""Depth that a modification removes, as a function of the distance from where it is measured."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""How load sharing answers to every single error, and to the stiffness of the bearings."""
+"""Sensitivity of load sharing to every single error, and to the stiffness of the bearings."""
 
 from collections.abc import Iterator
 from dataclasses import replace

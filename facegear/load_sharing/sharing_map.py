@@ -32,7 +32,7 @@ FLOATING: dict[str, tuple[Side, ...]] = {
     "lower": (Side.LOWER,),
     "both": (Side.LOWER, Side.UPPER),
 }
-"""Which face gears float on each curve of the idlers."""
+"""Face gears that float on each curve of the idlers."""
 WANDERS = 1e-3
 """Way of a floating gear in its plane, m, beyond which its meshes do not hold it: far more than backlash."""
 PERCENT_COLUMNS = tuple(f"k_gamma_p{level:g}" for level in LEVELS)

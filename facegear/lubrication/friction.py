@@ -34,7 +34,7 @@ LIMIT_SOURCES = {
     ("benedict_kelley", SLIDING): "this program: the logarithm of the formula has no bound on the pitch line",
     ("xu", SLIDE_TO_ROLL): "Xu (2005), by a public implementation",
 }
-"""Where each limit of each model is from, and whether its document was seen."""
+"""Source of each limit of each model, and whether its document was seen."""
 
 SMALLEST_SLIDE = 1e-3
 """Sliding over u1 + u2 below which Benedict and Kelley's logarithm, infinite on the pitch line, is cut."""

@@ -22,7 +22,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class SectionPlan:
-    """Where the outline's segments begin and end in sigma, and the topology.
+    """Start and end in sigma of each segment of the outline, and the topology.
 
     rows: depth t at which the first rows end, (n,); fillet_rows: those below the fillet, (n,).
     """

@@ -1,4 +1,4 @@
-"""How fine a mesh is: three lengths, what the fillet takes for itself, and the named resolutions."""
+"""Element sizes of a mesh: three lengths, separate sizes at the fillet, and the named resolutions."""
 
 from dataclasses import dataclass, replace
 

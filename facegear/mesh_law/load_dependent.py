@@ -33,7 +33,7 @@ class LoadDependentLaw:
 
     @cached_property
     def levels(self) -> Array:
-        """Where the pieces begin, (L, M)."""
+        """Amounts (L, M) at which the pieces begin, m."""
         return self._levels[self.kind].T
 
     @property

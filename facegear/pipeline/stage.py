@@ -268,7 +268,7 @@ class Stage:
 
     @property
     def function(self) -> str:
-        """Where the stage stands, as ``module:function``."""
+        """Location of the stage's function, as ``module:function``."""
         return f"facegear.stages.{self.name}:{self.name}"
 
     @property

@@ -49,7 +49,7 @@ def campbell(
 
 
 def _on_line(orders: pd.Series) -> pd.Series:
-    """Which orders are multiples of half the mesh frequency; others belong to motion that is not locked."""
+    """Mark orders that are multiples of half the mesh frequency; others belong to motion that is not locked."""
     return (2.0 * orders - (2.0 * orders).round()).abs() < 1e-9
 
 

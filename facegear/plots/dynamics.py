@@ -14,7 +14,7 @@ from facegear.plots.sweep import mesh_sweeps, translations
 
 @dataclass(frozen=True)
 class DrawnMachine:
-    """What the figures show of a machine: pinions (names), those with a panel, sides of its gears, teeth."""
+    """Machine as figures show it: pinions (names), those with a panel, sides of its gears, teeth."""
 
     pinions: tuple[str, ...]
     pinions_shown: tuple[str, ...]

@@ -24,9 +24,9 @@ HALF_FACE = 0.06
 """Half of the drawn face width over the mesh radius."""
 
 LABEL = 1.16
-"""Where the pinions' labels begin, over the mesh radius."""
+"""Distance from the gear's centre at which the pinions' labels begin, over the mesh radius."""
 REACH, BELOW, TITLE = 2.0, 1.75, 1.8
-"""What a panel shows beside and below the gear, and where its title stands, over the mesh radius."""
+"""Extent of a panel beside and below the gear's centre, and height of its title, over the mesh radius."""
 LETTERS = 13
 """Letters of a pinion's name in one line."""
 BESIDE = 0.4

@@ -11,7 +11,7 @@ from facegear.plots.colours import BLUE, ORANGE, shades
 from facegear.plots.description import Axis, Curve, Figure, Line, LineStyle, Look, Panel
 
 PART_SHOWN = 0.02
-"""Of the largest stress: the passage is drawn where more is felt."""
+"""Fraction of the largest stress above which the passage is drawn."""
 BODIES = {"pinion": "Pinion", "face_gear": "Face gear"}
 COLOURS = {"pinion": BLUE, "face_gear": ORANGE}
 LINES: Mapping[str, LineStyle] = {

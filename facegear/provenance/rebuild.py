@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 DEFAULT_SNAKEFILES = ("Snakefile", "workflow/Snakefile")
-"""Where Snakemake looks by itself, in the working directory."""
+"""Paths at which Snakemake looks by itself, in the working directory."""
 
 
 def rebuild_command(

@@ -28,7 +28,7 @@ NON_LIMITING_KINDS = (Kind.GRAZE, Kind.NEUTRAL)
 
 
 class BranchEnd(StrEnum):
-    """Why a branch ends."""
+    """Reason why a branch ends."""
 
     LIMIT = "limit of the parameter"
     CLOSED_LOOP = "closed"

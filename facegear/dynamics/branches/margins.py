@@ -25,7 +25,7 @@ ENDING = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 
 @dataclass(frozen=True, eq=False)
 class StabilityLimit:
-    """Where a stable motion first loses its stability or its existence when one parameter changes.
+    """Limit at which a stable motion first loses its stability or its existence when one parameter changes.
 
     Attributes
     ----------

@@ -57,7 +57,7 @@ class SweptMotion:
 
     @property
     def origin(self) -> str:
-        """Where the motion was found, in words."""
+        """Sweep direction and speed at which the motion was found, in words."""
         return f"sweep {self.direction}, {self.speed_rpm:.6g} rpm"
 
 

@@ -57,7 +57,7 @@ class Coupling:
         return Coupling(*(basis.T @ matrix @ basis for matrix in self._matrices))
 
     def linked(self, part: float) -> Mask:
-        """Which coordinates some matrix couples by more than a part of its largest entry.
+        """Return the pairs of coordinates that some matrix couples by more than a part of its largest entry.
 
         Parameters
         ----------

@@ -232,7 +232,7 @@ def mesh_fractions(system: System, fractions: Array, contact_deflections: Array)
 
 
 def _never_pressed(deepest: Array, fractions: Array, samples: int) -> Mask:
-    """Which contacts touch for longer than a sample without ever being compressed by more than rounding.
+    """Find contacts that touch for longer than a sample but are never compressed by more than rounding.
 
     `deepest` (m,) is the largest height of the samples beyond the edge; `fractions` (m,) is the time in
     contact.

@@ -52,7 +52,7 @@ class Orbit:
 
     @property
     def is_off_circle(self) -> Mask:
-        """Which multipliers (2 n,) lie off the unit circle: all but those of neutral directions."""
+        """Mask (2 n,) of the multipliers off the unit circle: all but those of neutral directions."""
         return np.abs(1.0 - np.abs(self.multipliers)) > UNIT_TOLERANCE
 
     @property

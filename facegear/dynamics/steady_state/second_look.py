@@ -36,7 +36,7 @@ def disagreeing(
     states: Array,
     before: int,
 ) -> RunPlan[SettlingResult | None]:
-    """Where another start (2, n) settles if that takes the class of the first back; None if the class holds.
+    """Return the motion of another start (2, n) if it refutes the class of the first; None if the class holds.
 
     A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another
     periodic motion is looked at `second_looks` times, and on, up to MAX_LOOKS times if that is more, until
@@ -103,6 +103,6 @@ def wandering(integrator: Integrator, settled: SettlingResult, period: int) -> i
 
 
 def _large(integrator: Integrator, settled: SettlingResult, period: int) -> Mask:
-    """Where the change over a period is not small, at the end of each mesh period that is kept."""
+    """Mask of the kept mesh periods at whose end the change over a period is not small."""
     ends = settled.ends
     return largest(integrator, ends[period:] - ends[: len(ends) - period]) > SMALL

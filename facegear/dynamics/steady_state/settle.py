@@ -49,7 +49,7 @@ MAX_KICKS = 2
 LONGER = 4
 """Factor on the maximum number of periods of a run that comes nearer and nearer."""
 CREEP = 0.01
-"""Where Newton's method finds no orbit, the change over a period must fall to this fraction of the goal."""
+"""Fraction of the goal to which the change over a period must fall where Newton's method finds no orbit."""
 NOISE, MAX_SPECTRAL_RADIUS = 50.0, 0.95
 """Distance, in tolerances, by which new steps in each period may move a run; spectral radius of an orbit that
 holds a run this near. Along a neutral direction the error of the steps accumulates.
@@ -58,7 +58,7 @@ holds a run this near. Along a neutral direction the error of the steps accumula
 
 @dataclass(frozen=True, eq=False)
 class SettlingResult:
-    """Where a run came to rest.
+    """Motion in which a run settled.
 
     Attributes
     ----------

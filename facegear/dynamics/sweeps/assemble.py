@@ -24,7 +24,7 @@ class SeamKind(StrEnum):
 
 @dataclass(frozen=True)
 class Seam:
-    """Where two chunks meet, and how many speeds had to be run again from the end of the first.
+    """Junction of two chunks, and the number of speeds that had to be run again from the end of the first.
 
     With `irregular`, both are in irregular motion there, whose state is never forgotten; the chunks agree in
     RMS only.

@@ -10,7 +10,7 @@ SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
 ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}
 SWEEP: Needs = {"sweep": "dynamics.sweep"}
 OPTIONS = ComputedValue(asked.load_sharing_options, ("load_sharing",))
-"""How load sharing is averaged."""
+"""Settings by which load sharing is averaged."""
 SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": OPTIONS}
 
 FLANKS = {name: From("compliance", "arrays", wildcards={"body": name}) for name in asked.BODIES}

@@ -1,4 +1,4 @@
-"""How meshes share the load."""
+"""Stages of load sharing among meshes."""
 
 from facegear.pipeline import asked, studies
 from facegear.pipeline.rows.shared import (
