@@ -29,7 +29,7 @@ TABLE = ROOT / "docs" / "measured" / "report_pages.csv"
 A4: ViewportSize = {"width": 710, "height": 1030}
 """Pixels of a page of A4 within its margins."""
 TIMES = 5
-"""How often a page is opened for the times printed."""
+"""Number of times that a page is opened for the times printed."""
 OPEN_FRACTION, VIBRATION = "open_fraction", "deflection_ac_rms_um"
 """Quantities of a sweep that the report reads: of all meshes, and of the one that vibrates most."""
 MANIFEST_KEYS = ("rule", "summary", "seconds", "made_at", "code", "versions")

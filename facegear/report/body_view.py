@@ -13,11 +13,11 @@ from facegear.report.pair_view import COLOURS
 TURN_DEG, PIECES = 5.0, 100
 """A point of the outline is drawn where it turns by more, and otherwise at that many even distances."""
 LARGEST_CODE = 32767
-"""What the largest motion of a mode is stored as."""
+"""Integer that stores the largest motion of a mode."""
 SWING = 0.08
 """Largest motion drawn at first, in the outer radius."""
 FACTOR = 2.5
-"""How many times that a reader may ask for."""
+"""Largest motion that a reader may choose, as a multiple of SWING."""
 
 
 def body_view(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> View | None:

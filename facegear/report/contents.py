@@ -85,7 +85,7 @@ PAPER_NUMBERS = {
     "gear_sweep": 11,
     "mesh_sweep": 12,
 }
-"""Which figure of the reproduced paper a figure stands for; those of studies stand in the config."""
+"""Number of each figure in the reproduced paper, by name; the config gives those of studies."""
 
 KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions"}
 """Kinds of load-sharing groups in words."""

@@ -8,7 +8,7 @@ SOURCES = {
     "fem_scaled": "computed by finite elements and scaled to a given mean",
     "harmonics": "given as harmonics",
 }
-"""Where the mesh stiffness is from, in words, by the value of `mesh_stiffness.source`."""
+"""Source of the mesh stiffness in words, by the value of `mesh_stiffness.source`."""
 
 
 def inputs_in_words(values: Mapping[str, Any]) -> list[str]:

@@ -18,7 +18,7 @@ COLOURS = (
 )
 """Matplotlib's plasma at nine even places."""
 LINE = ("torque_n_m", "position", "tooth", "plane")
-"""What says which line of contact is meant, and where on it."""
+"""Keys that identify a line of contact and a place on it."""
 PROFILE, WIDTH = 17, 7
 """Points of each drawn patch."""
 SHOWN_GEAR_TEETH = 13
@@ -36,14 +36,14 @@ QUANTITIES = (
         "help": "Load per millimetre of face width, edges included",
     },
 )
-"""What the colours may show."""
+"""Quantities that the colours may show."""
 ROOT_STRESS = {
     "key": "root_stress",
     "name": "root stress",
     "unit": "MPa",
     "help": "Tension down the fillets; grey where they are pressed",
 }
-"""What they show as well where root stress was computed."""
+"""Quantity that the colours may also show where root stress was computed."""
 
 FRICTION = (
     {
@@ -59,7 +59,7 @@ FRICTION = (
         "help": "Flash temperature: largest across each line of contact; grey where an edge carries the load",
     },
 )
-"""What they show as well where friction was computed."""
+"""Quantities that the colours may also show where friction was computed."""
 
 
 def pair_view(
@@ -124,7 +124,7 @@ def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, An
 
 
 def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
-    """Where the gauges of a tooth are, and the number of the first tooth of a passage."""
+    """Positions of the gauges of a tooth, and the number of the first tooth of a passage."""
     position = stress[f"{name}_position_m"]
     return {
         "shape": list(position.shape[1:3]),

@@ -5,7 +5,7 @@ from string import ascii_letters, digits
 from urllib.parse import quote
 
 DECIMALS = 2
-"""Of a coordinate (1/72 inch) of a drawing on the page: a hundredth is not seen."""
+"""Decimal places of a coordinate (1/72 inch) of a drawing on the page: a hundredth is not seen."""
 UNESCAPED_CHARACTERS = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
 """Characters that a data URI between single quotes may hold as they are."""
 GAPS = re.compile(r"\s+")
@@ -24,7 +24,7 @@ def data_uri(still: str) -> str:
 
 
 def shortened(svg: str) -> str:
-    """The same drawing without its metadata, with rounded coordinates and without needless gaps."""
+    """Return the drawing without its metadata, with rounded coordinates and without needless gaps."""
     drawing = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
     drawing = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _round_numbers, drawing)
     return GAPS.sub(" ", re.sub(r">\s+<", "><", drawing)).strip()

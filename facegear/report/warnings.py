@@ -17,7 +17,7 @@ POSITIONS_MATTER = 0.05
 MOST_NAMED = 3
 """Meshes that a line names; of more it says how many."""
 WRONG, WITHIN_LIMITS, GIVEN_INPUT = 0, 1, 2
-"""How serious a warning is: numbers do not hold; they hold within limits; an input was given or chosen."""
+"""Severity of a warning: numbers do not hold; they hold within limits; an input was given or chosen."""
 SECTIONS = {
     "tooth_pair": "Teeth",
     "mesh": "Contact",

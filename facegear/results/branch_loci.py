@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class BranchLociResult(Result):
-    """Where motions end or double their period in the plane of speed and a second parameter."""
+    """Loci where motions end or double their period, in the plane of speed and a second parameter."""
 
     STAGE: ClassVar = "branches_loci"
 

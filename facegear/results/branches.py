@@ -64,7 +64,7 @@ class BranchesResult(Result):
         return self.content["special"].copy()
 
     def margins(self) -> pd.DataFrame:
-        """How far each stable motion at the nominal speed is from its end, in speed and in torque.
+        """Margin of each stable motion at the nominal speed to its end, in speed and in torque.
 
         Columns, among others: branch, parameter, margin.
 

@@ -16,7 +16,7 @@ Torques = float | Iterable[float] | None
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DisplacedContact:
-    """Where both flanks of a mesh meet, and by how much they close, with both of its bodies displaced.
+    """Contact of both flanks of a mesh, its two bodies displaced: where they meet, how much they close.
 
     Attributes
     ----------

@@ -53,7 +53,7 @@ class FrictionResult(Result):
         return self.content["positions"].copy()
 
     def limits(self) -> pd.DataFrame:
-        """How much of the loss lies outside each limit of the friction model.
+        """Percentage of the loss that lies outside each limit of the friction model.
 
         Columns: friction_model, limit, limit_source, torque_n_m, loss_outside_percent.
 

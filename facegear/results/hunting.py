@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class HuntingResult(Result):
-    """How the machine at rest shares its load, tooth by tooth, until every pair of teeth has met."""
+    """Load sharing of the machine at rest, tooth by tooth, until every pair of teeth has met."""
 
     STAGE: ClassVar = "hunting"
 
@@ -127,7 +127,7 @@ class SensitivityResult(Result):
 
 
 class FollowingResult(Result):
-    """How the running machine shares its load while runouts and pitch deviations turn."""
+    """Load sharing of the running machine while runouts and pitch deviations turn."""
 
     STAGE: ClassVar = "following"
 

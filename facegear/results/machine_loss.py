@@ -58,7 +58,7 @@ class MachineLossResult(Result):
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """Where loss arises and heat goes at the nominal load.
+        """Loss of every mesh and heat of every body at the nominal load.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""Where the machine's own forces put the teeth of every mesh."""
+"""Position of the teeth of every mesh under the machine's own forces."""
 
 from typing import ClassVar
 

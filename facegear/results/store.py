@@ -1,4 +1,4 @@
-"""Where the results of a machine come from: known in this session, else stored and current, else computed."""
+"""Source of a machine's results: known in this session, else stored and current, else computed."""
 
 import json
 import os

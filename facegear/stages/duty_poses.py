@@ -1,4 +1,4 @@
-"""Where the load of every bin of the duty cycle puts the teeth of every mesh."""
+"""Position of the teeth of every mesh under the load of every bin of the duty cycle."""
 
 import numpy as np
 import pandas as pd

@@ -1,4 +1,4 @@
-"""How teeth that deviate from the others of their gear disturb the mesh over the hunting cycle."""
+"""Disturbance of the mesh over the hunting cycle by teeth that deviate from the others of their gear."""
 
 from math import lcm
 

@@ -1,4 +1,4 @@
-"""How often, and by how much, each flank of every gear is loaded in the bins of a duty cycle."""
+"""Number and size of the loads on each flank of every gear, in the bins of a duty cycle."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

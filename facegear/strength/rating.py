@@ -143,7 +143,7 @@ class FailureRating:
 
     @property
     def reason(self) -> str:
-        """Why it is red: the damage with the life that follows, or the safety that lacks; empty if green."""
+        """Reason for red: the damage with the life that follows, or the safety that lacks; empty if green."""
         if self.verdict == "green":
             return ""
         harm = float(self.damage.sum())

@@ -221,7 +221,7 @@ def _sections_with_the_largest(stress: Array) -> Array:
 
 
 def _may_be_largest(low: Array, high: Array) -> Mask:
-    """Which of the lines from `low` to `high` (n,) are anywhere above those that are largest at an end.
+    """Mask of the lines from `low` to `high` (n,) that rise anywhere above those that are largest at an end.
 
     Two lines bound the largest from below by a kinked line, so that it is enough to look at the kink.
     """

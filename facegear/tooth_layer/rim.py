@@ -1,4 +1,4 @@
-"""How thick the rim is that carries the teeth."""
+"""Thickness of the rim that carries the teeth."""
 
 import numpy as np
 

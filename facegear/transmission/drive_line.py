@@ -77,7 +77,7 @@ class DriveLine:
 
     @property
     def size(self) -> int:
-        """How many coordinates it adds."""
+        """Number of coordinates that the drive line adds."""
         return 2 * len(self.tilting) + sum(len(chain) for chain in self.masses.values())
 
     def tilts(self, pinion: int) -> Integers:

@@ -27,7 +27,7 @@ class Role(StrEnum):
 
 
 class Side(StrEnum):
-    """Which face gear: `lower` (6 in the paper) or `upper` (7, the output)."""
+    """Face gear: `lower` (6 in the paper) or `upper` (7, the output)."""
 
     LOWER = "lower"
     UPPER = "upper"
@@ -102,7 +102,7 @@ class FaceGear:
 
 
 class Kinematics(Protocol):
-    """How motions of the bodies deflect the meshes, and at what arms forces of the meshes turn the bodies."""
+    """Deflection of the meshes by motions of the bodies, and arms at which mesh forces turn the bodies."""
 
     @property
     def name(self) -> str:
@@ -260,7 +260,7 @@ class Layout:
 
     @cached_property
     def first_tilts(self) -> dict[int, int]:
-        """Where the two tilts of every gear that may rock begin among the degrees of freedom, by gear."""
+        """Index among the degrees of freedom of the first of two tilts, for every gear that may rock."""
         return {g: DOF_PER_BODY * len(self.bodies) + 2 * k for k, g in enumerate(self.tilting)}
 
     @cached_property
@@ -276,7 +276,7 @@ class Layout:
 
     @property
     def spins(self) -> slice:
-        """Where the rotation of every body about its own axis stands among the degrees of freedom."""
+        """Slice of the degrees of freedom with the rotation of every body about its own axis."""
         return slice(3, DOF_PER_BODY * len(self.bodies), DOF_PER_BODY)
 
     @cached_property
@@ -303,8 +303,8 @@ class Layout:
 
     @cached_property
     def contacts(self) -> int:
-        """How many contacts move by themselves: both flanks of every mesh, which share one line of action and
-        are one contact in equation (13) as printed. Drive flanks come first.
+        """Number of contacts that move by themselves: both flanks of every mesh, which share one line of
+        action and are one contact in equation (13) as printed. Drive flanks come first.
         """
         return len(self.meshes) * (2 if self.kinematics.flanks_apart else 1)
 

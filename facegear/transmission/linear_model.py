@@ -131,7 +131,7 @@ class LinearModel:
 
     @property
     def ring_coordinates(self) -> Integers:
-        """Which coordinates are x and y of each bearing with clearance, (R, 2)."""
+        """Indices of the coordinates x and y of each bearing with clearance, (R, 2)."""
         return self.translations[self.rings.body, :2]
 
     def momentum(self, velocities: AnyArray) -> AnyArray:

@@ -1,7 +1,7 @@
-"""Which flanks and bearings with clearance the mean torques press together, and which they leave apart.
+"""Flanks and bearings with clearance that the mean torques press together, and those that they leave apart.
 
-Decided by load: what carries less than NOTHING of the largest flank force is open, what carries more than
-LOADED is closed. In between rounding and the last digits of a torque would decide: `undecided`.
+The load decides: a contact with at most OPEN_SHARE of the largest flank force is open, one with at least
+CLOSED_SHARE is closed. In between, rounding and the last digits of a torque would decide: `undecided`.
 """
 
 from dataclasses import dataclass

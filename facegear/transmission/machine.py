@@ -198,7 +198,7 @@ class Machine:
 
     @property
     def torque_coordinates(self) -> Integers:
-        """Which coordinate the torque of each body turns, (bodies,)."""
+        """Index of the coordinate that the torque of each body turns, (bodies,)."""
         if self.drive_line is not None:
             return self.drive_line.torque_coordinates()
         return np.arange(self.lumped_model.size)[self.layout.spins]

@@ -1,4 +1,4 @@
-"""When each mesh is at which place of its cycle: from the places of the teeth, for any angle."""
+"""Phase of each mesh in its cycle, from the places of the teeth, for any angle."""
 
 from enum import StrEnum
 

@@ -152,7 +152,7 @@ class LoadedMachine:
 
     @property
     def contact_mask(self) -> Mask:
-        """Which flanks carry, (2 meshes,)."""
+        """Mask of the flanks that carry load, (2 meshes,)."""
         return np.asarray(np.diagonal(self.springs) > 0.0)
 
     def forces(self, orders: TurnOrders, speed_rpm: float, pinion_teeth: int) -> ComplexArray:

@@ -1,4 +1,4 @@
-"""How gears deflect their meshes: the kinematics of the teeth themselves."""
+"""Kinematics of the teeth themselves, by which gears deflect their meshes."""
 
 from dataclasses import dataclass
 

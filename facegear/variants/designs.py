@@ -136,7 +136,7 @@ def _goal(
 
 
 def _jumps(section: Search) -> tuple[JumpRange | None, JumpRange | None]:
-    """Where jumps are looked for as designed, and in the samples; None where no goal asks."""
+    """Ranges in which jumps are looked for, as designed and in the samples; None where no goal asks."""
     goals = (*section.objectives, *section.constraints)
     percentile_goals = {
         goal.percentile is not None for goal in goals if any(map(is_jump_quantity, goal.quantities))

@@ -109,7 +109,7 @@ class SampledMachine(VariedMachine):
 
     @property
     def question(self) -> Question:
-        """How a sample is judged."""
+        """Settings by which a sample is judged."""
         return Question(self.section.model, self.section.hunting_cycles, self.accuracy, self.options)
 
     @cached_property

@@ -45,7 +45,7 @@ class Bearings:
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """How a machine at rest shares its load over the hunting cycle, errors included.
+    """Load sharing of a machine at rest over the hunting cycle, errors included.
 
     Attributes
     ----------

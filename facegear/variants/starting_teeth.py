@@ -17,7 +17,7 @@ from facegear.variants.starting_wishes import ToothWishes
 HEIGHTS = tuple(1.0 - 0.05 * step for step in range(11))
 """Addendum of the pinion in modules, tried from the full height of a standard tooth down to half of it."""
 LOWER_GEAR_TIPS = (0.0, 0.1, 0.2)
-"""How much lower than the pinion's the gear's addendum may be, in modules: it clears the pinion's fillet."""
+"""Reductions of the gear's addendum below the pinion's, in modules, to clear the pinion's fillet."""
 ROOT_CLEARANCES = (0.25, 0.35)
 """Dedendum of the pinion's rack beyond the addendum, in modules."""
 RACK_TIPS = (0.2, 0.1)
@@ -59,7 +59,7 @@ class ChosenTeeth:
 
 @dataclass
 class _Refusals:
-    """Why candidates were refused, and how often."""
+    """Reasons for which candidates were refused, and how often each occurred."""
 
     counts: dict[str, int] = field(default_factory=dict)
     best_ratio: float = 0.0

@@ -120,7 +120,7 @@ def share_rows(ids):
 
 
 def accurate_text():
-    """How many inputs of the region are likely at full accuracy, too, and from every start."""
+    """Count of the region's inputs that are likely at full accuracy, too, and from every start, as text."""
     inputs = distinct_inputs(table("accurate"))
     found = inputs[LOG_LIKELIHOOD]
     kept, best = inputs[found >= found.max() - LOG_UNITS], inputs.loc[found.idxmax()]

@@ -19,7 +19,7 @@ def oscillator(law, damping=0.0, amplitude=0.0, mean=1.0, lower=-np.inf, upper=0
 
 
 def closing_error(law, start, period, least):
-    """How far a free motion from rest at `start` is from there after a period, or its lowest point is off."""
+    """Larger error of free motion from rest at `start`: of its state after a period or its lowest point."""
     integrator = Integrator(oscillator(law), 2.0 * np.pi / period, 1e-14)
     state = np.array([[start], [0.0]])
     run = integrator.run(state, 1, batches=1)

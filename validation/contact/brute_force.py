@@ -154,7 +154,7 @@ def _newton_step(stiffness, rows, springs, depth, state, torque):  # type: ignor
 
 
 def _length(stiffness, rows, springs, depth, state, step, torque):  # type: ignore[no-untyped-def]
-    """Where along the step the energy is least: the root of its slope, which never falls."""
+    """Factor on the step at which the energy is least: the root of the energy's slope, which never falls."""
     elastic_force = stiffness @ step[:-1]
     start, rise = state[:-1] @ elastic_force - torque * step[-1], step[:-1] @ elastic_force
     approach = rows @ step

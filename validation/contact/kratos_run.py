@@ -44,9 +44,9 @@ CONDENSATION = {
     "echo_level": 0,
     "check_dual_lm_condensation": False,
 }
-"""Where a flank's end cuts a face of the other body, multipliers of neighbouring nodes are coupled by some
-percent, and the condensation leaves that out: a step of Newton's method is then less exact, and its residual
-is not."""
+"""Settings of the solver that condenses the multipliers. Where a flank's end cuts a face of the other body,
+multipliers of neighbouring nodes are coupled by some percent, and the condensation leaves that out: a step of
+Newton's method is then less exact, and its residual is not."""
 
 
 class SupportAnalysis(StructuralMechanicsAnalysis):

@@ -33,7 +33,7 @@ STRIP_REFINEMENT = Refinement(2, 1, 2, 2.0)
 PARTS = (0.3, 0.6, 0.9)
 """Steps in which Kratos takes our turn, before it looks for the torque."""
 CLOSE = 2e-3
-"""How near CalculiX' torque must come to the one asked for, and the runs it may take."""
+"""Largest relative error of CalculiX' torque against the one asked for, and the runs it may take."""
 RUNS = 3
 ERROR_COLUMNS = {
     "stiffness": "stiffness_n_per_um",

@@ -16,7 +16,7 @@ from facegear.arrays import Array
 LONG = 2.0
 """Seconds of a call from which on once is enough; shorter ones are repeated."""
 REPEATS, TOGETHER = 4, 1.0
-"""How often at least, and for how many seconds together."""
+"""Smallest number of repeated calls, and the smallest number of seconds that they take together."""
 PROCESSES, SHORT = 3, 0.5
 """Number of processes for a point whose calls take no more seconds than SHORT: the memory that a process is
 given decides up to a third of their time."""

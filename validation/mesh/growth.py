@@ -1,4 +1,4 @@
-"""How building a mesh grows with its resolution: time against nodes."""
+"""Growth of the time to build a mesh with its resolution: time against nodes."""
 
 import time
 

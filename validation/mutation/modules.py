@@ -12,7 +12,7 @@ COLUMNS = ("module", "file", "mutants", "line", "operator", "occurrence", "befor
 """Columns of the table: one row a mutant; `mutants`: how many the module has, of which the table holds a
 sample."""
 SURVIVED, KILLED_END, ENDLESS = "survived", "killed", "endless"
-"""How a mutant ends: no test fails, one does, or the tests take far longer than usual."""
+"""Ends of a mutant: no test fails, one does, or the tests take far longer than usual."""
 
 
 @dataclass(frozen=True)

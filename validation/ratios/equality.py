@@ -402,7 +402,7 @@ def _spread(old: Answers, rounding: Answers, name: str) -> float:
 
 
 def _labels(sides: Sequence[Answers]) -> tuple[int, int, int]:
-    """How many texts there are, and how many of them changed now, and between two ways of rounding."""
+    """Count of texts, of those that changed now, and of those that change between two ways of rounding."""
     old = sides[0]
     texts = [name for name, values in old.items() if values.dtype.kind == "U"]
     differences = [

@@ -1,4 +1,4 @@
-"""How far numbers move between platforms."""
+"""Change of numbers between platforms."""
 
 import signal
 

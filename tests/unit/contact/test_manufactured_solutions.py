@@ -62,7 +62,7 @@ def error_inside(cells, refinement, element="hex27", part=False):
 
 
 def inner(points):
-    """Which points (n,) of the bent cube lie inside it, by Newton's method back to the straight cube."""
+    """Mask of the points (n,) inside the bent cube, by Newton's method back to the straight cube."""
     straight = points.copy()
     for _ in range(30):
         straight += points - bent(straight)

@@ -299,5 +299,5 @@ def test_a_run_is_over_once_a_known_orbit_of_several_periods_draws_it_in():
 
 
 def near(integrator, state, states):
-    """How near a state (2, n) is to one of some states."""
+    """Distance of a state (2, n) from the nearest of some states."""
     return min(change(integrator, state, other) for other in states)

@@ -13,7 +13,7 @@ from facegear.gear_body.modes import held_solver, order_modes
 LAG = 1e-11
 """Damping that is left out, over the frequency: next to nothing."""
 AS_LIGHT = np.sqrt(7850.0)
-"""How many times faster all is than in steel: the disc has 1 kg/m3."""
+"""Factor by which every motion is faster than in steel: the disc has 1 kg/m3."""
 TURNING, W = 150.0 * AS_LIGHT, 2 * np.pi * 2900.0 * AS_LIGHT
 
 

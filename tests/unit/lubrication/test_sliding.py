@@ -1,4 +1,4 @@
-"""How fast flanks slide: differences of material points, the instant axis, closed forms."""
+"""Sliding speed of flanks: differences of material points, the instant axis, closed forms."""
 
 from dataclasses import replace
 from math import pi, sqrt

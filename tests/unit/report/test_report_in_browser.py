@@ -165,7 +165,7 @@ def drawn(page, name):
 
 
 def middle_of(page, name):
-    """Where a figure's first panel is on the screen, and how wide it is."""
+    """Centre of a figure's first panel on the screen, and the panel's width."""
     box = page.locator(f"#{name} .nsewdrag").first.bounding_box()
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, box["width"]
 

@@ -26,7 +26,7 @@ def design():
 
 
 def closed_by(design, **assembly):
-    """How much further the flank pushes the gear on: (drive, back), m along the line of action."""
+    """Distance by which the flank pushes the gear further on: (drive, back), m along the line of action."""
     ways = []
     for pair in (design, mirror_design(design)):
         moved = replace(pair, assembly=AssemblyErrors(**assembly))
@@ -72,7 +72,7 @@ def test_an_axial_shim_is_twice_its_sine_of_backlash(design):
 )
 @pytest.mark.parametrize("config", ["paper", "two_pinion"])
 def test_errors_of_assembly_change_the_unloaded_errors_mean_and_nothing_else(config, assembly):
-    """Why e(t) from contact is one series for all meshes: a pinion out of place adds a constant only."""
+    """Show why e(t) from contact is one series for all meshes: a pinion out of place adds a constant only."""
     design = replace(
         pair_design(load_config(f"config/{config}.yaml").tooth_pair), assembly=AssemblyErrors(**assembly)
     )
