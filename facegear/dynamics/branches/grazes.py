@@ -13,6 +13,10 @@ from facegear.dynamics.branches.segment import Segment
 EDGES = (-1, 1)
 LOOKED_AT = np.linspace(0.0, 1.0, 33)[1:-1]
 """Shares of a stretch at which a cubic is looked at."""
+SYMMETRY_TOLERANCE = 1e-7
+"""Distance of extremes, in length scales, up to which symmetry moves their meshes alike; they differ by
+rounding, while grazes that lie together by chance differ by more (free choice, as orbits are known to 1e-9).
+"""
 ALMOST = 0.1
 """Part of the lesser distance at the ends to which a cubic that comes as near is looked at."""
 
@@ -32,7 +36,7 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
     Maxima less minima above an edge count its passages. A maximum and a minimum that are born together change
     none. Meshes that symmetry moves alike make one graze.
     """
-    first_passed: dict[tuple, Graze] = {}
+    graze_ends: list[tuple[Array, Graze]] = []
     mixed = False
     levels = _levels(period_map, first.u)
     before, after = (_above(point.extrema, levels) for point in (first, second))
@@ -42,10 +46,21 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
         mixed = mixed or bool(changes.all()) or abs(changes[kind]) > 1
         rank = int(min(before[side, mesh, kind], after[side, mesh, kind]))
         test = _distance(float(levels[side, mesh]), int(mesh), kind, rank)
-        alike = (side, kind, *(round(test(point.extrema), 7) for point in (first, second)))
-        meshes = (*first_passed[alike].meshes, int(mesh)) if alike in first_passed else (int(mesh),)
-        first_passed[alike] = Graze(test, meshes, EDGES[side])
-    return list(first_passed.values()), mixed
+        ends = np.array([side, kind, *(test(point.extrema) for point in (first, second))])
+        index = next(
+            (
+                i
+                for i, (known_ends, _) in enumerate(graze_ends)
+                if np.abs(ends - known_ends).max() < SYMMETRY_TOLERANCE
+            ),
+            None,
+        )
+        if index is None:
+            graze_ends.append((ends, Graze(test, (int(mesh),), EDGES[side])))
+        else:
+            graze = graze_ends[index][1]
+            graze_ends[index] = ends, Graze(test, (*graze.meshes, int(mesh)), graze.edge)
+    return [graze for _, graze in graze_ends], mixed
 
 
 def _levels(period_map: PeriodMap, u: float) -> Array:

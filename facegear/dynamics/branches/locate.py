@@ -110,7 +110,30 @@ def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[
                 between = _kink(specials, low, high)
     if between is None:
         return specials
-    return _between(segment, low, between, depth + 1) + _between(segment, between, high, depth + 1)
+    halves = (_between(segment, *ends, depth + 1) for ends in ((low, between), (between, high)))
+    return _join(*halves)
+
+
+def _join(first: list[Special], second: list[Special]) -> list[Special]:
+    """Return the special points of two halves of a stretch, grazes at their border as one.
+
+    Where a stretch is divided at a graze, rounding decides in which half each of the meshes that graze there
+    does.
+    """
+    specials = [*first]
+    for special in second:
+        index = next((i for i, graze in enumerate(specials) if _same_graze(special, graze)), None)
+        if index is None:
+            specials.append(special)
+        else:
+            meshes = tuple(sorted({*specials[index].meshes, *special.meshes}))
+            specials[index] = replace(specials[index], meshes=meshes)
+    return specials
+
+
+def _same_graze(first: Special, second: Special) -> bool:
+    kinds = {first.kind, second.kind}
+    return kinds == {Kind.GRAZE} and first.edge == second.edge and abs(first.after - second.after) < SHORTEST
 
 
 def _kink(specials: list[Special], low: float, high: float) -> float | None:
@@ -157,9 +180,8 @@ def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -
             between = _leap(segment.period_map, specials, low, high)
     if between is None:
         return specials
-    return _grazes_between(segment, low, between, depth + 1) + _grazes_between(
-        segment, between, high, depth + 1
-    )
+    halves = (_grazes_between(segment, *ends, depth + 1) for ends in ((low, between), (between, high)))
+    return _join(*halves)
 
 
 def _grazing(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:

@@ -13,8 +13,7 @@ from facegear.config.load import load_config
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
-from facegear.pipeline.stage import load
-from facegear.pipeline.table import STAGES
+from facegear.pipeline.run import machine_inputs
 from facegear.results.chain import Chain
 
 CONFIG = Path(__file__).parents[3] / "config" / "concentric.yaml"
@@ -30,8 +29,7 @@ def test_cases_and_stages_do_not_repeat_the_checks_of_a_config(monkeypatch):
     assert Transmission.of_config(values["transmission"]).pinions == config.transmission.pinions
     chain = facegear.load(CONFIG, results=None)._chain
     monkeypatch.setattr(Chain, "part", lambda *asked: None)  # nothing of earlier stages is computed
-    ratings = typed_arguments(load(STAGES["ratings"].function), chain.arguments("ratings"))
-    assert ratings["transmission"].pinions == config.transmission.pinions
+    assert machine_inputs(chain.arguments("ratings")).transmission.pinions == config.transmission.pinions
     assert len(checked) == 2, "once for each reading of the file"
 
 
