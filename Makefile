@@ -56,8 +56,7 @@ benchmarks peers: check tools
 ratios: check tools # processor time of the dear jobs against an earlier commit: make ratios SINCE=COMMIT POINTS="contact"
 	$(BIN)/python -m validation.ratios.run $(POINTS) $(SINCE:%=--since %)
 verification: check tools # the table of what was checked against which reference
-	$(PYTEST) -m reference --references=validation/references.csv
-	$(BIN)/python -m validation.pages
+	$(PYTEST) -m reference --references=validation/references.csv && $(BIN)/python -m validation.pages
 platforms starters sharing_advice: check tools # two threads and lower levels of instructions; 20 machines of `facegear new`; advice of the load-sharing map repeated by configs
 	$(BIN)/python -m validation.$@
 mutation: check tools # whether the tests notice mutants that survived before

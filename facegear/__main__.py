@@ -183,7 +183,7 @@ def _new(given: argparse.Namespace) -> int:
     _say_if_new(given.config.parent)
     with atomic_path(given.config) as temporary:
         temporary.write_text(machine.text, encoding="utf-8")
-    print(*rexs.notes, *machine.expected, sep="\n")
+    print(*rexs.notes, *machine.expectations, sep="\n")
     print(f"{given.config}: written; `facegear report {given.config}` computes it")
     return 0
 

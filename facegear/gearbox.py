@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from facegear.config.cases import changed_config, expand_cases
 from facegear.config.keys import keys_named
 from facegear.config.load import config_of, load_config, plain
-from facegear.config.model import Config, resolved
+from facegear.config.model import Config, resolved_values
 from facegear.errors import ConfigError, FacegearError, chosen, extras_named, file_path
 from facegear.pipeline.run import machine_inputs
 from facegear.results.chain import Chain
@@ -123,7 +123,7 @@ class Gearbox:
 
     @cached_property
     def _values(self) -> dict[str, Any]:
-        return resolved(self.config)
+        return resolved_values(self.config)
 
     def with_values(self, changes: Mapping[str, Any]) -> "Gearbox":
         """A changed copy; what the changes do not touch is not computed again.

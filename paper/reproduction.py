@@ -5,7 +5,7 @@ from pathlib import Path
 from pydantic import Field
 
 from facegear.config.base import Section, parse
-from facegear.config.load import located
+from facegear.config.load import relative_to_cwd
 from facegear.config.yaml_file import read_yaml
 
 
@@ -19,7 +19,7 @@ class InputSet(Section):
 
 
 class Reproduction(Section):
-    """What the results of a case are held against."""
+    """Claims of a publication and stored results, with which the results of a case are compared."""
 
     claims: str = Field(min_length=1, description="its claims (yaml)")
     sets: str | None = Field(None, min_length=1, description="sets of undisclosed inputs that fit (csv)")
@@ -29,10 +29,25 @@ class Reproduction(Section):
 
 
 def read_reproduction(path: str | Path) -> Reproduction:
-    """Read and validate the file; the files it names are found from the working directory afterwards.
+    """Read and validate the file.
 
-    Raises ConfigErrors with one line for every mistake.
+    Paths of the files that it names are returned as they are found from the working directory.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    Reproduction
+        Its content.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
     """
     read, folder = parse(Reproduction, read_yaml(path), str(path)), Path(path).parent
     files = {key: file for key, file in read.model_dump(exclude={"inputs"}).items() if file is not None}
-    return read.model_copy(update={key: located(file, folder) for key, file in files.items()})
+    return read.model_copy(update={key: relative_to_cwd(file, folder) for key, file in files.items()})

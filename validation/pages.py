@@ -16,7 +16,7 @@ from facegear.pipeline.listing import listing
 from validation import sharing_advice
 from validation.mutation.modules import mutation_tables
 from validation.mutation.modules import rows as mutation_rows
-from validation.platforms import MEASURED, OUTCOMES, outcomes_table, platforms_table
+from validation.platforms import DIFFERENCES, OUTCOMES, outcomes_table, platforms_table
 from validation.references import ROOT, comparison_tables, counts_table, read, shares_table
 
 DOCS = ROOT / "docs"
@@ -24,7 +24,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "shares": lambda: shares_table(read()),
     "capabilities": lambda: counts_table(read()),
     "comparisons": lambda: comparison_tables(read()),
-    "platforms": lambda: platforms_table(pd.read_csv(MEASURED)),
+    "platforms": lambda: platforms_table(pd.read_csv(DIFFERENCES)),
     "platform tests": lambda: outcomes_table(pd.read_csv(OUTCOMES)),
     "mutants": lambda: mutation_tables(mutation_rows()),
     "stages": listing,

@@ -21,8 +21,8 @@ import pandas as pd
 
 from validation.references import ROOT, declarations
 
-MEASURED = ROOT / "docs" / "measured" / "platforms.csv"
-STORED = ROOT / "results" / "platforms"
+DIFFERENCES = ROOT / "docs" / "measured" / "platforms.csv"
+RUN_FOLDER = ROOT / "results" / "platforms"
 """Numbers and messages of each platform, written as soon as its process has ended."""
 OUTCOMES = ROOT / "docs" / "measured" / "platform_tests.csv"
 AVX2 = {
@@ -92,11 +92,17 @@ Numbers = dict[str, list[tuple[str, list[float], list[float], list[float]]]]
 
 
 def run_on(name: str) -> None:
-    """Run the tests on a platform; store their numbers, outcomes and how the process ended, at once."""
-    STORED.mkdir(parents=True, exist_ok=True)
+    """Run the tests on a platform; store their numbers, outcomes and how the process ended, at once.
+
+    Parameters
+    ----------
+    name : str
+        Name of the platform.
+    """
+    RUN_FOLDER.mkdir(parents=True, exist_ok=True)
     path = numbers_of(name)
-    for stored in (path, path.with_suffix(".end"), path.with_suffix(".xml")):
-        stored.unlink(missing_ok=True)
+    for old_file in (path, path.with_suffix(".end"), path.with_suffix(".xml")):
+        old_file.unlink(missing_ok=True)
     code = _pytest(name, ".log", "-n", "0", "-m", "reference", f"--numbers={path}", *CASES)
     path.with_suffix(".end").write_text(end_of(code), encoding="utf-8")
     _pytest(name, ".tests.log", f"--junitxml={path.with_suffix('.xml')}", *TESTS)
@@ -120,45 +126,86 @@ def _pytest(name: str, ending: str, *options: str) -> int:
 
 
 def numbers_of(name: str) -> Path:
-    """The file of a platform's numbers; logs, outcomes of tests and how it ended stand beside it."""
-    return STORED / f"{name.replace(', ', '-').replace(' ', '_')}.json"
+    """Return the file of a platform's numbers; logs, outcomes of tests and how it ended stand beside it.
+
+    Parameters
+    ----------
+    name : str
+        Name of the platform.
+
+    Returns
+    -------
+    Path
+        Path of the file.
+    """
+    return RUN_FOLDER / f"{name.replace(', ', '-').replace(' ', '_')}.json"
 
 
 def end_of(code: int) -> str:
-    """How a process of pytest ended, in words."""
+    """Say how a process of pytest ended, in words.
+
+    Parameters
+    ----------
+    code : int
+        Exit code of the process.
+
+    Returns
+    -------
+    str
+        The words.
+    """
     if code < 0:
         return f"ended by {signal.Signals(-code).name}"
     return {0: "all passed", 1: "some failed"}.get(code, f"exit code {code}")
 
 
-def differences(base: Numbers, other: Numbers) -> pd.DataFrame:
-    """How far each comparison moved, over its largest value and over its tolerance."""
-    capability = {test: declared.capability.split()[0] for test, declared in declarations().items()}
+def differences(base: Numbers, other_numbers: Numbers) -> pd.DataFrame:
+    """Measure how far each comparison moved, over its largest value and over its tolerance.
+
+    Parameters
+    ----------
+    base : Numbers
+        Numbers of the first platform by test.
+    other_numbers : Numbers
+        Numbers of another platform by test.
+
+    Returns
+    -------
+    DataFrame
+        Columns capability, numbers, relative and of_tolerance.
+    """
+    capability = {test: declaration.capability.split()[0] for test, declaration in declarations().items()}
     rows = [
-        (capability[test.partition("[")[0]], *moved)
+        (capability[test.partition("[")[0]], *change)
         for test in base
-        if test in other
-        for moved in _moved(base[test], other[test])
+        if test in other_numbers
+        for change in _changed_numbers(base[test], other_numbers[test])
     ]
     return pd.DataFrame(rows, columns=["capability", "numbers", "relative", "of_tolerance"])
 
 
-def _moved(base: list, other: list) -> Iterator[tuple[int, float, float]]:
-    for (_, first, expected, allowed), (_, second, _, _) in zip(base, other, strict=True):
+def _changed_numbers(base: list, other_numbers: list) -> Iterator[tuple[int, float, float]]:
+    for (_, first, reference, tolerance), (_, second, _, _) in zip(base, other_numbers, strict=True):
         apart = np.abs(np.subtract(first, second))
-        scale = np.abs(expected).max()
+        scale = np.abs(reference).max()
         largest = np.divide(
-            apart, allowed, out=np.where(apart == 0.0, 0.0, np.nan), where=np.array(allowed) > 0.0
+            apart, tolerance, out=np.where(apart == 0.0, 0.0, np.nan), where=np.array(tolerance) > 0.0
         )
         yield len(first), apart.max() / scale if scale > 0.0 else np.nan, np.nanmax(largest)
 
 
 def table_of_platforms() -> pd.DataFrame:
-    """COLUMNS, a row for each platform that has run, but the first, and each capability."""
-    first, *others = PLATFORMS
+    """Tabulate the largest differences of each platform that has run, but the first, and each capability.
+
+    Returns
+    -------
+    DataFrame
+        Columns as COLUMNS.
+    """
+    first, *other_platforms = PLATFORMS
     base = json.loads(numbers_of(first).read_text(encoding="utf-8"))
     tables = []
-    for name in others:
+    for name in other_platforms:
         path = numbers_of(name)
         if not path.with_suffix(".end").exists():
             continue
@@ -215,17 +262,28 @@ def table_of_outcomes() -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
 
 
-def platforms_table(measured: pd.DataFrame) -> str:
-    """Markdown: a row a platform, with the largest differences of all its numbers."""
+def platforms_table(table: pd.DataFrame) -> str:
+    """Write the largest differences of each platform in Markdown.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `table_of_platforms`.
+
+    Returns
+    -------
+    str
+        A table of Markdown, a row a platform.
+    """
     lines = [
         "| platform | tests | numbers | largest difference | in tolerances | in the references of |",
         "|---|---|---|---|---|---|",
     ]
-    for name, rows in measured.groupby("platform", sort=False):
+    for name, rows in table.groupby("platform", sort=False):
         part = rows["largest_of_tolerance"]
-        where = rows.loc[part.idxmax(), "capability"] if part.notna().any() else "-"
-        moved = f"{rows['largest_relative'].max():.1e} | {part.max():.1e} | {where}"
-        lines.append(f"| {name} | {rows['end'].iloc[0]} | {rows['numbers'].sum()} | {moved} |")
+        capability = rows.loc[part.idxmax(), "capability"] if part.notna().any() else "-"
+        differences_text = f"{rows['largest_relative'].max():.1e} | {part.max():.1e} | {capability}"
+        lines.append(f"| {name} | {rows['end'].iloc[0]} | {rows['numbers'].sum()} | {differences_text} |")
     return "\n".join(lines)
 
 
@@ -251,6 +309,11 @@ def outcomes_table(table: pd.DataFrame) -> str:
 def main(names: list[str]) -> int:
     """Run on the platforms named, or on all, and write the tables after each.
 
+    Parameters
+    ----------
+    names : list[str]
+        Names of platforms, none for all.
+
     Returns
     -------
     int
@@ -265,7 +328,7 @@ def main(names: list[str]) -> int:
         if row["failed"]:
             print(f"  {row['failed_tests']}", flush=True)
         if numbers_of(next(iter(PLATFORMS))).exists():
-            table_of_platforms().to_csv(MEASURED, index=False, float_format="%.3g", lineterminator="\n")
+            table_of_platforms().to_csv(DIFFERENCES, index=False, float_format="%.3g", lineterminator="\n")
         table.to_csv(OUTCOMES, index=False, lineterminator="\n")
     ends = [numbers_of(name).with_suffix(".end").read_text(encoding="utf-8") for name in names or PLATFORMS]
     return int(bool(table_of_outcomes()["failed"].sum()) or any(end != end_of(0) for end in ends))

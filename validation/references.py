@@ -15,12 +15,12 @@ import pandas as pd
 from facegear.pipeline.table import STAGES
 
 ROOT = Path(__file__).parents[1]
-STORED = Path(__file__).with_suffix(".csv")
+REFERENCES = Path(__file__).with_suffix(".csv")
 TESTS = ("tests", "validation/tests", "paper/tests")
 
 
 class Kind(StrEnum):
-    """What an expected value rests on, from the real world to our own numbers."""
+    """Basis of an expected value, from the real world to our own numbers."""
 
     MEASUREMENT = "measured"
     EXTERNAL = "external source"
@@ -32,7 +32,7 @@ class Kind(StrEnum):
 
 
 INDEPENDENT = tuple(kind for kind in Kind if kind is not Kind.CONVERGENCE)
-DECLARED = ("kind", "source", "capability", "module")
+DECLARED_COLUMNS = ("kind", "source", "capability", "module")
 """Columns that a test declares in its decorator `against`."""
 METHOD_TITLES = {
     "displaced_contact": "Contact of two displaced bodies",
@@ -50,7 +50,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Declaration:
-    """What a test says of its reference in the decorator `against`.
+    """Declaration of a test's reference in the decorator `against`.
 
     Attributes
     ----------
@@ -73,7 +73,18 @@ class Declaration:
 
 
 def declarations(root: Path = ROOT) -> dict[str, Declaration]:
-    """All tests of the repository that compare with a reference, by name, read from their source."""
+    """Read all tests of the repository that compare with a reference from their source.
+
+    Parameters
+    ----------
+    root : Path
+        Root of the repository.
+
+    Returns
+    -------
+    dict[str, Declaration]
+        Declarations by name of the test.
+    """
     files = [file for folder in TESTS for file in sorted((root / folder).rglob("test_*.py"))]
     return {
         declaration.test: declaration
@@ -88,27 +99,61 @@ def _declared_in(file: Path, name: str) -> Iterator[Declaration]:
             continue
         for call in node.decorator_list:
             if isinstance(call, ast.Call) and getattr(call.func, "id", "") == "against":
-                given = dict(zip(DECLARED, call.args, strict=False))
-                given |= {str(keyword.arg): keyword.value for keyword in call.keywords}
-                texts = {key: ast.literal_eval(value) for key, value in given.items()}
+                keywords = dict(zip(DECLARED_COLUMNS, call.args, strict=False))
+                keywords |= {str(keyword.arg): keyword.value for keyword in call.keywords}
+                texts = {key: ast.literal_eval(value) for key, value in keywords.items()}
                 yield Declaration(f"{name}::{node.name}", **texts)
 
 
-def read(path: Path = STORED) -> pd.DataFrame:
-    """The stored references, COLUMNS, one row for each quantity that a test compares."""
+def read(path: Path = REFERENCES) -> pd.DataFrame:
+    """Read the stored references.
+
+    Parameters
+    ----------
+    path : Path
+        Path of the table.
+
+    Returns
+    -------
+    DataFrame
+        Columns as COLUMNS, one row for each quantity that a test compares.
+    """
     return pd.read_csv(path, dtype={"commit": str}, keep_default_na=False)
 
 
-def write(rows: pd.DataFrame, path: Path = STORED) -> None:
-    """Store references, ordered by test and quantity."""
-    ordered = rows[list(COLUMNS)].sort_values(["test", "quantity"])
-    ordered.to_csv(path, index=False, lineterminator="\n")
+def write(rows: pd.DataFrame, path: Path = REFERENCES) -> None:
+    """Store references, ordered by test and quantity.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        References, COLUMNS.
+    path : Path
+        Path of the table.
+    """
+    sorted_rows = rows[list(COLUMNS)].sort_values(["test", "quantity"])
+    sorted_rows.to_csv(path, index=False, lineterminator="\n")
 
 
-def merged(stored: pd.DataFrame, fresh: pd.DataFrame, declared: set[str]) -> pd.DataFrame:
-    """Fresh rows in place of the stored ones of the same tests, without rows of tests that are gone."""
-    kept = stored[~stored["test"].isin(fresh["test"]) & stored["test"].isin(declared)]
-    return pd.concat([kept, fresh], ignore_index=True) if len(kept) else fresh
+def merge_rows(old_rows: pd.DataFrame, fresh: pd.DataFrame, declared_tests: set[str]) -> pd.DataFrame:
+    """Replace the rows of tests by fresh ones, and leave out rows of tests that are gone.
+
+    Parameters
+    ----------
+    old_rows : DataFrame
+        Stored references, COLUMNS.
+    fresh : DataFrame
+        References of the tests that ran, COLUMNS.
+    declared_tests : set[str]
+        Names of all tests that declare references.
+
+    Returns
+    -------
+    DataFrame
+        Both together, COLUMNS.
+    """
+    unchanged_rows = old_rows[~old_rows["test"].isin(fresh["test"]) & old_rows["test"].isin(declared_tests)]
+    return pd.concat([unchanged_rows, fresh], ignore_index=True) if len(unchanged_rows) else fresh
 
 
 def shares_table(rows: pd.DataFrame) -> str:

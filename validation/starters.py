@@ -111,8 +111,8 @@ def run_machine(machine: MachineWishes, folder: Path) -> dict[str, object]:
         gearbox.report(folder / f"{machine.case}.html", note)
         outcome = "incomplete" if reasons else "report"
         if machine.idlers:
-            estimates = computed_sharing(gearbox) | printed_numbers(first.expected[1], SHARING)
-        estimates |= computed_safety(gearbox) | printed_numbers(first.expected[-2], SAFETIES)
+            estimates = computed_sharing(gearbox) | printed_numbers(first.expectations[1], SHARING)
+        estimates |= computed_safety(gearbox) | printed_numbers(first.expectations[-2], SAFETIES)
     except FacegearError as error:
         reasons.append(str(error).splitlines()[0])
     return {

@@ -1,4 +1,4 @@
-"""What all config sections share: strict parsing, and mistakes reported in the terms of the user."""
+"""Base of all config sections: strict parsing, and mistakes reported in the terms of the user."""
 
 import difflib
 import json
@@ -22,7 +22,18 @@ class Section(BaseModel):
 
     @classmethod
     def of_config(cls, values: Mapping[str, Any]) -> Self:
-        """The section from its plain values in a config that was validated: its checks are not repeated."""
+        """Build the section from plain values of a validated config, without repeating its checks.
+
+        Parameters
+        ----------
+        values : Mapping[str, Any]
+            Plain values of the section.
+
+        Returns
+        -------
+        Self
+            The section.
+        """
         token = _VALIDATED.set(True)
         try:
             return cls.model_validate_json(json.dumps(values))
@@ -36,42 +47,73 @@ _VALIDATED = ContextVar("validated", default=False)
 SectionType = TypeVar("SectionType", bound=Section)
 
 
-def refuse(key: str, value: object, allowed: str) -> NoReturn:
-    """Refuse a value inside a validator; `key` is relative to the section that is validated.
+def refuse(key: str, value: object, requirement: str) -> NoReturn:
+    """Refuse a value inside a validator.
 
-    Raises an error that the loader prints as `section.key = value: must be allowed`.
+    Raises an error that the loader prints as `section.key = value: must be <requirement>`.
+
+    Parameters
+    ----------
+    key : str
+        Key, relative to the section that is validated.
+    value : object
+        The value that is refused.
+    requirement : str
+        What the value must be, in words.
     """
-    _refuse_all([(key, value, allowed)])
+    _refuse_all([(key, value, requirement)])
 
 
 def require_all(*checks: Callable[[], None]) -> None:
     """Run checks inside a validator, so that all that they refuse is reported at once.
 
     A check calls `refuse` or raises ConfigError with a key relative to the section that is validated.
+
+    Parameters
+    ----------
+    *checks : Callable[[], None]
+        Functions without arguments that raise for a value they refuse.
     """
-    refused: list[tuple[str, object, str]] = []
+    refusals: list[tuple[str, object, str]] = []
     for check in () if _VALIDATED.get() else checks:
         try:
             check()
         except InvalidInput as error:
-            named = config_error(error)
-            refused.append((named.key, named.value, named.allowed))
+            key_error = config_error(error)
+            refusals.append((key_error.key, key_error.value, key_error.allowed))
         except ConfigError as error:
-            refused.append((error.key, error.value, error.allowed))
+            refusals.append((error.key, error.value, error.allowed))
         except PydanticCustomError as error:
-            refused += (error.context or {})["refused"]
-    if refused:
-        _refuse_all(refused)
+            refusals += (error.context or {})["refused"]
+    if refusals:
+        _refuse_all(refusals)
 
 
-def _refuse_all(refused: Sequence[tuple[str, object, str]]) -> NoReturn:
-    raise PydanticCustomError("refused", "refused", {"refused": list(refused)})
+def _refuse_all(refusals: Sequence[tuple[str, object, str]]) -> NoReturn:
+    raise PydanticCustomError("refused", "refused", {"refused": list(refusals)})
 
 
 def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "config") -> SectionType:
-    """Validate plain values (as read from YAML) against a section model.
+    """Validate plain values against a section model.
 
-    Raises ConfigErrors with one line for every mistake.
+    Parameters
+    ----------
+    model : type[SectionType]
+        Class of the section.
+    values : Mapping[str, Any]
+        Plain values, as read from YAML.
+    source : str
+        What the error names as the origin of the values.
+
+    Returns
+    -------
+    SectionType
+        The validated section.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
     """
     try:
         text = json.dumps(values, allow_nan=True, default=_refuse_value)
@@ -115,14 +157,14 @@ def _refuse_value(value: object) -> NoReturn:
 def _lines(model: type[Section], values: Mapping[str, Any], mistakes: list[ErrorDetails]) -> list[str]:
     """The lines of all mistakes; a misspelt key is not reported again as a missing one."""
     locations = [_location(details, values) for details in mistakes]
-    meant = [
+    intended_keys = [
         [*location[:-1], _nearest(model, location)]
         for location, details in zip(locations, mistakes, strict=True)
         if details["type"] == "extra_forbidden"
     ]
     lines: dict[str, list[str]] = {}
     for location, details in zip(locations, mistakes, strict=True):
-        if details["type"] == "missing" and location in meant:
+        if details["type"] == "missing" and location in intended_keys:
             continue
         if _follows(details) or _is_other_kind(location, details, locations):
             continue
@@ -161,22 +203,25 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
     """One line for each value that is refused."""
     kind = details["type"]
     if kind == "refused":
-        where = _dotted(location)
+        section = _dotted(location)
         return [
-            f"{'.'.join([where, key]).strip('.')} = {json.dumps(value, default=str)}: must be {allowed}"
-            for key, value, allowed in details["ctx"]["refused"]
+            f"{'.'.join([section, key]).strip('.')} = {json.dumps(value, default=str)}: must be {known_keys}"
+            for key, value, known_keys in details["ctx"]["refused"]
         ]
     key = _dotted(location) or "(the whole file)"
     if kind == "extra_forbidden":
-        allowed = _keys_at(model, location[:-1])
-        return [f"{key} = {_shown(details['input'])}: unknown key; {suggestion(str(location[-1]), allowed)}"]
+        known_keys = _keys_at(model, location[:-1])
+        return [
+            f"{key} = {_value_text(details['input'])}: unknown key; "
+            f"{suggestion(str(location[-1]), known_keys)}"
+        ]
     if kind == "missing":
         return [f"{key} = (missing): this key is required"]
     if kind in ("too_short", "too_long"):
         words, name = ("at least", "min_length") if kind == "too_short" else ("at most", "max_length")
         count = details["ctx"][name]
         items = f"{words} {count_noun(count, 'item')}"
-        return [f"{key} = {_shown(details['input'])}: must have {items}, not {len(details['input'])}"]
+        return [f"{key} = {_value_text(details['input'])}: must have {items}, not {len(details['input'])}"]
     if kind in RULES:
         rule = RULES[kind]
     elif kind == "string_pattern_mismatch":
@@ -189,7 +234,7 @@ def _messages(model: type[Section], details: ErrorDetails, location: list[int | 
         message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
         rule = message.replace("should ", "", 1) if message.startswith("should ") else message
         rule += _likely_unit(key, details)
-    return [f"{key} = {_shown(details['input'])}: must {rule}"]
+    return [f"{key} = {_value_text(details['input'])}: must {rule}"]
 
 
 NAME_RULE = {
@@ -221,7 +266,7 @@ def _likely_unit(key: str, details: ErrorDetails) -> str:
     return "" if low is None and high is None else unit_suggestion(key, value, low, high)
 
 
-RENAMED = {
+NEW_KEYS = {
     "a_n_per_m": "sin_n_per_m",
     "b_n_per_m": "cos_n_per_m",
     "least_bending_safety": "min_bending_safety",
@@ -229,32 +274,48 @@ RENAMED = {
     "longest_found": "longest_start_period",
     "most_branches": "max_branches",
 }
-"""Keys and columns of earlier versions and what they are called today."""
+"""Keys and columns of earlier versions, each with its name of today."""
 
 
-def suggestion(key: str, allowed: Collection[str]) -> str:
-    """What a key of an earlier version is called now, or the allowed key that was most likely meant, or else
-    all of them, in words.
+def suggestion(key: str, known_keys: Collection[str]) -> str:
+    """Suggest in words what an unknown key should be.
+
+    A key of an earlier version gets its new name. Otherwise the most similar key is suggested, or else all
+    keys are listed.
+
+    Parameters
+    ----------
+    key : str
+        The unknown key.
+    known_keys : Collection[str]
+        Keys that are allowed here.
+
+    Returns
+    -------
+    str
+        The suggestion as part of a message.
     """
-    if (renamed := RENAMED.get(key)) in allowed:
-        return f"`{key}` is now `{renamed}`"
-    nearest = _closest(key, allowed)
-    return f"did you mean {nearest!r}?" if nearest else f"allowed here: {', '.join(sorted(allowed))}"
+    if (new_key := NEW_KEYS.get(key)) in known_keys:
+        return f"`{key}` is now `{new_key}`"
+    nearest = _closest(key, known_keys)
+    return f"did you mean {nearest!r}?" if nearest else f"allowed here: {', '.join(sorted(known_keys))}"
 
 
 def _location(details: ErrorDetails, values: Any) -> list[int | str]:
     """Keys and list positions down to a mistake, without the names of types and models that pydantic adds."""
     named_by_user = details["type"] in ("extra_forbidden", "missing")
-    kept: list[int | str] = []
+    location: list[int | str] = []
     for depth, part in enumerate(details["loc"], start=1):
-        own = isinstance(values, Mapping) and part in values
+        is_key = isinstance(values, Mapping) and part in values
         last = named_by_user and depth == len(details["loc"])
-        if not (own or last) and _is_union_tag(part):
+        if not (is_key or last) and _is_union_tag(part):
             continue
-        kept.append(part)
-        reached = own or (isinstance(values, list | tuple) and isinstance(part, int) and part < len(values))
-        values = values[part] if reached else None
-    return kept
+        location.append(part)
+        is_present = is_key or (
+            isinstance(values, list | tuple) and isinstance(part, int) and part < len(values)
+        )
+        values = values[part] if is_present else None
+    return location
 
 
 def _is_union_tag(part: int | str) -> bool:
@@ -263,6 +324,7 @@ def _is_union_tag(part: int | str) -> bool:
 
 
 _TYPE_NAMES = {"float", "int", "str", "bool"}
+"""Names of types that pydantic adds to the location of a mistake."""
 
 
 def _dotted(location: list[int | str]) -> str:
@@ -272,7 +334,7 @@ def _dotted(location: list[int | str]) -> str:
     return text
 
 
-def _shown(value: Any) -> str:
+def _value_text(value: Any) -> str:
     text = json.dumps(value, default=str)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
@@ -281,10 +343,10 @@ def _nearest(model: type[Section], location: list[int | str]) -> str | None:
     return _closest(str(location[-1]), _keys_at(model, location[:-1]))
 
 
-def _closest(key: str, allowed: Iterable[str]) -> str | None:
+def _closest(key: str, keys: Iterable[str]) -> str | None:
     """The allowed key that is spelt most alike; capitals and hyphens count for nothing."""
-    written = key.lower().replace("-", "_").replace(" ", "_")
-    close = difflib.get_close_matches(written, sorted(allowed), n=1, cutoff=0.6)
+    normalised_key = key.lower().replace("-", "_").replace(" ", "_")
+    close = difflib.get_close_matches(normalised_key, sorted(keys), n=1, cutoff=0.6)
     return close[0] if close else None
 
 

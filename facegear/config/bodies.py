@@ -43,6 +43,7 @@ DIAMETRAL = (
     "clearance from side to side, as catalogues give it (radial internal clearance, ISO 5753): "
     "twice clearance_um"
 )
+"""Description of the keys of a diametral clearance."""
 
 
 def _one_sided(one_side: float | None, diametral: float | None) -> float | None:
@@ -106,7 +107,7 @@ class TiltSection(Section):
 
 
 def _elastic(value: object) -> object:
-    """What `rigid` stands for."""
+    """Return None for `rigid`, any other value as it is."""
     return None if value == "rigid" else value
 
 
@@ -155,7 +156,7 @@ class GearForce(Section):
 
 
 class SinglePinion(Section):
-    """What is different in one pinion; null keeps what all pinions have."""
+    """Values of one pinion that differ from the others; null keeps what all pinions have."""
 
     mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e5, description="mass; null: that of all pinions")
     inertia_kg_m2: float | None = Field(
@@ -194,7 +195,7 @@ class SinglePinion(Section):
 
 
 class SingleGear(Section):
-    """What is different in one face gear; null keeps what both have."""
+    """Values of one face gear that differ from the other; null keeps what both have."""
 
     torque_n_m: float = Field(
         0.0,

@@ -58,7 +58,7 @@ class Branches(Section):
     loci: Loci = Loci()
 
     @model_validator(mode="after")
-    def _rising(self) -> "Branches":
+    def _check_speeds(self) -> "Branches":
         if self.to_rpm <= self.from_rpm:
             refuse("to_rpm", self.to_rpm, f"more than from_rpm = {self.from_rpm}")
         for speed in self.explore.speeds_rpm:
@@ -68,7 +68,20 @@ class Branches(Section):
 
 
 def branch_plan(section: Branches | None, nominal_rpm: float) -> BranchPlan:
-    """What the stage does, by the section's defaults without one; in SI units but for speeds in rpm."""
+    """Return the plan of the continuation of periodic motions.
+
+    Parameters
+    ----------
+    section : Branches or None
+        Section `branches` of the config; its defaults are used if None.
+    nominal_rpm : float
+        Nominal pinion speed, rpm.
+
+    Returns
+    -------
+    BranchPlan
+        The plan in SI units, but for speeds in rpm.
+    """
     section = section or Branches()
     return BranchPlan(
         from_rpm=section.from_rpm,

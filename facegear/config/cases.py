@@ -8,64 +8,129 @@ from dataclasses import dataclass
 from typing import Any
 
 from facegear.config.base import parse, suggestion
-from facegear.config.model import Config, resolved
+from facegear.config.model import Config, resolved_values
 from facegear.config.studies import Study, StudyPoint
 from facegear.errors import ConfigError, ConfigErrors
 
-MANY = 3
-"""Numbers of a key from which a curve is drawn over them."""
+MIN_CURVE_POINTS = 3
+"""Smallest number of points of a key from which a curve is drawn over them."""
 
 
 def expand_cases(config: Config) -> dict[str, dict[str, Any]]:
-    """Case id -> plain values of a config with what follows from other keys filled in; its own case first.
+    """Expand a config into its own case and one case for every point of every study.
 
-    A study's case has the id `<case>/studies/<study>/<point>`. Raises ConfigErrors naming study and point.
+    What follows from other keys is filled in. A study's case has the id `<case>/studies/<study>/<point>`.
+
+    Parameters
+    ----------
+    config : Config
+        The config.
+
+    Returns
+    -------
+    dict[str, dict[str, Any]]
+        Plain values of a config by case id, the config's own case first.
+
+    Raises
+    ------
+    ConfigErrors
+        With study and point of the values that are refused.
     """
     base = config.model_dump(mode="json")
-    cases = {config.case: resolved(config)}
+    cases = {config.case: resolved_values(config)}
     for study in config.studies:
         for name, point in study_points(study).items():
-            where = f"studies.{study.name}.{name}"
-            changed = changed_values(base, point.set, where)
-            cases[f"{config.case}/studies/{study.name}/{name}"] = changed
-    return {case: {**changed, "case": case} for case, changed in cases.items()}
+            source = f"studies.{study.name}.{name}"
+            values = changed_values(base, point.set, source)
+            cases[f"{config.case}/studies/{study.name}/{name}"] = values
+    return {case: {**values, "case": case} for case, values in cases.items()}
 
 
-def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """`changed_config` with what follows from other keys filled in."""
-    return resolved(changed_config(base, changes, where))
+def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """Change dotted keys of a config, as `changed_config`, and fill in what follows from other keys.
 
+    Parameters
+    ----------
+    base : Mapping[str, Any]
+        Plain values of a whole config.
+    changes : Mapping[str, Any]
+        New values by dotted key.
+    source : str
+        What the error names as the origin of the changes.
 
-def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> Config:
-    """The machine of a config with some dotted keys changed; without studies and reproduction.
-
-    Raises ConfigErrors, led by `where`, for a key that does not stand in the config and a value it refuses.
+    Returns
+    -------
+    dict[str, Any]
+        Plain values of the new config.
     """
-    changed, lines = deepcopy({**base, "studies": [], "reproduction": None}), []
+    return resolved_values(changed_config(base, changes, source))
+
+
+def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], source: str) -> Config:
+    """Change dotted keys of a config; studies and reproduction are left out.
+
+    Parameters
+    ----------
+    base : Mapping[str, Any]
+        Plain values of a whole config.
+    changes : Mapping[str, Any]
+        New values by dotted key.
+    source : str
+        What the error names as the origin of the changes.
+
+    Returns
+    -------
+    Config
+        The validated config with the changes.
+
+    Raises
+    ------
+    ConfigErrors
+        For a key that does not stand in the config, and for a value that it refuses.
+    """
+    new_values, lines = deepcopy({**base, "studies": [], "reproduction": None}), []
     before: list[str] = []
     for key, value in changes.items():
-        lost = [earlier for earlier in before if earlier.startswith(f"{key}.")]
+        overwritten = [earlier for earlier in before if earlier.startswith(f"{key}.")]
         before.append(key)
-        if lost:
-            lines.append(f"{lost[0]}: must come after {key}, which holds it, or its value would be lost")
+        if overwritten:
+            lines.append(
+                f"{overwritten[0]}: must come after {key}, which holds it, or its value would be lost"
+            )
         try:
-            set_key(changed, key, value)
+            set_key(new_values, key, value)
         except ConfigError as error:
             lines.append(str(error))
     if lines:
-        raise ConfigErrors(where, lines)
+        raise ConfigErrors(source, lines)
     if "mesh_stiffness.csv" in changes:
-        changed["mesh_stiffness"]["table"] = []
+        new_values["mesh_stiffness"]["table"] = []
     for body in ("pinion", "face_gear"):
         if f"tooth_pair.{body}.flanks.file" in changes:
-            changed["tooth_pair"][body]["flanks"]["grids"] = []
-    return parse(Config, changed, source=where)
+            new_values["tooth_pair"][body]["flanks"]["grids"] = []
+    return parse(Config, new_values, source=source)
 
 
 def study_points(study: Study) -> dict[str, StudyPoint]:
-    """Folder name -> label and keys it sets, for the product of the study's axes."""
+    """Return the points of a study: the product of its axes.
+
+    Parameters
+    ----------
+    study : Study
+        Section of the study.
+
+    Returns
+    -------
+    dict[str, StudyPoint]
+        Label and keys of each point by the name of its folder.
+
+    Raises
+    ------
+    ConfigErrors
+        If two points have the same folder name.
+    """
     points: dict[str, StudyPoint] = {}
-    for combination in itertools.product(*(axis.resolved() for axis in study.axes)):
+    for combination in itertools.product(*(axis.study_points() for axis in study.axes)):
         labels = [
             f"{axis.label} = {point.label}" if axis.key else point.label
             for axis, point in zip(study.axes, combination, strict=True)
@@ -82,8 +147,10 @@ def study_points(study: Study) -> dict[str, StudyPoint]:
 
 @dataclass(frozen=True)
 class NumberedStudy:
-    """A study with an axis of numbers: the dotted key that they belong to, the axis' label, and of each point
-    by its folder name its number and the label of its point on the other axis.
+    """A study with an axis of numbers.
+
+    `key` is the dotted key that the numbers belong to, `label` the label of the axis. `points` holds for each
+    point, by its folder name, its number and the label of its point on the other axis.
     """
 
     key: str
@@ -91,34 +158,63 @@ class NumberedStudy:
     points: Mapping[str, tuple[float, str]]
 
 
-def numbered(study: Study) -> NumberedStudy | None:
-    """The first axis on which at least MANY points set a key to different numbers, if there is one."""
+def find_numeric_axis(study: Study) -> NumberedStudy | None:
+    """Find the first axis of a study on which at least MIN_CURVE_POINTS points set a key to different
+    numbers.
+
+    Parameters
+    ----------
+    study : Study
+        Section of the study.
+
+    Returns
+    -------
+    NumberedStudy or None
+        The study with that axis; None if there is none.
+    """
     for number, axis in enumerate(study.axes):
         numbers = axis.numbers()
-        if not numbers or len(axis.resolved()) < MANY:
+        if not numbers or len(axis.study_points()) < MIN_CURVE_POINTS:
             continue
         key, values = next(iter(numbers.items()))
-        combinations = itertools.product(*(range(len(other.resolved())) for other in study.axes))
+        combinations = itertools.product(
+            *(range(len(study_axis.study_points())) for study_axis in study.axes)
+        )
         points = {
-            name: (float(values[chosen[number]]), _others(study, number, chosen))
-            for name, chosen in zip(study_points(study), combinations, strict=True)
+            name: (float(values[combination[number]]), _other_axis_label(study, number, combination))
+            for name, combination in zip(study_points(study), combinations, strict=True)
         }
         return NumberedStudy(key, axis.label, points)
     return None
 
 
-def _others(study: Study, left_out: int, chosen: Sequence[int]) -> str:
+def _other_axis_label(study: Study, left_out: int, combination: Sequence[int]) -> str:
     """Label of a point on the axis beside the one that is left out."""
     parts = [
-        f"{axis.label} = {axis.resolved()[point].label}" if axis.key else axis.resolved()[point].label
-        for position, (axis, point) in enumerate(zip(study.axes, chosen, strict=True))
+        f"{axis.label} = {axis.study_points()[point].label}" if axis.key else axis.study_points()[point].label
+        for position, (axis, point) in enumerate(zip(study.axes, combination, strict=True))
         if position != left_out
     ]
     return ", ".join(parts)
 
 
 def set_key(values: dict[str, Any], key: str, value: Any) -> None:
-    """Set a dotted key (list positions as numbers). Raises ConfigError if it does not stand in `values`."""
+    """Set a dotted key in nested values, in place.
+
+    Parameters
+    ----------
+    values : dict[str, Any]
+        Nested mappings and lists; written.
+    key : str
+        Dotted key, with list positions as numbers.
+    value : Any
+        New value.
+
+    Raises
+    ------
+    ConfigError
+        If the key does not stand in `values`.
+    """
     *sections, last = key.split(".")
     inside: Any = values
     for depth, part in enumerate(sections):
@@ -126,27 +222,43 @@ def set_key(values: dict[str, Any], key: str, value: Any) -> None:
     inside[_position(inside, last, key, value, sections)] = value
 
 
-FIXED = ("case", "studies", "reproduction")
+FIXED_KEYS = ("case", "studies", "reproduction")
 """Keys that no change of a config may touch."""
 
 
 def _position(inside: Any, part: str, key: str, value: Any, before: Sequence[str]) -> str | int:
-    """Key or list position of a part of a dotted key, behind the parts `before` it. Raises ConfigError."""
-    if isinstance(inside, dict) and part in inside and (before or part not in FIXED):
+    """Return the key or list position of one part of a dotted key.
+
+    `before` holds the parts in front of it. Raises ConfigError if the part does not exist.
+    """
+    if isinstance(inside, dict) and part in inside and (before or part not in FIXED_KEYS):
         return part
     if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
         return int(part)
-    allowed = f"a dotted key of the config, but not {', '.join(FIXED[:-1])} or {FIXED[-1]}"
-    where = ".".join(before)
+    requirement = f"a dotted key of the config, but not {', '.join(FIXED_KEYS[:-1])} or {FIXED_KEYS[-1]}"
+    section = ".".join(before)
     if inside is None:
-        allowed += f"; {where} is null, set it as a whole"
+        requirement += f"; {section} is null, set it as a whole"
     elif isinstance(inside, list):
-        allowed += f"; {where} has the positions 0 to {len(inside) - 1}" if inside else f"; {where} is empty"
-    elif isinstance(inside, dict) and part not in FIXED:
-        allowed += f"; {suggestion(part, [name for name in inside if before or name not in FIXED])}"
-    raise ConfigError(key, value, allowed)
+        requirement += (
+            f"; {section} has the positions 0 to {len(inside) - 1}" if inside else f"; {section} is empty"
+        )
+    elif isinstance(inside, dict) and part not in FIXED_KEYS:
+        requirement += f"; {suggestion(part, [name for name in inside if before or name not in FIXED_KEYS])}"
+    raise ConfigError(key, value, requirement)
 
 
 def folder_name(label: str) -> str:
-    """A label as the name of a folder: lower case words joined by underscores."""
+    """Convert a label to the name of a folder.
+
+    Parameters
+    ----------
+    label : str
+        Label of a point.
+
+    Returns
+    -------
+    str
+        Lower-case words joined by underscores.
+    """
     return re.sub(r"[^a-z0-9]+", "_", label.lower().replace(".", "p")).strip("_") or "point"

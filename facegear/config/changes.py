@@ -10,6 +10,7 @@ SPEED = "dynamics.speed_rpm"
 MACHINE = "transmission."
 PAIR = "tooth_pair."
 LUBRICATION = "lubrication."
+"""Dotted key of the nominal speed, and beginnings of the dotted keys of three sections."""
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
 """Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 GAPS = (
@@ -21,14 +22,15 @@ GAPS = (
 MODULI = tuple(f"{body}material.young_modulus_gpa" for body in ("", "pinion.", "face_gear."))
 """Keys of the tooth pair that a compliance is inversely proportional to."""
 WITHOUT_MESHING = tuple(f"{PAIR}{key}" for key in (*GAPS, *MODULI))
-"""What of the tooth pair may change without a body being meshed and factorised again."""
-SHARED = {"single_pinions": "pinion", "single_gears": "face_gear", "single_meshes": None}
-"""Sections of single parts, and the section that holds what all parts of the kind have."""
+"""Keys of the tooth pair that may change without a body being meshed and factorised again."""
+SHARED_SECTIONS = {"single_pinions": "pinion", "single_gears": "face_gear", "single_meshes": None}
+"""Sections of single parts, each with the section that all parts of the kind share."""
 START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0, "phase_deg": 0.0}}
-"""What a part without an entry of its own has where the shared section says nothing."""
+"""Values of a part without an entry of its own where the shared section says nothing."""
 ONE_SIDE, DIAMETRAL = "clearance_um", "clearance_diametral_um"
 """Two ways in which a config gives the clearance of pinions; the second number is twice the first."""
 PLAIN = {"error_um": 0.0, "stiffness_factor": 1.0, "clocking_deg": 0.0}
+"""Values of a single mesh or pinion without an entry of its own, of keys that no shared section has."""
 
 
 def variable_part(
@@ -37,7 +39,24 @@ def variable_part(
     speed_rpm: float,
     lubrication: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """The plain values of a config that may change from machine to machine, under the keys that they have."""
+    """Collect the plain config values that may change from machine to machine.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any]
+        Section `transmission`.
+    tooth_pair : Mapping[str, Any]
+        Section `tooth_pair`.
+    speed_rpm : float
+        Pinion speed, rpm.
+    lubrication : Mapping[str, Any] or None
+        Section `lubrication`; None without it.
+
+    Returns
+    -------
+    dict[str, Any]
+        The values under the keys that they have in a config.
+    """
     return {
         "transmission": transmission,
         "tooth_pair": tooth_pair,
@@ -47,40 +66,89 @@ def variable_part(
 
 
 def without(values: Any, key: str) -> Any:
-    """A copy of nested mappings without one dotted key."""
+    """Copy nested mappings without one dotted key.
+
+    Parameters
+    ----------
+    values : Any
+        Nested mappings; any other value is returned as it is.
+    key : str
+        Dotted key to leave out.
+
+    Returns
+    -------
+    Any
+        The copy.
+    """
     first, _, rest = key.partition(".")
     if not isinstance(values, Mapping) or first not in values:
         return values
-    kept = {name: value for name, value in values.items() if name != first}
-    return {**kept, first: without(values[first], rest)} if rest else kept
+    remainder = {name: value for name, value in values.items() if name != first}
+    return {**remainder, first: without(values[first], rest)} if rest else remainder
 
 
 def moves_pair(keys: Iterable[str]) -> bool:
-    """Whether one of the dotted keys belongs to the tooth pair."""
+    """Whether one of the dotted keys belongs to the tooth pair.
+
+    Parameters
+    ----------
+    keys : Iterable[str]
+        Dotted keys.
+
+    Returns
+    -------
+    bool
+        True if one does.
+    """
     return any(key.startswith(PAIR) for key in keys)
 
 
 def movable(
     values: Mapping[str, Any],
     keys: Iterable[str],
-    allowed: Iterable[str] = (MACHINE, SPEED, PAIR, LUBRICATION),
+    prefixes: Iterable[str] = (MACHINE, SPEED, PAIR, LUBRICATION),
     refused_key: str = "tolerances.causes.moves",
 ) -> dict[str, Any]:
-    """Values as of `variable_part` with an entry for every single part that one of the keys names.
+    """Prepare config values for changes of single keys.
 
-    What such an entry leaves open is filled with what all parts have. Where a key is a clearance to each
-    side, clearances given from side to side become clearances to each side. Raises ConfigError for
-    `refused_key`, naming the first key that begins with none of the texts `allowed`, or is no number.
+    Every single part that one of the keys names gets an entry of its own. Values that the entry leaves open
+    are filled with those of all parts. Where a key is a clearance to each side, clearances given from side to
+    side become clearances to each side.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Result of `variable_part`.
+    keys : Iterable[str]
+        Dotted keys that will change.
+    prefixes : Iterable[str]
+        Texts of which a key must begin with one.
+    refused_key : str
+        Key of the config that an error names.
+
+    Returns
+    -------
+    dict[str, Any]
+        A copy of the values with the entries added.
+
+    Raises
+    ------
+    ConfigError
+        For `refused_key`, with the first key that begins with none of the prefixes or is no number.
     """
     complete, keys = deepcopy(dict(values)), tuple(keys)
     if any(key.endswith(f".{ONE_SIDE}") for key in keys):
         _to_each_side(complete["transmission"])
     for key in keys:
-        if not key.startswith(tuple(allowed)):
-            names = ", ".join(text.removesuffix(".") for text in allowed)
+        if not key.startswith(tuple(prefixes)):
+            names = ", ".join(text.removesuffix(".") for text in prefixes)
             raise ConfigError(refused_key, key, f"a number of {names}")
         parts = key.split(".")
-        if len(parts) > 3 and parts[1] in SHARED and isinstance(complete[parts[0]].get(parts[1]), dict):
+        if (
+            len(parts) > 3
+            and parts[1] in SHARED_SECTIONS
+            and isinstance(complete[parts[0]].get(parts[1]), dict)
+        ):
             _enter(complete[parts[0]], parts[1:])
         inside, last = _holder(complete, parts)
         value = inside[last] if _has(inside, last) else None
@@ -89,26 +157,40 @@ def movable(
     return complete
 
 
-def moved(values: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
-    """Values made by `movable` with the changes added to their nominal values; the others are shared."""
-    changed: dict[str, Any] = dict(values)
+def add_changes(values: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
+    """Add changes to the nominal values of dotted keys.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Result of `movable`.
+    changes : Mapping[str, float]
+        Increment of each dotted key, in the unit of the key.
+
+    Returns
+    -------
+    dict[str, Any]
+        New values; parts that do not change are shared with `values`.
+    """
+    new_values: dict[str, Any] = dict(values)
     copies: dict[str, Any] = {}
-    for key, added in changes.items():
+    for key, increment in changes.items():
         path, _, last = key.rpartition(".")
-        holder = _own_copy(changed, path, copies)
-        holder[_index_of(holder, last)] += added
-    return changed
+        holder = _own_copy(new_values, path, copies)
+        holder[_index_of(holder, last)] += increment
+    return new_values
 
 
-def _own_copy(changed: dict[str, Any], path: str, copies: dict[str, Any]) -> Any:
-    """What stands at a dotted path of values, copied with all that it stands in; `copies` has what was copied
-    before, by path.
+def _own_copy(values: dict[str, Any], path: str, copies: dict[str, Any]) -> Any:
+    """Return the part of the values at a dotted path, copied with everything that contains it.
+
+    `copies` holds the copies made so far, by path.
     """
     if not path:
-        return changed
+        return values
     if path not in copies:
         above, _, part = path.rpartition(".")
-        holder = _own_copy(changed, above, copies)
+        holder = _own_copy(values, above, copies)
         index = _index_of(holder, part)
         inside = holder[index]
         copies[path] = holder[index] = list(inside) if isinstance(inside, list | tuple) else dict(inside)
@@ -116,7 +198,20 @@ def _own_copy(changed: dict[str, Any], path: str, copies: dict[str, Any]) -> Any
 
 
 def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
-    """The number that all keys of values made by `movable` have; nan where they differ."""
+    """Return the number that several keys have in common.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Result of `movable`.
+    keys : Iterable[str]
+        Dotted keys.
+
+    Returns
+    -------
+    float
+        Their number, in the unit of the keys; nan where they differ.
+    """
     numbers = set()
     for key in keys:
         inside, last = _holder(values, key.split("."))
@@ -124,15 +219,28 @@ def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
     return numbers.pop() if len(numbers) == 1 else float("nan")
 
 
-def placed(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
-    """Values made by `movable` with numbers in the place of nominal ones; those of teeth are rounded."""
-    changed: dict[str, Any] = dict(values)
+def set_numbers(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
+    """Replace the nominal values of dotted keys by other numbers.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Result of `movable`.
+    numbers : Mapping[str, float]
+        New number of each dotted key, in the unit of the key; numbers of teeth are rounded.
+
+    Returns
+    -------
+    dict[str, Any]
+        New values; parts that do not change are shared with `values`.
+    """
+    new_values: dict[str, Any] = dict(values)
     copies: dict[str, Any] = {}
     for key, number in numbers.items():
         path, _, last = key.rpartition(".")
-        holder = _own_copy(changed, path, copies)
+        holder = _own_copy(new_values, path, copies)
         holder[_index_of(holder, last)] = round(number) if key.endswith("teeth") else number
-    return changed
+    return new_values
 
 
 def _to_each_side(transmission: Mapping[str, Any]) -> None:
@@ -144,14 +252,14 @@ def _to_each_side(transmission: Mapping[str, Any]) -> None:
 def _enter(section: dict[str, Any], parts: list[str]) -> None:
     """Give the named part an entry that says what all parts of its kind have."""
     kind, name, field = parts[:3]
-    own = section[kind].setdefault(name, {})
-    if own.get(field) is not None:
+    entry = section[kind].setdefault(name, {})
+    if entry.get(field) is not None:
         return
-    shared = SHARED[kind]
-    common = (section if shared is None else section[shared]).get(field)
+    shared_section = SHARED_SECTIONS[kind]
+    common = (section if shared_section is None else section[shared_section]).get(field)
     initial = common if common is not None else START.get(field, PLAIN.get(field))
     if initial is not None:
-        own[field] = deepcopy(initial)
+        entry[field] = deepcopy(initial)
 
 
 def _holder(values: Any, parts: list[str]) -> tuple[Any, Any]:

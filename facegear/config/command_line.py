@@ -7,7 +7,9 @@ from facegear.config.load import read_layers
 from facegear.errors import ConfigErrors
 
 OPTIONS = ("--configfile", "--configfiles")
+"""Options of Snakemake that name config files."""
 ENDINGS = (".yaml", ".yml", ".json")
+"""Endings of the names of config files."""
 
 
 def check_configfiles(arguments: Sequence[str]) -> None:
@@ -15,8 +17,13 @@ def check_configfiles(arguments: Sequence[str]) -> None:
 
     The profiles call it with the command line: Snakemake opens these files before any code of a workflow
     runs, and what it cannot read ends in a traceback.
+
+    Parameters
+    ----------
+    arguments : Sequence[str]
+        Arguments of the command line.
     """
-    for name in _named(arguments):
+    for name in _config_files(arguments):
         try:
             read_layers(name)
         except ConfigErrors as error:
@@ -26,14 +33,14 @@ def check_configfiles(arguments: Sequence[str]) -> None:
             sys.exit(message)
 
 
-def _named(arguments: Sequence[str]) -> Iterator[str]:
-    """All that stands after an option for config files, up to the next option."""
-    taken = False
+def _config_files(arguments: Sequence[str]) -> Iterator[str]:
+    """Yield the arguments that stand after an option for config files, up to the next option."""
+    is_file = False
     for argument in arguments:
         option, equals, value = argument.partition("=")
         if argument.startswith("-"):
-            taken = option in OPTIONS
-            if taken and equals:
+            is_file = option in OPTIONS
+            if is_file and equals:
                 yield value
-        elif taken:
+        elif is_file:
             yield argument

@@ -55,7 +55,7 @@ class Contact(Section):
     )
 
     @model_validator(mode="after")
-    def _rising(self) -> "Contact":
+    def _check_torques(self) -> "Contact":
         if list(self.torques_n_m) != sorted(set(self.torques_n_m)):
             refuse("torques_n_m", list(self.torques_n_m), "rising, each once")
         if self.root_stress and self.element != "hex27":
@@ -64,7 +64,18 @@ class Contact(Section):
 
 
 def contact_plan(section: Contact) -> ContactPlan:
-    """What the analysis needs, in SI units."""
+    """Return the plan of the contact analysis in SI units.
+
+    Parameters
+    ----------
+    section : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    ContactPlan
+        Torques (N m), positions, refinement, sector and options.
+    """
     layer, sector = section.refinement, section.sector
     return ContactPlan(
         torques=section.torques_n_m,

@@ -25,9 +25,26 @@ class ContactSetup:
 
 
 def contact_setup(tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> ContactSetup:
-    """With as many cuts along the face as the contact ellipse of a crowned pair asks for.
+    """Set up the contact analysis, with as many cuts along the face as the contact ellipse asks for.
 
-    Raises ConfigError for a pair without bodies, and for an ellipse that no cuts resolve.
+    Parameters
+    ----------
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    mesh : Mesh
+        Section `mesh` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    ContactSetup
+        The pair, the sizes of its elements and the plan, in SI units.
+
+    Raises
+    ------
+    ConfigError
+        For a pair without bodies, and for an ellipse that no cuts resolve.
     """
     teeth = pair(tooth_pair)
     sizes = mesh_sizes(mesh, teeth.design.module)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from facegear.config.base import RENAMED, suggestion
+from facegear.config.base import NEW_KEYS, suggestion
 from facegear.errors import plain_reason
 from facegear.number_format import count_noun
 
@@ -22,8 +22,10 @@ class CsvRow(NamedTuple):
 
 
 class CsvTable(NamedTuple):
-    """What stands in lines that begin with # before the column names, and the lines below these, each with
-    its numbers and its texts by column.
+    """Remarks and rows of a file.
+
+    `remarks` are the lines that begin with # before the column names. Each of the `rows` holds the numbers
+    and the texts of a line by column.
     """
 
     remarks: list[str]
@@ -37,7 +39,24 @@ class CsvFault(Exception):
 def read_numbers(path: str | Path, columns: Sequence[str], unread: Sequence[str] = ()) -> list[CsvRow]:
     """Return the finite numbers of the named columns, row by row.
 
-    Columns named in `unread` may stand beside them. Raises CsvFault naming the line, or any other column.
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    columns : Sequence[str]
+        Names of the columns of numbers.
+    unread : Sequence[str]
+        Names of columns that may stand beside them and are not read.
+
+    Returns
+    -------
+    list[CsvRow]
+        The rows.
+
+    Raises
+    ------
+    CsvFault
+        With the line, or any other column.
     """
     return [row for row, _ in read_table(path, columns, unread=unread).rows]
 
@@ -49,20 +68,40 @@ def read_table(
     optional: Sequence[str] = (),
     unread: Sequence[str] = (),
 ) -> CsvTable:
-    """Return finite numbers of `columns`, texts of `texts`, and numbers of `optional` where they stand there.
+    """Return finite numbers and texts of the named columns, row by row.
 
-    Of the optional columns all or none must be given; those named in `unread` may stand beside them. Raises
-    CsvFault naming the line, or any other column.
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    columns : Sequence[str]
+        Names of columns of numbers.
+    texts : Sequence[str]
+        Names of columns of texts.
+    optional : Sequence[str]
+        Names of columns of numbers of which all or none must be given.
+    unread : Sequence[str]
+        Names of columns that may stand beside them and are not read.
+
+    Returns
+    -------
+    CsvTable
+        Remarks and rows.
+
+    Raises
+    ------
+    CsvFault
+        With the line, or any other column.
     """
     content = _text(Path(path)).splitlines()
     first = next((number for number, line in enumerate(content) if not line.startswith("#")), len(content))
     lines = csv.reader(content[first:])
     try:
         header = [name.strip() for name in next(lines, [])]
-        given = set(optional) & set(header)
-        needed = [*texts, *columns, *(optional if given else ())]
-        _check_header(header, needed, [*texts, *columns, *optional], unread)
-        numbers = [*columns, *(optional if given else ())]
+        optional_present = set(optional) & set(header)
+        required_columns = [*texts, *columns, *(optional if optional_present else ())]
+        _check_header(header, required_columns, [*texts, *columns, *optional], unread)
+        numbers = [*columns, *(optional if optional_present else ())]
         rows = []
         for cells in lines:
             if any(cell.strip() for cell in cells):
@@ -75,9 +114,22 @@ def read_table(
 
 
 def column_names(path: str | Path) -> list[str]:
-    """Return the names in the first line that is no remark; none where the file is empty.
+    """Return the names in the first line that is no remark.
 
-    Raises CsvFault where the file or this line cannot be read.
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    list[str]
+        The names; none where the file is empty.
+
+    Raises
+    ------
+    CsvFault
+        If the file or this line cannot be read.
     """
     lines = (line for line in _text(Path(path)).splitlines() if not line.startswith("#"))
     try:
@@ -87,21 +139,24 @@ def column_names(path: str | Path) -> list[str]:
 
 
 def _check_header(
-    header: Sequence[str], needed: Sequence[str], known: Sequence[str], unread: Sequence[str]
+    header: Sequence[str],
+    required_columns: Sequence[str],
+    known_columns: Sequence[str],
+    unread: Sequence[str],
 ) -> None:
     """Raise CsvFault for a column that is missing, stands twice, is unknown or has another name today."""
-    renamed = [name for name in header if RENAMED.get(name) in known]
-    if renamed:
-        raise CsvFault("columns: " + ", ".join(f"`{name}` is now `{RENAMED[name]}`" for name in renamed))
-    missing = [name for name in needed if header.count(name) != 1]
-    if missing:
-        message = f"column {missing[0]} must stand once in its first line, separated by commas"
+    old_names = [name for name in header if NEW_KEYS.get(name) in known_columns]
+    if old_names:
+        raise CsvFault("columns: " + ", ".join(f"`{name}` is now `{NEW_KEYS[name]}`" for name in old_names))
+    absent_columns = [name for name in required_columns if header.count(name) != 1]
+    if absent_columns:
+        message = f"column {absent_columns[0]} must stand once in its first line, separated by commas"
         raise CsvFault(f"{message}; it has {', '.join(header)[:200] or 'none'}")
     for number, name in enumerate(header, start=1):
         if not name:
             raise CsvFault(f"column {number} has no name; pandas writes such an index without index=False")
-        if name not in (*known, *unread):
-            raise CsvFault(f"column {name[:40]!r} is unknown; {suggestion(name, known)}")
+        if name not in (*known_columns, *unread):
+            raise CsvFault(f"column {name[:40]!r} is unknown; {suggestion(name, known_columns)}")
 
 
 def _row(

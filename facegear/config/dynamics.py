@@ -10,10 +10,11 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.sweeps.plan import SweepPlan
 
 MAX_SPEED_RPM = 200_000
+"""Largest pinion speed that a config may give, rpm."""
 SECOND_LOOKS = 3
 """Other starts from which a class of motion that is in doubt must come out again."""
-CARRIED = 1e-2
-"""How far they lie from a state that is carried from speed to speed, over the length scale."""
+CARRIED_STATE_OFFSET = 1e-2
+"""Distance of these other starts from a state that is carried from speed to speed, over the length scale."""
 
 
 class Accuracy(Section):
@@ -42,7 +43,7 @@ class Accuracy(Section):
     )
 
 
-SWEPT = Accuracy(
+SWEEP_ACCURACY = Accuracy(
     tolerance=3e-5,
     dwell_periods=32,
     settle_periods=256,
@@ -52,13 +53,15 @@ SWEPT = Accuracy(
     extensions=1,
     samples_per_period=32,
 )
-"""What many speeds in a row are run with."""
+"""Accuracy of each speed where many speeds are run in a row."""
 SWEPT_TEXT = (
-    f"left out as a whole: tolerance {SWEPT.tolerance:g}, settle_periods {SWEPT.settle_periods}, "
-    f"window_periods {SWEPT.window_periods}, periodic_residual {SWEPT.periodic_residual:g}, "
-    f"extensions {SWEPT.extensions}, samples_per_period {SWEPT.samples_per_period}; "
+    f"left out as a whole: tolerance {SWEEP_ACCURACY.tolerance:g}, "
+    f"settle_periods {SWEEP_ACCURACY.settle_periods}, window_periods {SWEEP_ACCURACY.window_periods}, "
+    f"periodic_residual {SWEEP_ACCURACY.periodic_residual:g}, "
+    f"extensions {SWEEP_ACCURACY.extensions}, samples_per_period {SWEEP_ACCURACY.samples_per_period}; "
     "else each key's own default"
 )
+"""Description of the keys with the default SWEEP_ACCURACY."""
 
 
 class Sweep(Section):
@@ -77,10 +80,10 @@ class Sweep(Section):
     jump_resolution_rpm: float = Field(
         1.0, ge=1e-6, le=1000, description="width to which the speed of a jump is bracketed"
     )
-    accuracy: Accuracy = Field(SWEPT, description=SWEPT_TEXT)
+    accuracy: Accuracy = Field(SWEEP_ACCURACY, description=SWEPT_TEXT)
 
     @model_validator(mode="after")
-    def _rising(self) -> "Sweep":
+    def _check_speeds(self) -> "Sweep":
         if self.to_rpm <= self.from_rpm:
             refuse("to_rpm", self.to_rpm, f"more than from_rpm = {self.from_rpm}")
         if len(set(self.directions)) < len(self.directions):
@@ -99,7 +102,18 @@ class Dynamics(Section):
 
 
 def settings(section: Accuracy) -> Settings:
-    """Settings of the steady-state search."""
+    """Return the settings of the steady-state search.
+
+    Parameters
+    ----------
+    section : Accuracy
+        Section `accuracy` of the config.
+
+    Returns
+    -------
+    Settings
+        The settings; lengths in mesh periods.
+    """
     return Settings(
         tolerance=section.tolerance,
         dwell=section.dwell_periods,
@@ -114,7 +128,18 @@ def settings(section: Accuracy) -> Settings:
 
 
 def sweep_plan(section: Sweep) -> SweepPlan:
-    """Speeds, directions, chunks and settings of the sweep."""
+    """Return speeds, directions, chunks and settings of the speed sweep.
+
+    Parameters
+    ----------
+    section : Sweep
+        Section `dynamics.sweep` of the config.
+
+    Returns
+    -------
+    SweepPlan
+        The plan; speeds in rpm.
+    """
     return SweepPlan(
         first_rpm=section.from_rpm,
         last_rpm=section.to_rpm,
@@ -123,5 +148,5 @@ def sweep_plan(section: Sweep) -> SweepPlan:
         chunks=section.chunks,
         overlap=section.overlap_points,
         jump_resolution_rpm=section.jump_resolution_rpm,
-        settings=replace(settings(section.accuracy), second_looks=SECOND_LOOKS, aside=CARRIED),
+        settings=replace(settings(section.accuracy), second_looks=SECOND_LOOKS, aside=CARRIED_STATE_OFFSET),
     )

@@ -18,6 +18,7 @@ from facegear.gear_body.patch import Patch
 from facegear.mesh.tooth_volume import tooth_fill
 
 THINNEST = "thinnest wall of the section"
+"""Name of the quantity by which `facegear.gear_body` refuses a thin wall."""
 KEYS = {
     "outer radius of the hub": "hub.outer_radius_mm",
     "bore radius of the hub": "hub.bore_radius_mm",
@@ -29,25 +30,61 @@ KEYS = {
     THINNEST: "corners_mm",
 }
 """Keys of the section by the words in which its shape is refused."""
-ROUNDED = 1e-6
-"""Part of the mass of a section by which that of the config may be rounded below it."""
+MASS_ROUNDING = 1e-6
+"""Largest part of the mass of a section by which the mass of the config may lie below it, from rounding."""
 ON_LINE = 1e-9
+"""Distance (m) up to which a corner counts as lying on a line: rounding."""
 
 
 def body_of(section: Transmission, side: str) -> BodySection | None:
-    """The body of the lower or upper gear, None for a rigid one."""
-    own = section.single_gears.get(side)
-    return (own.body if own is not None else None) or section.face_gear.body
+    """Return the body of a face gear.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    side : str
+        `lower` or `upper`.
+
+    Returns
+    -------
+    BodySection or None
+        Section of the body; None for a rigid gear.
+    """
+    single_gear = section.single_gears.get(side)
+    return (single_gear.body if single_gear is not None else None) or section.face_gear.body
 
 
 def elastic_gears(section: Transmission) -> dict[str, BodySection]:
-    """The bodies of the gears that bend, by side."""
+    """Return the bodies of the face gears that bend.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+
+    Returns
+    -------
+    dict[str, BodySection]
+        Sections of the bodies by side.
+    """
     bodies = {side: body_of(section, side) for side in section.face_gears}
     return {side: body for side, body in bodies.items() if body is not None}
 
 
 def any_elastic(transmission: Mapping[str, Any] | None) -> bool:
-    """Whether a gear bends, by the plain values of section transmission."""
+    """Whether a face gear bends.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any] or None
+        Plain values of section `transmission`; None without it.
+
+    Returns
+    -------
+    bool
+        True if one of the gears has a body that bends.
+    """
     if transmission is None:
         return False
     parts = (transmission["face_gear"], *transmission["single_gears"].values())
@@ -55,37 +92,97 @@ def any_elastic(transmission: Mapping[str, Any] | None) -> bool:
 
 
 def pitch_height(teeth: ToothPair) -> float:
-    """Height (m) of the pitch plane over the plane on which the contact analysis clamps the teeth."""
+    """Height of the pitch plane over the plane on which the contact analysis clamps the teeth.
+
+    Parameters
+    ----------
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    float
+        Height, m.
+    """
     assert teeth.face_gear is not None and teeth.shaper is not None
     return 1e-3 * (teeth.face_gear.rim_thickness_mm + teeth.module_mm * teeth.shaper.addendum_modules)
 
 
 def contact_patch(section: BodySection, teeth: ToothPair) -> Patch:
-    """Where a mesh presses on the body."""
+    """Return the patch of the rim on which a mesh presses.
+
+    Parameters
+    ----------
+    section : BodySection
+        Section of the body.
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    Patch
+        Its height (m) and half its width (rad).
+    """
     pitch = 2.0 * np.pi / teeth.face_gear_teeth
     return Patch(pitch_height(teeth), 0.5 * section.contact_width_pitches * pitch)
 
 
 def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
-    """The section in SI units. Raises InvalidInput for one that cannot be."""
+    """Return the cross-section of a body in SI units.
+
+    Parameters
+    ----------
+    section : BodySection
+        Section of the body.
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    shapes.Section
+        Corners (m), material and tooth layer of the cross-section.
+
+    Raises
+    ------
+    InvalidInput
+        For a cross-section that cannot exist.
+    """
     gear = teeth.face_gear
     assert gear is not None and teeth.shaper is not None
     inner, outer = 1e-3 * gear.inner_radius_mm, 1e-3 * gear.outer_radius_mm
     top = 1e-3 * gear.rim_thickness_mm
-    corners, held = _polygon(section, inner, outer, top)
+    corners, held_edges = _polygon(section, inner, outer, top)
     tip = pitch_height(teeth) + 1e-3 * teeth.module_mm * gear.addendum_modules
     material = pair(teeth).material("face_gear")
-    if (own := section.material) is not None:
-        material = type(material)(1e9 * own.young_modulus_gpa, own.poisson_ratio)
+    if (material_section := section.material) is not None:
+        material = type(material)(1e9 * material_section.young_modulus_gpa, material_section.poisson_ratio)
     layer = shapes.Layer(inner, outer, top, tip) if section.teeth else None
     if layer is not None and section.teeth == "fitted":
-        filled, centre = tooth_fill(pair_design(teeth))
-        layer = replace(layer, density=filled, taper=6.0 * (0.5 - centre))
-    return shapes.Section(corners, held, (inner, outer), material, section.density_kg_per_m3, layer)
+        fill_factor, centre = tooth_fill(pair_design(teeth))
+        layer = replace(layer, density=fill_factor, taper=6.0 * (0.5 - centre))
+    return shapes.Section(corners, held_edges, (inner, outer), material, section.density_kg_per_m3, layer)
 
 
 def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
-    """The section as `body_shape`, its teeth as stiff as `body.teeth` says. Raises NotConverged."""
+    """Return the cross-section of a body, as `body_shape`, with its teeth as stiff as `body.teeth` says.
+
+    Parameters
+    ----------
+    section : BodySection
+        Section of the body.
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    shapes.Section
+        The cross-section in SI units.
+
+    Raises
+    ------
+    NotConverged
+        If the stiffness of the teeth is not found.
+    """
     shape = body_shape(section, teeth)
     if section.teeth != "fitted":
         return shape
@@ -95,14 +192,16 @@ def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
 
 
 def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tuple[Array, tuple[bool, ...]]:
-    """Corners in m, anticlockwise, and which edges are held."""
+    """Corners in m, anticlockwise, and for each edge whether it is held."""
     if section.corners_mm:
-        given = 1e-3 * np.array(section.corners_mm)
-        shapes.require_simple(given)
-        corners = shapes.anticlockwise(given)
+        config_corners = 1e-3 * np.array(section.corners_mm)
+        shapes.require_simple(config_corners)
+        corners = shapes.anticlockwise(config_corners)
         if section.held_edges:
-            held = np.isin(np.arange(1, len(given) + 1), section.held_edges)
-            return corners, tuple((held if np.array_equal(corners, given) else held[::-1]).tolist())
+            is_held = np.isin(np.arange(1, len(config_corners) + 1), section.held_edges)
+            return corners, tuple(
+                (is_held if np.array_equal(corners, config_corners) else is_held[::-1]).tolist()
+            )
         return corners, bore(corners)
     rim = section.rim
     assert rim is not None
@@ -129,19 +228,43 @@ def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tu
 
 
 def bore(corners: Array) -> tuple[bool, ...]:
-    """The edges at the smallest distance from the axis."""
+    """Find the edges at the smallest distance from the axis.
+
+    Parameters
+    ----------
+    corners : (corners, 2) array
+        Distance from the axis and height of each corner, m.
+
+    Returns
+    -------
+    tuple[bool, ...]
+        For each edge whether it belongs to the bore.
+    """
     inside = corners[:, 0] < corners[:, 0].min() + ON_LINE
     return tuple((inside & np.roll(inside, -1)).tolist())
 
 
 def check_bodies(teeth: ToothPair, section: Transmission) -> None:
-    """The bodies of a machine can be and fit its teeth and masses. Raises ConfigError."""
+    """Require that the bodies of a machine can exist and fit its teeth and masses.
+
+    Parameters
+    ----------
+    teeth : ToothPair
+        Section `tooth_pair` of the config.
+    section : Transmission
+        Section `transmission` of the config.
+
+    Raises
+    ------
+    ConfigError
+        For the first body that does not.
+    """
     _refuse_hubs_alone(section)
     for side in section.face_gears:
         if (body := body_of(section, side)) is None:
             continue
-        own = section.single_gears.get(side)
-        alone = own is not None and own.body is not None
+        single_gear = section.single_gears.get(side)
+        alone = single_gear is not None and single_gear.body is not None
         key = f"transmission.single_gears.{side}" if alone else "transmission.face_gear"
         _check_body(key, side, body, teeth, section)
 
@@ -149,27 +272,35 @@ def check_bodies(teeth: ToothPair, section: Transmission) -> None:
 def _refuse_hubs_alone(section: Transmission) -> None:
     """Raises ConfigError for the tilt of a hub where no web bends."""
     single = section.single_gears.items()
-    rigid = [f"single_gears.{side}" for side, own in single if own.hub_tilt and not body_of(section, side)]
+    rigid = [
+        f"single_gears.{side}"
+        for side, single_gear in single
+        if single_gear.hub_tilt and not body_of(section, side)
+    ]
     if section.face_gear.hub_tilt is not None and not elastic_gears(section):
         rigid.append("face_gear")
     if rigid:
-        allowed = "left out where the gear has no body that bends, whose tilt is given by tilt"
-        raise ConfigError(f"transmission.{rigid[0]}.hub_tilt", "given", allowed)
+        requirement = "left out where the gear has no body that bends, whose tilt is given by tilt"
+        raise ConfigError(f"transmission.{rigid[0]}.hub_tilt", "given", requirement)
 
 
 def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Transmission) -> None:
     """The hub's tilt carries at least the section. Raises ConfigError."""
-    own = section.single_gears.get(side)
-    alone = own is not None and own.hub_tilt is not None
-    tilt = own.hub_tilt if own is not None and own.hub_tilt is not None else section.face_gear.hub_tilt
+    single_gear = section.single_gears.get(side)
+    alone = single_gear is not None and single_gear.hub_tilt is not None
+    tilt = (
+        single_gear.hub_tilt
+        if single_gear is not None and single_gear.hub_tilt is not None
+        else section.face_gear.hub_tilt
+    )
     if tilt is None:
         return
     centre = pitch_height(teeth) - 1e-3 * tilt.centre_below_pitch_plane_mm
-    needed = shapes.inertia_about(shape, centre)
-    if tilt.inertia_kg_m2 < needed * (1.0 - ROUNDED):
-        where = f"transmission.single_gears.{side}" if alone else "transmission.face_gear"
-        allowed = f"at least {needed:.6g} kg m2, which the section of the body has about that point"
-        raise ConfigError(f"{where}.hub_tilt.inertia_kg_m2", tilt.inertia_kg_m2, allowed)
+    min_inertia = shapes.inertia_about(shape, centre)
+    if tilt.inertia_kg_m2 < min_inertia * (1.0 - MASS_ROUNDING):
+        owner_key = f"transmission.single_gears.{side}" if alone else "transmission.face_gear"
+        requirement = f"at least {min_inertia:.6g} kg m2, which the section of the body has about that point"
+        raise ConfigError(f"{owner_key}.hub_tilt.inertia_kg_m2", tilt.inertia_kg_m2, requirement)
 
 
 def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, section: Transmission) -> None:
@@ -177,8 +308,8 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
         raise ConfigError(f"{key}.body", "a section", "rigid where mesh_kinematics is printed")
     if teeth.face_gear is None:
         raise ConfigError("tooth_pair.face_gear", None, f"given, as required by {key}.body")
-    own = section.single_gears.get(side)
-    if section.face_gear.tilt is not None or (own is not None and own.tilt is not None):
+    single_gear = section.single_gears.get(side)
+    if section.face_gear.tilt is not None or (single_gear is not None and single_gear.tilt is not None):
         raise ConfigError(
             f"{key}.tilt",
             "given",
@@ -191,24 +322,26 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
     except InvalidInput as error:
         _refuse_shape(f"{key}.body", body, error)
     mass, polar, *_ = shapes.section_properties(shape)
-    for name, needed, unit in (("mass_kg", mass, "kg"), ("inertia_kg_m2", polar, "kg m2")):
-        single = getattr(own, name) if own is not None else None
+    for name, min_value, unit in (("mass_kg", mass, "kg"), ("inertia_kg_m2", polar, "kg m2")):
+        single = getattr(single_gear, name) if single_gear is not None else None
         value = getattr(section.face_gear, name) if single is None else single
-        if value < needed * (1.0 - ROUNDED):
-            where = key if single is None else f"transmission.single_gears.{side}"
-            allowed = f"at least {needed:.6g} {unit}, which the section of the body has; more is the hub's"
-            raise ConfigError(f"{where}.{name}", value, allowed)
+        if value < min_value * (1.0 - MASS_ROUNDING):
+            owner_key = key if single is None else f"transmission.single_gears.{side}"
+            requirement = (
+                f"at least {min_value:.6g} {unit}, which the section of the body has; more is the hub's"
+            )
+            raise ConfigError(f"{owner_key}.{name}", value, requirement)
     _check_hub(side, shape, teeth, section)
 
 
 def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
-    name, value, allowed = KEYS[error.quantity], error.value, error.allowed.replace("`", "")
+    name, value, requirement = KEYS[error.quantity], error.value, error.allowed.replace("`", "")
     if error.quantity == THINNEST:
         name, value = _thinnest_key(body)
-        allowed = f"such that the thinnest wall of the section, now {error.value} mm, is {allowed}"
+        requirement = f"such that the thinnest wall of the section, now {error.value} mm, is {requirement}"
     elif body.corners_mm:
         name = "corners_mm"
-    raise ConfigError(f"{key}.{name}", value, allowed) from None
+    raise ConfigError(f"{key}.{name}", value, requirement) from None
 
 
 def _thinnest_key(body: BodySection) -> tuple[str, object]:
@@ -221,23 +354,55 @@ def _thinnest_key(body: BodySection) -> tuple[str, object]:
 
 
 def require_teeth_on_rim(shape: shapes.Section, top: float) -> None:
-    """Raises InvalidInput unless an edge of the section carries all teeth, with their rim solid below it."""
+    """Require that an edge of the cross-section carries all teeth, with their rim solid below it.
+
+    Parameters
+    ----------
+    shape : shapes.Section
+        Cross-section in SI units.
+    top : float
+        Height of that edge, m.
+
+    Raises
+    ------
+    InvalidInput
+        If no edge does, or there is a gap below the teeth.
+    """
     inner, outer = shape.teeth
     words = f"such that it has an edge at height {1e3 * top:g} mm from {1e3 * inner:g} to {1e3 * outer:g} mm"
     flat = np.abs(shape.edges[:, :, 1] - top).max(axis=1) < ON_LINE
     covers = (shape.edges[:, :, 0].min(axis=1) < inner + ON_LINE) & (
         shape.edges[:, :, 0].max(axis=1) > outer - ON_LINE
     )
-    shown: Sequence[float] = (1e3 * shape.corners[:, 0]).round(6).tolist()
+    radii_mm: Sequence[float] = (1e3 * shape.corners[:, 0]).round(6).tolist()
     if not (flat & covers).any():
-        allowed = f"{words}, on which the teeth stand"
-        raise InvalidInput("inner radius of the rim", [min(shown), max(shown)], allowed)
+        requirement = f"{words}, on which the teeth stand"
+        raise InvalidInput("inner radius of the rim", [min(radii_mm), max(radii_mm)], requirement)
     if crosses_rectangle(shape.edges, inner, outer, 0.0, top):
         raise InvalidInput("corners of the section", "a gap below the teeth", f"{words}, solid to height 0")
 
 
 def crosses_rectangle(edges: Array, inner: float, outer: float, back: float, front: float) -> bool:
-    """Whether an edge runs through the inside of a rectangle."""
+    """Whether an edge runs through the inside of a rectangle.
+
+    Parameters
+    ----------
+    edges : (edges, 2, 2) array
+        Distance from the axis and height (m) of both ends of each edge.
+    inner : float
+        Smallest distance of the rectangle from the axis, m.
+    outer : float
+        Largest distance of the rectangle from the axis, m.
+    back : float
+        Smallest height of the rectangle, m.
+    front : float
+        Largest height of the rectangle, m.
+
+    Returns
+    -------
+    bool
+        True if one does.
+    """
     low, high = np.array([inner, back]) + ON_LINE, np.array([outer, front]) - ON_LINE
     first, way = edges[:, 0], edges[:, 1] - edges[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):

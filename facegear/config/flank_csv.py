@@ -4,16 +4,22 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from facegear.config.csv_file import CsvFault, CsvTable, read_table
+from facegear.config.csv_file import CsvFault, read_table
 
 NUMBERS = ("face_mm", "profile_mm", "deviation_um")
+"""Columns of numbers of a csv of flanks."""
 TEXTS = ("body", "tooth", "flank")
+"""Columns of texts of a csv of flanks."""
 NOMINAL = ("x_mm", "y_mm", "z_mm", "nx", "ny", "nz")
 """Columns that may stand beside the others: the nominal point and its outward normal."""
 BODIES = ("pinion", "face_gear")
+"""Texts allowed in column `body`."""
 SIDES = ("right", "left")
+"""Texts allowed in column `flank`."""
 HEADER = "pitch and thickness"
-KEPT = {"included": "included", "left out": "left_out"}
+"""Name of the remark that says whether pitch and thickness are included."""
+PITCH_REMARKS = {"included": "included", "left out": "left_out"}
+"""Values of the remark `pitch and thickness`, each with the value of the config's key."""
 LARGEST = 300.0
 """Largest deviation (um) of a gear that could run."""
 SMALLEST = 0.05
@@ -27,12 +33,27 @@ class _Point(NamedTuple):
 
 
 def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
-    """Keys `pitch_and_thickness` and `grids` of section `flanks` from the rows of one body.
+    """Read the flanks of one body as keys `pitch_and_thickness` and `grids` of section `flanks`.
 
-    Raises CsvFault, with the line where there is one.
+    Parameters
+    ----------
+    path : str or Path
+        The csv file.
+    body : str
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    dict[str, Any]
+        Plain values of both keys.
+
+    Raises
+    ------
+    CsvFault
+        With the line where there is one.
     """
     table = read_table(path, NUMBERS, TEXTS, NOMINAL)
-    kept = _header(table.remarks)
+    pitch_and_thickness = _header(table.remarks)
     grids: dict[tuple[int | None, str], dict[tuple[float, float], _Point]] = {}
     for row, texts in table.rows:
         _check_texts(row.line, texts)
@@ -40,8 +61,8 @@ def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
             continue
         values = row.values
         if abs(values["deviation_um"]) > LARGEST:
-            allowed = f"must be from -{LARGEST:g} to {LARGEST:g} um"
-            raise CsvFault(f"line {row.line}: deviation_um = {values['deviation_um']:g} {allowed}")
+            requirement = f"must be from -{LARGEST:g} to {LARGEST:g} um"
+            raise CsvFault(f"line {row.line}: deviation_um = {values['deviation_um']:g} {requirement}")
         grid = grids.setdefault((_tooth(row.line, texts["tooth"]), texts["flank"]), {})
         at = round(values["face_mm"], 6), round(values["profile_mm"], 6)
         if at in grid:
@@ -51,23 +72,28 @@ def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
     if not grids:
         raise CsvFault(f"it has no rows with body {body}")
     _check_unit(grids)
-    return {"pitch_and_thickness": kept, "grids": [_grid(*key, grid) for key, grid in grids.items()]}
+    return {
+        "pitch_and_thickness": pitch_and_thickness,
+        "grids": [_grid(*key, grid) for key, grid in grids.items()],
+    }
 
 
 def _header(remarks: Iterable[str]) -> str:
     for remark in remarks:
-        name, _, said = remark.partition(":")
+        name, _, remark_value = remark.partition(":")
         if name.strip() == HEADER:
-            if said.strip() in KEPT:
-                return KEPT[said.strip()]
-            raise CsvFault(f"{HEADER} = {said.strip()!r} must be {' or '.join(KEPT)}")
+            if remark_value.strip() in PITCH_REMARKS:
+                return PITCH_REMARKS[remark_value.strip()]
+            raise CsvFault(f"{HEADER} = {remark_value.strip()!r} must be {' or '.join(PITCH_REMARKS)}")
     raise CsvFault(f"before its column names it must have the line '# {HEADER}: included' or '...: left out'")
 
 
 def _check_texts(line: int, texts: Mapping[str, str]) -> None:
-    for column, known in (("body", BODIES), ("flank", SIDES)):
-        if texts[column] not in known:
-            raise CsvFault(f"line {line}: {column} = {texts[column][:40]!r} must be {' or '.join(known)}")
+    for column, known_texts in (("body", BODIES), ("flank", SIDES)):
+        if texts[column] not in known_texts:
+            raise CsvFault(
+                f"line {line}: {column} = {texts[column][:40]!r} must be {' or '.join(known_texts)}"
+            )
 
 
 def _tooth(line: int, text: str) -> int | None:
@@ -86,15 +112,15 @@ def _check_unit(grids: Mapping[Any, Mapping[Any, _Point]]) -> None:
         )
 
 
-def _grid(tooth: int | None, flank: str, places: Mapping[tuple[float, float], _Point]) -> dict[str, Any]:
-    faces, profiles = (sorted({at[axis] for at in places}) for axis in (0, 1))
+def _grid(tooth: int | None, flank: str, points: Mapping[tuple[float, float], _Point]) -> dict[str, Any]:
+    faces, profiles = (sorted({at[axis] for at in points}) for axis in (0, 1))
     for face in faces:
         for profile in profiles:
-            if (face, profile) not in places:
-                which = f"tooth {tooth or 'all'}, {flank} flank"
-                where = f"face_mm = {face:g}, profile_mm = {profile:g}"
-                raise CsvFault(f"{which}: no row at {where}; the places must fill a grid")
-    rows = [[places[face, profile] for profile in profiles] for face in faces]
+            if (face, profile) not in points:
+                flank_name = f"tooth {tooth or 'all'}, {flank} flank"
+                grid_point = f"face_mm = {face:g}, profile_mm = {profile:g}"
+                raise CsvFault(f"{flank_name}: no row at {grid_point}; the places must fill a grid")
+    rows = [[points[face, profile] for profile in profiles] for face in faces]
     nominal = [[point.nominal for point in row] for row in rows] if rows[0][0].nominal else []
     return {
         "tooth": tooth,
@@ -104,6 +130,3 @@ def _grid(tooth: int | None, flank: str, places: Mapping[tuple[float, float], _P
         "deviation_um": [[point.deviation for point in row] for row in rows],
         "nominal": nominal,
     }
-
-
-__all__ = ["CsvFault", "CsvTable", "read_flanks"]

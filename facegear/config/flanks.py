@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from facegear.arrays import Array
 from facegear.config.base import Section, refuse
-from facegear.config.flank_csv import CsvFault, read_flanks
+from facegear.config.csv_file import CsvFault
+from facegear.config.flank_csv import read_flanks
 from facegear.geometry.design import DeviationGrid, Flanks
 from facegear.geometry.deviations import deviation
 from facegear.geometry.nominal import Face, nominal_points
@@ -19,7 +20,7 @@ Side = Literal["right", "left"]
 SIDES: tuple[Side, ...] = ("right", "left")
 Teeth = tuple[DeviationGrid | None, ...]
 """Deviations of one flank of every tooth."""
-COVERED = 0.5
+MIN_COVERAGE = 0.5
 """Part of the flank, along the face and along the profile, that a grid must cover at least."""
 POINT_MM, NORMAL = 0.05, 0.02
 """By how much nominal points and normals of a file may be off."""
@@ -60,8 +61,8 @@ class GridSection(Section):
                     refuse(name, after, f"above the value before it, {before:g}")
         shape = len(self.face_mm), len(self.profile_mm)
         if len(self.deviation_um) != shape[0] or any(len(row) != shape[1] for row in self.deviation_um):
-            given = [len(self.deviation_um), max(map(len, self.deviation_um), default=0)]
-            refuse("deviation_um", given, f"{shape[0]} rows of {shape[1]}: face_mm times profile_mm")
+            actual_shape = [len(self.deviation_um), max(map(len, self.deviation_um), default=0)]
+            refuse("deviation_um", actual_shape, f"{shape[0]} rows of {shape[1]}: face_mm times profile_mm")
         return self
 
 
@@ -97,13 +98,24 @@ class FlanksSection(Section):
 
 
 def read_files(values: Any) -> Any:
-    """Plain values of section tooth_pair with the grids of both bodies' files read into it."""
+    """Read the grids of both bodies' files into the plain values of section `tooth_pair`.
+
+    Parameters
+    ----------
+    values : Any
+        Plain values of the section; anything else than a mapping is returned as it is.
+
+    Returns
+    -------
+    Any
+        The values with grids in place of files.
+    """
     if not isinstance(values, Mapping):
         return values
     for body in ("pinion", "face_gear"):
-        own = values.get(body)
-        if isinstance(own, Mapping) and isinstance(flanks := own.get("flanks"), Mapping):
-            values = {**values, body: {**own, "flanks": _read(flanks, body)}}
+        body_values = values.get(body)
+        if isinstance(body_values, Mapping) and isinstance(flanks := body_values.get("flanks"), Mapping):
+            values = {**values, body: {**body_values, "flanks": _read(flanks, body)}}
     return values
 
 
@@ -130,64 +142,102 @@ def _tupled(value: Any) -> Any:
 
 
 def check_flanks(section: FlanksSection, key: str, face: Face, teeth: int) -> None:
-    """Refuse grids that are not of this gear: its teeth, places, nominal points and normals."""
+    """Refuse grids that do not belong to this gear: its teeth, places, nominal points and normals.
+
+    Parameters
+    ----------
+    section : FlanksSection
+        Section `flanks` of a body.
+    key : str
+        Key of the section, for errors.
+    face : Face
+        Nominal flank.
+    teeth : int
+        Number of teeth.
+    """
     for grid in section.grids:
-        which = f"{key}.grids: {grid.flank} flank of tooth {grid.tooth or 'all'}"
+        flank_name = f"{key}.grids: {grid.flank} flank of tooth {grid.tooth or 'all'}"
         if grid.tooth is not None and grid.tooth > teeth:
-            refuse(f"{which}: tooth", grid.tooth, f"at most {teeth}, the number of teeth")
-        _check_places(grid, which, face)
+            refuse(f"{flank_name}: tooth", grid.tooth, f"at most {teeth}, the number of teeth")
+        _check_places(grid, flank_name, face)
         largest = max(abs(value) for row in grid.deviation_um for value in row)
         if largest * abs(section.amplitude) > LARGEST:
-            refuse(f"{which}: deviation_um", largest, f"at most {LARGEST:g} um with its amplitude")
+            refuse(f"{flank_name}: deviation_um", largest, f"at most {LARGEST:g} um with its amplitude")
         if grid.nominal:
-            _check_nominal(grid, which, face)
+            _check_nominal(grid, flank_name, face)
     for side in SIDES:
         numbers = {grid.tooth for grid in section.grids if grid.flank == side}
-        missing = set(range(1, teeth + 1)) - numbers
-        if numbers and None not in numbers and missing:
-            allowed = f"given for all {teeth} teeth, or with a grid for tooth all, which the others have"
-            refuse(f"{key}.grids: {side} flank: tooth", min(missing), allowed)
+        absent_teeth = set(range(1, teeth + 1)) - numbers
+        if numbers and None not in numbers and absent_teeth:
+            requirement = f"given for all {teeth} teeth, or with a grid for tooth all, which the others have"
+            refuse(f"{key}.grids: {side} flank: tooth", min(absent_teeth), requirement)
 
 
-def _check_places(grid: GridSection, which: str, face: Face) -> None:
+def _check_places(grid: GridSection, flank_name: str, face: Face) -> None:
     for name, (low, high) in (("face_mm", face.face), ("profile_mm", face.profile)):
         line, low, high = getattr(grid, name), 1e3 * low, 1e3 * high
         slack = 1e-3 * (high - low)
         for end in (line[0], line[-1]):
             if not low - slack <= end <= high + slack:
-                refuse(f"{which}: {name}", end, f"from {low:.3f} to {high:.3f}, where the flank is")
-        if line[-1] - line[0] < COVERED * (high - low):
-            covered = [line[0], line[-1]]
-            refuse(f"{which}: {name}", covered, f"at least {COVERED:.0%} of {low:.3f} to {high:.3f} mm")
+                refuse(f"{flank_name}: {name}", end, f"from {low:.3f} to {high:.3f}, where the flank is")
+        if line[-1] - line[0] < MIN_COVERAGE * (high - low):
+            ends = [line[0], line[-1]]
+            refuse(
+                f"{flank_name}: {name}", ends, f"at least {MIN_COVERAGE:.0%} of {low:.3f} to {high:.3f} mm"
+            )
 
 
-def _check_nominal(grid: GridSection, which: str, face: Face) -> None:
-    given, lines = np.array(grid.nominal), (1e-3 * np.array(line) for line in (grid.face_mm, grid.profile_mm))
+def _check_nominal(grid: GridSection, flank_name: str, face: Face) -> None:
+    file_values, lines = (
+        np.array(grid.nominal),
+        (1e-3 * np.array(line) for line in (grid.face_mm, grid.profile_mm)),
+    )
     points, normals = nominal_points(face, grid.flank, *lines)
-    off = 1e-3 * given[..., :3] - points
+    off = 1e-3 * file_values[..., :3] - points
     worst = np.unravel_index(np.argmax(np.abs(off).max(axis=-1)), off.shape[:-1])
     if np.abs(off[worst]).max() > 1e-3 * POINT_MM:
-        other = points * np.array([-1.0, 1.0, 1.0])
-        mirrored = np.abs(1e-3 * given[..., :3] - other).max() <= 1e-3 * POINT_MM
+        mirror_image = points * np.array([-1.0, 1.0, 1.0])
+        is_mirrored = np.abs(1e-3 * file_values[..., :3] - mirror_image).max() <= 1e-3 * POINT_MM
         nominal = ", ".join(f"{1e3 * value:.3f}" for value in points[worst])
-        allowed = f"{nominal}, within {POINT_MM:g}{'; the file is mirrored' if mirrored else ''}"
-        refuse(f"{which}: x_mm, y_mm, z_mm", given[worst][:3].tolist(), allowed)
-    along = np.sum(given[..., 3:] * normals, axis=-1)
+        requirement = f"{nominal}, within {POINT_MM:g}{'; the file is mirrored' if is_mirrored else ''}"
+        refuse(f"{flank_name}: x_mm, y_mm, z_mm", file_values[worst][:3].tolist(), requirement)
+    along = np.sum(file_values[..., 3:] * normals, axis=-1)
     worst = np.unravel_index(np.argmin(along), along.shape)
     if along[worst] < 1.0 - NORMAL:
-        turned = "; they are turned: they point into the material" if along.max() < NORMAL - 1.0 else ""
+        hint = "; they are turned: they point into the material" if along.max() < NORMAL - 1.0 else ""
         outward = ", ".join(f"{value:.4f}" for value in normals[worst])
-        refuse(f"{which}: nx, ny, nz", given[worst][3:].tolist(), f"the outward normal {outward}{turned}")
+        refuse(
+            f"{flank_name}: nx, ny, nz",
+            file_values[worst][3:].tolist(),
+            f"the outward normal {outward}{hint}",
+        )
 
 
 def fields_of(section: FlanksSection, side: Side, face: Face, teeth: int) -> Array | None:
-    """Deviations (teeth, n_face, n_profile) m of one flank of all teeth; None where it is as designed."""
+    """Return the deviations of one flank of all teeth.
+
+    Parameters
+    ----------
+    section : FlanksSection
+        Section `flanks` of a body.
+    side : Side
+        `right` or `left`.
+    face : Face
+        Nominal flank.
+    teeth : int
+        Number of teeth.
+
+    Returns
+    -------
+    (teeth, n_face, n_profile) array or None
+        Deviations along the outward normal, m; None where the flank is as designed.
+    """
     grids = {grid.tooth: grid for grid in section.grids if grid.flank == side}
     if not grids:
         return None
     values = {tooth: _values(section, grid, face) for tooth, grid in grids.items()}
-    numbered = range(1, teeth + 1)
-    return np.stack([values[number if number in values else None] for number in numbered])
+    tooth_numbers = range(1, teeth + 1)
+    return np.stack([values[number if number in values else None] for number in tooth_numbers])
 
 
 def _values(section: FlanksSection, grid: GridSection, face: Face) -> Array:
@@ -199,18 +249,63 @@ def _values(section: FlanksSection, grid: GridSection, face: Face) -> Array:
 
 
 def deviation_grid(grid: GridSection, values: Array) -> DeviationGrid:
-    """Values (n_face, n_profile) m at the places of a grid."""
+    """Return values at the places of a grid, in SI units.
+
+    Parameters
+    ----------
+    grid : GridSection
+        Grid of the config.
+    values : (n_face, n_profile) array
+        Deviations, m.
+
+    Returns
+    -------
+    DeviationGrid
+        The grid with these values.
+    """
     face, profile = (tuple(1e-3 * at for at in line) for line in (grid.face_mm, grid.profile_mm))
     return DeviationGrid(face, profile, tuple(map(tuple, values.tolist())))
 
 
 def common_flanks(section: FlanksSection, face: Face, teeth: int) -> Flanks:
-    """The mean of all teeth."""
+    """Return the mean deviations of all teeth.
+
+    Parameters
+    ----------
+    section : FlanksSection
+        Section `flanks` of a body.
+    face : Face
+        Nominal flank.
+    teeth : int
+        Number of teeth.
+
+    Returns
+    -------
+    Flanks
+        Mean deviations of both flanks, m.
+    """
     return Flanks(**{side: common_grid(section, side, face, teeth) for side in SIDES})
 
 
 def common_grid(section: FlanksSection, side: Side, face: Face, teeth: int) -> DeviationGrid | None:
-    """The mean of one flank of all teeth; None where it is as designed."""
+    """Return the mean deviations of one flank of all teeth.
+
+    Parameters
+    ----------
+    section : FlanksSection
+        Section `flanks` of a body.
+    side : Side
+        `right` or `left`.
+    face : Face
+        Nominal flank.
+    teeth : int
+        Number of teeth.
+
+    Returns
+    -------
+    DeviationGrid or None
+        Mean deviations, m; None where the flank is as designed.
+    """
     grids = [grid for grid in section.grids if grid.flank == side]
     if not grids:
         return None
@@ -222,12 +317,29 @@ def common_grid(section: FlanksSection, side: Side, face: Face, teeth: int) -> D
 
 
 def differences(section: FlanksSection, side: Side, face: Face, teeth: int) -> Teeth | None:
-    """What each tooth deviates by from the mean of one flank of all teeth; None where all are alike."""
+    """Return the difference of each tooth from the mean of one flank of all teeth.
+
+    Parameters
+    ----------
+    section : FlanksSection
+        Section `flanks` of a body.
+    side : Side
+        `right` or `left`.
+    face : Face
+        Nominal flank.
+    teeth : int
+        Number of teeth.
+
+    Returns
+    -------
+    Teeth or None
+        Differences (m) tooth by tooth; equal ones are one object. None where all teeth are alike.
+    """
     grids = [grid for grid in section.grids if grid.flank == side]
     fields = fields_of(section, side, face, teeth)
     if fields is None or len(grids) == 1:
         return None
-    alike: dict[bytes, DeviationGrid] = {}
+    distinct_grids: dict[bytes, DeviationGrid] = {}
     for values in fields - fields.mean(axis=0):
-        alike.setdefault(values.tobytes(), deviation_grid(grids[0], values))
-    return tuple(alike[values.tobytes()] for values in fields - fields.mean(axis=0))
+        distinct_grids.setdefault(values.tobytes(), deviation_grid(grids[0], values))
+    return tuple(distinct_grids[values.tobytes()] for values in fields - fields.mean(axis=0))

@@ -11,7 +11,9 @@ from facegear.config.material import MaterialSection
 from facegear.number_format import count_noun
 
 COLUMNS = ("r_mm", "height_mm")
+"""Columns of a csv of corners: distance from the axis and height."""
 MAX_CORNERS = 200
+"""Largest number of corners of a section."""
 Corner = Annotated[float, Field(ge=-1e5, le=1e5)]
 DAMPING_RATIO = 0.002
 """Damping ratio of a body's modes without a value: that of solid steel without joints."""
@@ -108,13 +110,13 @@ class BodySection(Section):
             return values
         if isinstance(values.get("corners_mm"), list):
             corners = values["corners_mm"]
-            paired = tuple(tuple(corner) if isinstance(corner, list) else corner for corner in corners)
-            values = {**values, "corners_mm": paired}
+            corner_pairs = tuple(tuple(corner) if isinstance(corner, list) else corner for corner in corners)
+            values = {**values, "corners_mm": corner_pairs}
         if isinstance(values.get("held_edges"), list):
             values = {**values, "held_edges": tuple(values["held_edges"])}
-        given = [key for key in ("corners_mm", "corners_csv", "step") if values.get(key)]
-        if len(given) > 1 and all(isinstance(values[key], str) for key in given[1:]):
-            refuse(given[1], values[given[1]], f"left out beside {given[0]}")
+        corner_keys = [key for key in ("corners_mm", "corners_csv", "step") if values.get(key)]
+        if len(corner_keys) > 1 and all(isinstance(values[key], str) for key in corner_keys[1:]):
+            refuse(corner_keys[1], values[corner_keys[1]], f"left out beside {corner_keys[0]}")
         if isinstance(name := values.get("corners_csv"), str):
             return {**values, "corners_csv": None, "corners_mm": _csv_corners(name)}
         if isinstance(name := values.get("step"), str):
@@ -142,21 +144,21 @@ class BodySection(Section):
         if self.rim is None:
             refuse("rim", None, "given, or corners_mm")
         if (self.hub is None) != (self.web is None):
-            missing = "hub" if self.hub is None else "web"
-            refuse(missing, None, "given: hub and web go together; a rim alone is a disc or ring")
+            absent_part = "hub" if self.hub is None else "web"
+            refuse(absent_part, None, "given: hub and web go together; a rim alone is a disc or ring")
 
     def _check_damping(self) -> None:
         beta = self.stiffness_damping_s
         if beta is None:
             return
         if self.damping_ratio is not None:
-            allowed = f"left out where damping_ratio = {self.damping_ratio:g} is given"
-            refuse("stiffness_damping_s", beta, allowed)
+            requirement = f"left out where damping_ratio = {self.damping_ratio:g} is given"
+            refuse("stiffness_damping_s", beta, requirement)
         largest = LARGEST_DAMPING_RATIO / (pi * self.max_frequency_hz)
         if beta > largest:
-            reached = f"a mode of max_frequency_hz then has {LARGEST_DAMPING_RATIO:g} of the critical damping"
-            allowed = f"at most {largest:.3g}: {reached}"
-            refuse("stiffness_damping_s", beta, allowed)
+            reason = f"a mode of max_frequency_hz then has {LARGEST_DAMPING_RATIO:g} of the critical damping"
+            requirement = f"at most {largest:.3g}: {reason}"
+            refuse("stiffness_damping_s", beta, requirement)
 
     def _check_edges(self) -> None:
         if self.held_edges and not self.corners_mm:
@@ -177,15 +179,15 @@ def _csv_corners(name: str) -> tuple[tuple[float, ...], ...]:
 def _step_corners(name: str) -> tuple[tuple[float, float], ...]:
     from facegear.gear_body.step_file import StepFault, read_section  # loads gmsh
 
-    allowed = "a STEP file of one solid of revolution, or of its half section"
+    requirement = "a STEP file of one solid of revolution, or of its half section"
     try:
         corners = read_section(name)
     except StepFault as fault:
-        refuse("step", name, f"{allowed}; {fault}")
+        refuse("step", name, f"{requirement}; {fault}")
     if len(corners) > MAX_CORNERS:
         refuse(
             "step",
             name,
-            f"{allowed}; its outline takes {count_noun(len(corners), 'corner')}, more than {MAX_CORNERS}",
+            f"{requirement}; its outline takes {count_noun(len(corners), 'corner')}, more than {MAX_CORNERS}",
         )
     return tuple(corners)

@@ -30,14 +30,31 @@ KEYS = {
 
 
 def config_error(error: InvalidInput) -> ConfigError:
-    """The same refusal by the keys of the config."""
-    allowed = re.sub("`(.*?)`", lambda match: KEYS.get(match[1], match[1]), error.allowed)
-    return ConfigError(KEYS.get(error.quantity, error.quantity), error.value, allowed)
+    """Name the config key in the refusal of a quantity.
+
+    Parameters
+    ----------
+    error : InvalidInput
+        Refusal of a computation, in its own words.
+
+    Returns
+    -------
+    ConfigError
+        The same refusal with keys of the config.
+    """
+    requirement = re.sub("`(.*?)`", lambda match: KEYS.get(match[1], match[1]), error.allowed)
+    return ConfigError(KEYS.get(error.quantity, error.quantity), error.value, requirement)
 
 
 @contextmanager
 def keys_named() -> Iterator[None]:
-    """Raise ConfigError with the key where a computation refuses a quantity."""
+    """Raise ConfigError with the key where a computation refuses a quantity.
+
+    Yields
+    ------
+    None
+        Once, for the statements of the `with` block.
+    """
     try:
         yield
     except InvalidInput as error:

@@ -9,14 +9,31 @@ from facegear.geometry.limits import FaceRange, face_range, radius_limits
 from facegear.geometry.validate import check_shaper
 
 
-def limits_in_words(shaper_teeth: int, pinion_teeth: int, **given: Any) -> str:
-    """One line with both radii (mm) and what limits them; a shaper of 0 teeth has three more than the pinion.
+def limits_in_words(shaper_teeth: int, pinion_teeth: int, **pair_numbers: Any) -> str:
+    """Describe both limits of the face radii in one line.
 
-    `given`: the other arguments of `face_limits`. Raises ConfigError for numbers that no pair can have.
+    Parameters
+    ----------
+    shaper_teeth : int
+        Number of teeth of the shaper; 0: three more than the pinion.
+    pinion_teeth : int
+        Number of teeth of the pinion.
+    **pair_numbers : Any
+        The other arguments of `face_limits`.
+
+    Returns
+    -------
+    str
+        Both radii (mm) and what limits them.
+
+    Raises
+    ------
+    ConfigError
+        For numbers that no pair can have.
     """
     shaper = shaper_teeth or pinion_teeth + 3
-    allowed = face_limits(shaper_teeth=shaper, pinion_teeth=pinion_teeth, **given)
-    return f"face_gear radii in mm, with a shaper of {shaper} teeth: {allowed}"
+    radii = face_limits(shaper_teeth=shaper, pinion_teeth=pinion_teeth, **pair_numbers)
+    return f"face_gear radii in mm, with a shaper of {shaper} teeth: {radii}"
 
 
 def face_limits(
@@ -32,12 +49,48 @@ def face_limits(
     shaper_addendum_modules: float = 1.25,
     shaper_tip_rounding_modules: float = 0.0,
 ) -> FaceRange:
-    """Radii between which the face may lie. Raises ConfigError for numbers that no pair can have."""
+    """Compute the radii between which the face of a face gear may lie.
+
+    Parameters
+    ----------
+    pinion_teeth : int
+        Number of teeth of the pinion, 5 to 500.
+    face_gear_teeth : int
+        Number of teeth of the face gear, more than the pinion's, at most 2000.
+    module_mm : float
+        Module, 0.1 to 100 mm.
+    pressure_angle_deg : float
+        Pressure angle, 10 to 40 deg.
+    shaper_teeth : int
+        Number of teeth of the shaper.
+    pinion_addendum_modules : float
+        Addendum of the pinion in modules (unit 1).
+    pinion_dedendum_modules : float
+        Dedendum of the pinion in modules (unit 1).
+    profile_shift_modules : float
+        Profile shift of the pinion in modules (unit 1).
+    gear_addendum_modules : float
+        Addendum of the face gear in modules (unit 1).
+    shaper_addendum_modules : float
+        Addendum of the shaper in modules (unit 1).
+    shaper_tip_rounding_modules : float
+        Tip rounding of the shaper in modules (unit 1).
+
+    Returns
+    -------
+    FaceRange
+        Both radii (m) and what limits them.
+
+    Raises
+    ------
+    ConfigError
+        For numbers that no pair can have.
+    """
     if not 5 <= pinion_teeth <= 500:
         raise ConfigError("pinion_teeth", pinion_teeth, "from 5 to 500")
     if not pinion_teeth < face_gear_teeth <= 2000:
-        allowed = f"more than the pinion's {pinion_teeth}, at most 2000"
-        raise ConfigError("face_gear_teeth", face_gear_teeth, allowed)
+        requirement = f"more than the pinion's {pinion_teeth}, at most 2000"
+        raise ConfigError("face_gear_teeth", face_gear_teeth, requirement)
     if not 0.1 <= module_mm <= 100.0:
         raise ConfigError("module_mm", module_mm, "from 0.1 to 100")
     if not 10.0 <= pressure_angle_deg <= 40.0:

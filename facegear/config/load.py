@@ -32,32 +32,73 @@ FILE_KEYS = (
 def load_config(
     paths: str | Path | Sequence[str | Path], overrides: Mapping[str, Any] | None = None
 ) -> Config:
-    """Read and validate a config file, or several laid over one another, with `overrides` on top.
+    """Read and validate a config file, or several laid over one another.
 
-    Raises ConfigErrors with one line for every mistake.
+    Parameters
+    ----------
+    paths : str or Path or Sequence[str | Path]
+        The file, or several of which a later one goes before an earlier one.
+    overrides : Mapping[str, Any] or None
+        Values that go before those of all files.
+
+    Returns
+    -------
+    Config
+        The config.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
     """
     files = [paths] if isinstance(paths, str | Path) else paths
     values: dict[str, Any] = {}
     for path in files:
-        values = merged(values, read_layers(path))
+        values = merge_values(values, read_layers(path))
     source = ", ".join(_short(path) for path in files)
-    return parse(Config, merged(values, numbers(dict(overrides or {}))), source)
+    return parse(Config, merge_values(values, numbers(dict(overrides or {}))), source)
 
 
 def config_of(values: Mapping[str, Any]) -> Config:
-    """Validate a config that stands in memory: names of files in it count from the working directory.
+    """Validate a config that stands in memory.
 
-    Its key `extends` names a config file anywhere. Raises ConfigErrors with one line for every mistake.
+    Names of files in it count from the working directory. Its key `extends` names a config file anywhere.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Values of the config.
+
+    Returns
+    -------
+    Config
+        The config.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
     """
-    own = _with_paths(plain(values), Path())
-    base = own.pop("extends", None)
+    config_values = _with_paths(plain(values), Path())
+    base = config_values.pop("extends", None)
     if base is not None and not isinstance(base, str | Path):
         raise ConfigErrors("config", [f"extends = {base!r}: must be the name of a config file"])
-    return parse(Config, own if base is None else merged(read_layers(base), own))
+    return parse(Config, config_values if base is None else merge_values(read_layers(base), config_values))
 
 
 def plain(value: Any) -> Any:
-    """NumPy numbers and arrays, tuples and other iterables as YAML would hold them; a copy."""
+    """Convert NumPy numbers and arrays, tuples and other iterables to values that YAML can hold.
+
+    Parameters
+    ----------
+    value : Any
+        Any value.
+
+    Returns
+    -------
+    Any
+        A copy in plain values.
+    """
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, Mapping):
@@ -72,33 +113,72 @@ def plain(value: Any) -> Any:
 
 
 def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
-    """Values of a config file laid over those of the file its key `extends` names, in the same folder.
+    """Read a config file over the file that its key `extends` names, in the same folder.
 
-    Raises ConfigErrors if that file is missing, lies elsewhere, or extends this one.
+    Parameters
+    ----------
+    path : str or Path
+        The config file.
+    below : Sequence[Path]
+        Files that extend this one, for the check against circles.
+
+    Returns
+    -------
+    dict[str, Any]
+        Plain values of both.
+
+    Raises
+    ------
+    ConfigErrors
+        If that file is missing, lies elsewhere, or extends this one.
     """
     path = Path(path)
     values = _with_paths(read_yaml(path), path.parent)
     if "extends" not in values:
         return values
     base = values.pop("extends")
-    others = {other.name for other in path.parent.glob("*.yaml")} - {
+    possible_bases = {sibling.name for sibling in path.parent.glob("*.yaml")} - {
         path.name,
         *(layer.name for layer in below),
     }
-    if not isinstance(base, str) or base not in others:
+    if not isinstance(base, str) or base not in possible_bases:
         message = f"extends = {base!r}: must be the name of another config file in the same folder"
         raise ConfigErrors(_short(path), [message])
-    return merged(read_layers(path.with_name(base), (path, *below)), values)
+    return merge_values(read_layers(path.with_name(base), (path, *below)), values)
 
 
-def extended(path: str | Path) -> Path | None:
-    """The config file that a config file names under `extends`, if it does."""
+def base_path(path: str | Path) -> Path | None:
+    """Return the config file that a config file names under `extends`.
+
+    Parameters
+    ----------
+    path : str or Path
+        The config file.
+
+    Returns
+    -------
+    Path or None
+        Path of the base; None if it extends none.
+    """
     base = read_yaml(Path(path)).get("extends")
     return None if base is None else Path(path).with_name(str(base))
 
 
-def located(name: str, folder: Path) -> str:
-    """A file's name as it is read from the working directory, from its name as `folder` counts it."""
+def relative_to_cwd(name: str, folder: Path) -> str:
+    """Convert the name of a file from a folder to the working directory.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file as `folder` counts it.
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    str
+        Its name as it is read from the working directory; an absolute name stays.
+    """
     return name if os.path.isabs(name) else os.path.relpath(folder / name)
 
 
@@ -117,11 +197,11 @@ def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 def _locate(inside: Any, key: str, folder: Path) -> None:
     if isinstance(inside, dict) and isinstance(inside.get(key), str):
-        inside[key] = located(inside[key], folder)
+        inside[key] = relative_to_cwd(inside[key], folder)
 
 
 def _study_points(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """What the points of all studies set, as far as they have the form of studies at all."""
+    """Yield the values that the points of all studies set, as far as they have the form of studies at all."""
     for study in _dicts(values.get("studies")):
         for axis in _dicts(study.get("axes")):
             for point in _dicts(axis.get("points")):
@@ -132,13 +212,26 @@ def _dicts(values: Any) -> list[dict[str, Any]]:
     return [value for value in values if isinstance(value, dict)] if isinstance(values, list) else []
 
 
-def merged(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """`values` with the mappings of `over` laid over them key by key; lists are replaced whole."""
+def merge_values(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Lay mappings over one another key by key; lists are replaced whole.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Values below.
+    over : Mapping[str, Any]
+        Values that go before them.
+
+    Returns
+    -------
+    dict[str, Any]
+        The merged values.
+    """
     result = dict(values)
     for key, value in over.items():
         inside = result.get(key)
         if isinstance(inside, Mapping) and isinstance(value, Mapping):
-            value = merged(inside, value)
+            value = merge_values(inside, value)
         result[key] = value
     return result
 

@@ -14,7 +14,7 @@ class SpeedRangeSection(Section):
     points: int = Field(100, ge=2, le=2000, description="evenly spaced speeds, both ends included")
 
     @model_validator(mode="after")
-    def _ordered(self) -> "SpeedRangeSection":
+    def _check_speeds(self) -> "SpeedRangeSection":
         if self.to_rpm <= self.from_rpm:
             refuse("to_rpm", self.to_rpm, f"above from_rpm = {self.from_rpm:g}")
         return self
@@ -49,7 +49,18 @@ class LoadSharing(Section):
 
 
 def sharing_options(section: LoadSharing) -> SharingOptions:
-    """SI options of the load-sharing stage."""
+    """Return the options of the load-sharing stage in SI units.
+
+    Parameters
+    ----------
+    section : LoadSharing
+        Section `load_sharing` of the config.
+
+    Returns
+    -------
+    SharingOptions
+        The options; speeds in rpm.
+    """
     speeds = section.speed_range
     return SharingOptions(
         samples=section.samples_per_cycle,

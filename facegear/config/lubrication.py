@@ -9,13 +9,13 @@ from facegear.config.base import Section, refuse
 from facegear.config.cards import read_card
 from facegear.config.oil_card import OIL_CARDS, OilCard, oil_of
 from facegear.lubrication import friction
-from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Heated, Limits, Lubrication
+from facegear.lubrication.request import BorrowedBulk, Cooling, FlankMaterial, GivenBulk, Limits, Lubrication
 
 LARGEST_RA_UM = 4.0
 """Roughest flank that the gear tests behind the friction models had."""
 
 RQ_PER_RA = 1.25
-"""Of a profile whose heights are spread normally."""
+"""Ratio Rq / Ra of a profile whose heights are normally distributed."""
 
 SUPPLY_FACTORS = {"jet": 1.2, "dip": 1.0, "submerged": 0.2}
 """X_S of ISO/TS 6336-20."""
@@ -65,10 +65,10 @@ class FrictionSection(Section):
             ("constants", ("doleschel",)),
             ("lubricant_factor", GEAR_TESTS),
         ):
-            value, asked = getattr(self, key), self.model in models
-            if asked and value is None and key != "lubricant_factor":
+            value, is_required = getattr(self, key), self.model in models
+            if is_required and value is None and key != "lubricant_factor":
                 refuse(key, None, f"given for the model {self.model}")
-            if not asked and value is not None:
+            if not is_required and value is not None:
                 refuse(key, value, f"left out for the model {self.model}")
         return self
 
@@ -92,9 +92,9 @@ class BulkSection(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "BulkSection":
-        asked = {"given": ("temperature_c",), "cooling": ("pinion_w_per_k", "face_gear_w_per_k")}
-        for source in asked:
-            for key in asked[source]:
+        required_keys = {"given": ("temperature_c",), "cooling": ("pinion_w_per_k", "face_gear_w_per_k")}
+        for source in required_keys:
+            for key in required_keys[source]:
                 value = getattr(self, key)
                 if self.source == source and value is None:
                     refuse(key, None, f"given where source is {source}")
@@ -161,27 +161,44 @@ class LubricationSection(Section):
 
     @field_validator("map_speeds_rpm")
     @classmethod
-    def _rising(cls, speeds: tuple[float, ...]) -> tuple[float, ...]:
+    def _check_map_speeds(cls, speeds: tuple[float, ...]) -> tuple[float, ...]:
         if list(speeds) != sorted(set(speeds)):
             refuse("", list(speeds), "rising speeds")
         return speeds
 
     @model_validator(mode="after")
     def _below_the_flash_point(self) -> "LubricationSection":
-        allowed = f"below the oil's flash point, {self.oil.flash_point_c:g}"
+        requirement = f"below the oil's flash point, {self.oil.flash_point_c:g}"
         if self.supply_temperature_c >= self.oil.flash_point_c:
-            refuse("supply_temperature_c", self.supply_temperature_c, allowed)
+            refuse("supply_temperature_c", self.supply_temperature_c, requirement)
         bulk = self.bulk.temperature_c
         if bulk is not None and bulk >= self.oil.flash_point_c:
-            refuse("bulk.temperature_c", bulk, allowed)
+            refuse("bulk.temperature_c", bulk, requirement)
         return self
 
 
 def lubrication_request(section: LubricationSection, modulus: float, pitch_radius: float) -> Lubrication:
-    """What the flanks run with, in SI units; `modulus` E* (Pa), the pinion's `pitch_radius` (m)."""
+    """Return how the flanks are lubricated, in SI units.
+
+    Parameters
+    ----------
+    section : LubricationSection
+        Section `lubrication` of the config.
+    modulus : float
+        Contact modulus E* of the pair, Pa.
+    pitch_radius : float
+        Pitch radius of the pinion, m.
+
+    Returns
+    -------
+    Lubrication
+        Oil, roughness (m), friction and bulk temperature (C).
+    """
     oil, steel = oil_of(section.oil), section.steel
     rough = section.pinion, section.face_gear
-    heated = Heated(steel.conductivity_w_per_m_k, steel.density_kg_per_m3, steel.heat_capacity_j_per_kg_k)
+    thermal_properties = FlankMaterial(
+        steel.conductivity_w_per_m_k, steel.density_kg_per_m3, steel.heat_capacity_j_per_kg_k
+    )
     ra = [1e-6 * surface.ra_um for surface in rough]
     rq = [1e-6 * (surface.rq_um or RQ_PER_RA * surface.ra_um) for surface in rough]
     return Lubrication(
@@ -191,14 +208,25 @@ def lubrication_request(section: LubricationSection, modulus: float, pitch_radiu
         ra=(ra[0], ra[1]),
         rq=(rq[0], rq[1]),
         bulk=_bulk(section),
-        flanks=(heated, heated),
+        flanks=(thermal_properties, thermal_properties),
         reduced_modulus=2 * modulus,
         pitch_radius=pitch_radius,
     )
 
 
 def limits_of(section: LubricationSection) -> Limits:
-    """What temperatures and films are compared with; None where neither section nor oil gives it."""
+    """Return the limits that temperatures and films are compared with.
+
+    Parameters
+    ----------
+    section : LubricationSection
+        Section `lubrication` of the config.
+
+    Returns
+    -------
+    Limits
+        The limits; None where neither section nor oil gives one.
+    """
     scuffing = section.scuffing
     return Limits(
         contact_temperature=scuffing.temperature_c or section.oil.scuffing_temperature_c,
@@ -221,7 +249,20 @@ def _source_of_contact_temperature(section: LubricationSection) -> str:
 
 
 def map_speeds(section: LubricationSection, nominal_rpm: float) -> tuple[float, ...]:
-    """Pinion speeds (rpm) of the efficiency map."""
+    """Return the pinion speeds of the efficiency map.
+
+    Parameters
+    ----------
+    section : LubricationSection
+        Section `lubrication` of the config.
+    nominal_rpm : float
+        Nominal pinion speed, rpm.
+
+    Returns
+    -------
+    tuple[float, ...]
+        Speeds, rpm; without any in the section 12 from a tenth of the nominal speed to 1.25 times it.
+    """
     return section.map_speeds_rpm or tuple(nominal_rpm * (0.1 + 1.15 * step / 11) for step in range(12))
 
 

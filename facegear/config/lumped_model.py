@@ -1,4 +1,4 @@
-"""The lumped model that section `transmission` describes: its layout, its errors, its machine, in SI.
+"""Lumped model that section `transmission` describes: its layout, its errors, its machine, in SI.
 
 `config.machines` adds the mesh stiffness as its stage has stored it.
 """
@@ -29,37 +29,80 @@ from facegear.transmission.machine import (
 )
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
-Described = tuple[Layout, Imperfections]
-"""The layout of a section `transmission` and its errors."""
+LumpedParts = tuple[Layout, Imperfections]
+"""Layout of a section `transmission`, and its errors."""
 
 
-def described(section: Transmission, teeth: ToothNumbers, unloaded: Harmonics | None = None) -> Described:
-    """Layout and errors, made once for all that looks at them; `unloaded` as of machine()."""
+def lumped_parts(
+    section: Transmission, teeth: ToothNumbers, unloaded_error: Harmonics | None = None
+) -> LumpedParts:
+    """Return layout and errors, made once for all functions that need them.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Tooth numbers of the pair.
+    unloaded_error : Harmonics or None
+        Transmission error e(t) of the unloaded pair, m; as in `machine`.
+
+    Returns
+    -------
+    LumpedParts
+        Layout and errors in SI units.
+
+    Raises
+    ------
+    ConfigError
+        If the config asks for e(t) from contact and there is none.
+    """
     shape = layout(section, teeth)
-    return shape, imperfections(section, shape, unloaded)
+    return shape, imperfections(section, shape, unloaded_error)
 
 
 def machine(
     section: Transmission,
     teeth: ToothNumbers,
     stiffness: Harmonics,
-    unloaded: Harmonics | None = None,
-    made: Described | None = None,
+    unloaded_error: Harmonics | None = None,
+    parts: LumpedParts | None = None,
     tables: tuple[FlankTables, ...] | None = None,
 ) -> Machine:
-    """The machine that a config describes, with the reference mesh stiffness from its own stage.
+    """Build the machine that a config describes, with the reference mesh stiffness from its own stage.
 
-    `unloaded` is the pair's own e(t), m; made: described(section, teeth, unloaded), where the caller has it;
-    tables: of the flanks at each gear, where their stiffness depends on the load.
-    Raises ConfigError where the config asks for e(t) and there is none.
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Tooth numbers of the pair.
+    stiffness : Harmonics
+        Reference mesh stiffness, N/m.
+    unloaded_error : Harmonics or None
+        Transmission error e(t) of the unloaded pair, m; None if the config does not ask for it.
+    parts : LumpedParts or None
+        Result of `lumped_parts` with the same arguments, computed here if None.
+    tables : tuple[FlankTables, ...] or None
+        Tables of the flanks at each gear, where their stiffness depends on the load.
+
+    Returns
+    -------
+    Machine
+        The machine in SI units.
+
+    Raises
+    ------
+    ConfigError
+        If the config asks for e(t) from contact and there is none.
     """
-    shape, flaws = made or described(section, teeth, unloaded)
+    shape, flaws = parts or lumped_parts(section, teeth, unloaded_error)
     damping = section.damping
     return Machine(
         layout=shape,
         torques=balanced_torques(shape, given_torques(section, shape), other_gear_torque(section)),
         stiffness=stiffness,
-        error=error_series(section.transmission_error, unloaded),
+        error=error_series(section.transmission_error, unloaded_error),
         half_backlash=half_backlash(section, shape),
         damping=Damping(
             damping.mesh_n_s_per_m, damping.mass_per_s, damping.bearing_s, OpenFlanks(damping.open_flanks)
@@ -105,33 +148,101 @@ def excitations(section: Transmission, shape: Layout) -> tuple[Excitation, ...]:
 
 
 def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
-    """Lag of each mesh in mesh periods, (meshes,)."""
+    """Return the lag of the stiffness of each mesh.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Tooth numbers of the pair.
+
+    Returns
+    -------
+    (meshes,) array
+        Lags in mesh periods.
+    """
     shape = layout(section, teeth)
     clocking = imperfections(section, shape).clocking
     return mesh_phases(shape, PhaseConvention(section.phase_convention), clocking)
 
 
 def external_forces(section: Transmission, shape: Layout) -> Array:
-    """External force on each body along its x, y, z, shape (bodies, 3), N."""
+    """Return the external force on each body.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    shape : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    (bodies, 3) array
+        Forces along x, y and z of each body, N.
+    """
     pinions, gears = single_parts(section, shape)
-    on_pinions = [(own.force_n.x, own.force_n.y, 0.0) for own in pinions]
-    return np.array(on_pinions + [(own.force_n.x, own.force_n.y, own.force_n.z) for own in gears])
+    on_pinions = [(single_part.force_n.x, single_part.force_n.y, 0.0) for single_part in pinions]
+    return np.array(
+        on_pinions
+        + [(single_part.force_n.x, single_part.force_n.y, single_part.force_n.z) for single_part in gears]
+    )
 
 
 def given_torques(section: Transmission, shape: Layout) -> Array:
-    """Torque on each pinion by its role, or its own where it has one; shape (pinions,), N m."""
+    """Return the torque on each pinion: its own where it has one, else that of its role.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    shape : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    (pinions,) array
+        Torques, N m.
+    """
     by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
-    own = np.array([np.nan if pinion.torque_n_m is None else pinion.torque_n_m for pinion in section.pinions])
-    return np.where(np.isnan(own), by_role, own)
+    single_torques = np.array(
+        [np.nan if pinion.torque_n_m is None else pinion.torque_n_m for pinion in section.pinions]
+    )
+    return np.where(np.isnan(single_torques), by_role, single_torques)
 
 
 def other_gear_torque(section: Transmission) -> float:
-    """Torque on the face gear that is not the output, N m."""
+    """Return the torque on the face gear that is not the output.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+
+    Returns
+    -------
+    float
+        Torque, N m.
+    """
     return float(sum(gear.torque_n_m for gear in section.single_gears.values()))
 
 
 def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
-    """Shafts and turning masses of section `transmission`; None where it has neither."""
+    """Return the shafts and turning masses of section `transmission`.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    shape : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    DriveLine or None
+        Shafts and masses in SI units; None where there are neither.
+    """
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:

@@ -29,7 +29,7 @@ from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, S
 
 @dataclass(frozen=True)
 class ToothNumbers:
-    """What the lumped model takes from the tooth pair; radii in m, angle in rad."""
+    """Numbers of the tooth pair that the lumped model needs; radii in m, angle in rad."""
 
     pinion_teeth: int
     gear_teeth: int
@@ -38,14 +38,42 @@ class ToothNumbers:
 
     @classmethod
     def of_config(cls, values: Mapping[str, Any]) -> Self:
-        """From the keys TEETH of section `tooth_pair`, or all of it."""
+        """Return the tooth numbers from plain config values.
+
+        Parameters
+        ----------
+        values : Mapping[str, Any]
+            Section `tooth_pair`, or its keys TEETH alone.
+
+        Returns
+        -------
+        Self
+            Tooth numbers in SI units.
+        """
         return cls.of_teeth(*(values[key] for key in TEETH))
 
     @classmethod
     def of_teeth(
         cls, pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
     ) -> Self:
-        """SI values from those of the keys TEETH."""
+        """Return the tooth numbers from the values of the keys TEETH.
+
+        Parameters
+        ----------
+        pinion_teeth : int
+            Number of teeth of each pinion.
+        face_gear_teeth : int
+            Number of teeth of each face gear.
+        module_mm : float
+            Module, mm.
+        pressure_angle_deg : float
+            Pressure angle, deg.
+
+        Returns
+        -------
+        Self
+            Tooth numbers in SI units.
+        """
         angle = float(np.radians(pressure_angle_deg))
         base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
         return cls(pinion_teeth, face_gear_teeth, base_radius, angle)
@@ -54,22 +82,63 @@ class ToothNumbers:
 def lumped_sections(
     transmission: Mapping[str, Any], teeth: Mapping[str, Any]
 ) -> tuple[Transmission, ToothNumbers]:
-    """Section `transmission` and the tooth numbers from plain values of a config that was validated."""
+    """Return section `transmission` and the tooth numbers from plain values of a validated config.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any]
+        Plain values of section `transmission`.
+    teeth : Mapping[str, Any]
+        Plain values of section `tooth_pair`, or of its keys TEETH.
+
+    Returns
+    -------
+    tuple[Transmission, ToothNumbers]
+        Section and tooth numbers.
+    """
     return Transmission.of_config(transmission), ToothNumbers.of_config(teeth)
 
 
 def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> Layout:
-    """Bodies, angles and meshes of the machine of section `transmission`, with its tooth numbers."""
+    """Return the layout of a machine from plain config values.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any]
+        Plain values of section `transmission`.
+    teeth : Mapping[str, Any]
+        Plain values of section `tooth_pair`, or of its keys TEETH.
+
+    Returns
+    -------
+    Layout
+        Bodies, angles and meshes in SI units.
+    """
     return layout(*lumped_sections(transmission, teeth))
 
 
 def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
-    """The layout that a config describes; those that are alike are one, which keeps what follows from it."""
-    return _shared(_layout(section, teeth))
+    """Return the layout that a config describes.
+
+    Equal layouts are one object, so that results cached on it are reused.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Tooth numbers of the pair.
+
+    Returns
+    -------
+    Layout
+        Bodies, angles and meshes in SI units.
+    """
+    return _intern_layout(_layout(section, teeth))
 
 
 @lru_cache(maxsize=16)
-def _shared(shape: Layout) -> Layout:
+def _intern_layout(shape: Layout) -> Layout:
     return shape
 
 
@@ -101,7 +170,20 @@ def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
 
 
 def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinion], list[SingleGear]]:
-    """What each pinion and each face gear has of its own, in the order of the layout."""
+    """Return the sections of single pinions and face gears.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    shape : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    tuple[list[SinglePinion], list[SingleGear]]
+        A section for each pinion and each face gear, in the order of the layout.
+    """
     return (
         [section.single_pinions.get(pinion.name, LIKE_ALL_PINIONS) for pinion in shape.pinions],
         [section.single_gears.get(gear.side.value, LIKE_ALL_GEARS) for gear in shape.gears],
@@ -109,26 +191,26 @@ def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinio
 
 
 def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
-    """A pinion on its bearing stiffness, or on what its shaft is where no moment acts."""
-    own = section.single_pinions.get(pinion.name)
+    """Return a pinion on its bearing stiffness, or on the stiffness of its shaft where no moment acts."""
+    single_pinion = section.single_pinions.get(pinion.name)
     if (shaft := section.shaft_of(pinion)) is None:
-        return _body(section.pinion, own)
+        return _body(section.pinion, single_pinion)
     compliance = condensed(stepped_shaft(shaft)).compliance
     (x, xy), (_, y) = np.linalg.inv(compliance[:2, :2]).tolist()
-    mass, inertia = _inertias(section.pinion, own)
+    mass, inertia = _inertias(section.pinion, single_pinion)
     return Body(mass, inertia, (x, y, 1.0 / float(compliance[2, 2])), xy)
 
 
-def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> Body:
-    """A body from what all have and what it has of its own."""
-    stiffness = (own and own.bearing_stiffness_n_per_m) or section.bearing_stiffness_n_per_m
+def _body(section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None) -> Body:
+    """Build a body from the data that all share and its own."""
+    stiffness = (single_part and single_part.bearing_stiffness_n_per_m) or section.bearing_stiffness_n_per_m
     assert stiffness is not None
-    if ((own and own.body) or section.body) is None:
-        tilt = (own and own.tilt) or section.tilt
+    if ((single_part and single_part.body) or section.body) is None:
+        tilt = (single_part and single_part.tilt) or section.tilt
     else:
-        tilt = (own and own.hub_tilt) or section.hub_tilt
+        tilt = (single_part and single_part.hub_tilt) or section.hub_tilt
     return Body(
-        *_inertias(section, own),
+        *_inertias(section, single_part),
         (stiffness.x, stiffness.y, stiffness.z),
         stiffness.xy,
         _tilt(tilt) if tilt else None,
@@ -140,12 +222,14 @@ def _tilt(section: TiltSection) -> Tilt:
     return Tilt(section.inertia_kg_m2, section.stiffness_n_m_per_rad, below)
 
 
-def _inertias(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> tuple[float, float]:
+def _inertias(
+    section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None
+) -> tuple[float, float]:
     """Mass and inertia."""
-    own = own or LIKE_ALL_PINIONS
+    single_part = single_part or LIKE_ALL_PINIONS
     return (
-        section.mass_kg if own.mass_kg is None else own.mass_kg,
-        section.inertia_kg_m2 if own.inertia_kg_m2 is None else own.inertia_kg_m2,
+        section.mass_kg if single_part.mass_kg is None else single_part.mass_kg,
+        section.inertia_kg_m2 if single_part.inertia_kg_m2 is None else single_part.inertia_kg_m2,
     )
 
 

@@ -153,12 +153,12 @@ def elastic_gears(bodies: Arrays, layout: Layout) -> ElasticGears:
     ElasticGears
         Reduced bodies of the gears that are not rigid.
     """
-    numbered = {gear.side.value: number for number, gear in enumerate(layout.gears)}
+    gear_numbers = {gear.side.value: number for number, gear in enumerate(layout.gears)}
     return ElasticGears(
         layout,
         {
             number: ReducedBody.of_arrays(bodies, side)
-            for side, number in numbered.items()
+            for side, number in gear_numbers.items()
             if f"{side}_order" in bodies
         },
     )

@@ -29,11 +29,11 @@ class Limits(Section):
     )
 
     @model_validator(mode="after")
-    def _falling(self) -> "Limits":
+    def _check_life(self) -> "Limits":
         cycles, factors = zip(*self.life, strict=True)
-        rising = all(low < high for low, high in pairwise(cycles))
-        falling = all(high > low for high, low in pairwise(factors))
-        if not (rising and falling and cycles[0] >= 1 and factors[-1] > 0):
+        cycles_rise = all(low < high for low, high in pairwise(cycles))
+        factors_fall = all(high > low for high, low in pairwise(factors))
+        if not (cycles_rise and factors_fall and cycles[0] >= 1 and factors[-1] > 0):
             refuse("life", self.life, "points of rising cycles (from 1 on) and falling factors above 0")
         return self
 
@@ -67,12 +67,39 @@ class Card(Section):
 
 
 def material_card(path: str | Path) -> MaterialCard:
-    """Read a material card in SI units. Raises ConfigErrors with one line for every mistake."""
+    """Read a material card.
+
+    Parameters
+    ----------
+    path : str or Path
+        The yaml file.
+
+    Returns
+    -------
+    MaterialCard
+        The card in SI units.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
+    """
     return limits_of(parse(Card, read_yaml(path), source=str(path)))
 
 
 def limits_of(card: Card) -> MaterialCard:
-    """A material card in SI units."""
+    """Convert a material card to SI units.
+
+    Parameters
+    ----------
+    card : Card
+        The validated card.
+
+    Returns
+    -------
+    MaterialCard
+        Moduli and limits in Pa, lengths in m.
+    """
     bending, pitting = card.bending, card.pitting
     return MaterialCard(
         name=card.name,

@@ -46,15 +46,39 @@ class Mesh(Section):
 
 
 def mesh_sizes(section: Mesh, module: float) -> MeshSizes:
-    """Sizes in SI units for a module (m)."""
-    asked = section.resolution
-    name = asked if isinstance(asked, str) else ""
-    sizes = own_sizes(asked) if isinstance(asked, SizesSection) else named_sizes(asked, module)
+    """Return the sizes of the finite elements in SI units.
+
+    Parameters
+    ----------
+    section : Mesh
+        Section `mesh` of the config.
+    module : float
+        Module of the pair, m.
+
+    Returns
+    -------
+    MeshSizes
+        Sizes, m.
+    """
+    resolution = section.resolution
+    name = resolution if isinstance(resolution, str) else ""
+    sizes = own_sizes(resolution) if isinstance(resolution, SizesSection) else named_sizes(resolution, module)
     return thin_fillet(sizes, name) if section.thin_fillet else replace(sizes, fillet_depth=None)
 
 
 def own_sizes(sizes: SizesSection) -> MeshSizes:
-    """Sizes of one's own in SI units."""
+    """Convert the sizes that a config gives itself to SI units.
+
+    Parameters
+    ----------
+    sizes : SizesSection
+        Sizes of the config.
+
+    Returns
+    -------
+    MeshSizes
+        Sizes, m.
+    """
     return MeshSizes(
         profile=1e-3 * sizes.profile_mm,
         width=1e-3 * sizes.width_mm,

@@ -20,18 +20,35 @@ ORDERS = 8
 
 
 def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
-    """The machine with friction in motion; `table`: columns EXCITATION_COLUMNS of stage lubrication.
+    """Add friction in motion to a machine.
 
-    Each mesh has the friction of the torque that it carries at rest, between the torques of the contact
-    analysis as their logarithm has it, outside them that of the nearest. Raises NotConverged where there is
-    no rest.
+    Each mesh has the friction of the torque that it carries at rest. Between the torques of the contact
+    analysis it is interpolated over the logarithm of the torque, outside them it is that of the nearest.
+
+    Parameters
+    ----------
+    machine : Machine
+        The lumped machine.
+    table : pd.DataFrame
+        Table `excitation` of stage lubrication, columns EXCITATION_COLUMNS.
+
+    Returns
+    -------
+    Machine
+        The machine with friction.
+
+    Raises
+    ------
+    NotConverged
+        If the machine has no rest.
     """
     torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(at_rest(machine)).forces[0])
-    known, ratios = _ratios(table)
+    table_torques, ratios = _ratios(table)
     ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
     ratios[..., 4] /= 1e3 * machine.layout.gear_arm
     return replace(
-        machine, friction=MeshFriction(np.stack([_series(known, ratios, torque) for torque in torques]))
+        machine,
+        friction=MeshFriction(np.stack([_series(table_torques, ratios, torque) for torque in torques])),
     )
 
 
@@ -45,6 +62,8 @@ def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
 
 def _series(torques: Array, ratios: Array, torque: float) -> Array:
     """Fourier series (parts, 2, orders) of the ratios at a torque, N m."""
-    asked = np.clip(torque, torques[0], torques[-1])
-    at = ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(asked))
+    clipped_torque = np.clip(torque, torques[0], torques[-1])
+    at = (
+        ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(clipped_torque))
+    )
     return stacked([fit_harmonics(column).series.kept(ORDERS) for column in at.T])

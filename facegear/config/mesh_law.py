@@ -14,12 +14,40 @@ TablesOf = Callable[[Layout], tuple[FlankTables, ...]]
 
 
 def flank_tables(law: Arrays, layout: Layout) -> tuple[FlankTables, ...]:
-    """Tables of the flanks at each gear of a machine; one gear alone has the upper one's."""
+    """Return the tables of the flanks at each gear of a machine.
+
+    Parameters
+    ----------
+    law : mapping of arrays
+        Arrays `law` of stage mesh_law: `level_m`, `force_n` and `slope_n_per_m`, with the tables of
+        `ForceTable` along the first axis, and the numbers `flank_variant` (gears, 2) of the tables for
+        the drive and back flank of each gear.
+    layout : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    tuple[FlankTables, ...]
+        One entry for each gear; a gear alone has the tables of the upper one.
+    """
     return tables_of(law)(layout)
 
 
 def tables_of(law: Arrays) -> TablesOf:
-    """The same of many machines, those of the same gears made once."""
+    """Return a function that gives the tables of the flanks of many machines.
+
+    Machines with the same gears share their tables.
+
+    Parameters
+    ----------
+    law : mapping of arrays
+        Arrays `law` of stage mesh_law, as in `flank_tables`.
+
+    Returns
+    -------
+    TablesOf
+        Function from a layout to the tables of its gears.
+    """
     tables = [
         ForceTable(_read_only(levels), _read_only(forces), _read_only(slopes))
         for levels, forces, slopes in zip(law["level_m"], law["force_n"], law["slope_n_per_m"], strict=True)
@@ -35,7 +63,7 @@ def tables_of(law: Arrays) -> TablesOf:
 
 
 def _read_only(values: Array) -> Array:
-    """A copy that nothing is written into."""
+    """Return a copy that refuses to be written into."""
     copy = values.copy()
     copy.flags.writeable = False
     return copy

@@ -20,13 +20,23 @@ class Modal(Section):
 
 
 def modes_need_contact(values: Mapping[str, Any]) -> bool:
-    """Whether modes take their stiffness from the contact analysis, by the plain values of a config.
+    """Whether modes take their stiffness from the contact analysis.
 
     They take the config's own mean with given harmonics, where source fem has one (for the modes only), and
     where average is asked for and source fem_scaled scales to it.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of a whole config.
+
+    Returns
+    -------
+    bool
+        True if they need it.
     """
     section = values["mesh_stiffness"]
     if section["source"] == "harmonics":
         return False
-    given = section["mean_n_per_m"] is not None
-    return not given or (section["source"] == "fem_scaled" and values["modal"]["stiffness"] == "local")
+    has_mean = section["mean_n_per_m"] is not None
+    return not has_mean or (section["source"] == "fem_scaled" and values["modal"]["stiffness"] == "local")

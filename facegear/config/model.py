@@ -56,6 +56,7 @@ from facegear.contact.resolution import (
 from facegear.errors import ConfigError
 
 SAME_ELASTICITY = 1e-6
+"""Relative difference up to which elastic constants of tooth pair and material card count as equal."""
 
 
 class Config(Section):
@@ -114,23 +115,23 @@ class Config(Section):
         if self.lubrication is None or self.lubrication.friction.effect == "loss_only":
             return
         if self.transmission is None or self.transmission.mesh_kinematics == "printed":
-            allowed = "loss_only without a transmission whose mesh_kinematics are geometric"
-            raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, allowed)
+            requirement = "loss_only without a transmission whose mesh_kinematics are geometric"
+            raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, requirement)
 
     def _check_law(self) -> None:
         if self.mesh_stiffness.mesh_law == "constant_load":
             return
         if self.transmission is not None and self.transmission.mesh_kinematics == "printed":
-            allowed = "geometric, where mesh_stiffness.mesh_law is load_dependent"
-            raise ConfigError("transmission.mesh_kinematics", "printed", allowed)
+            requirement = "geometric, where mesh_stiffness.mesh_law is load_dependent"
+            raise ConfigError("transmission.mesh_kinematics", "printed", requirement)
         if self.modal.stiffness == "average":
-            allowed = "local, where mesh_stiffness.mesh_law is load_dependent"
-            raise ConfigError("modal.stiffness", "average", allowed)
+            requirement = "local, where mesh_stiffness.mesh_law is load_dependent"
+            raise ConfigError("modal.stiffness", "average", requirement)
         causes = self.tolerances.causes if self.tolerances is not None else ()
         keys = [key for cause in causes for key in cause.moves]
         if self.search is not None or moves_pair(keys) or (self.tolerances and self.tolerances.tooth_contact):
-            allowed = f"constant_load, {CONTACT_ASKED}"
-            raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", allowed)
+            requirement = f"constant_load, {CONTACT_ASKED}"
+            raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", requirement)
 
     def _check_poses(self) -> None:
         if self.transmission is not None:
@@ -144,12 +145,12 @@ class Config(Section):
                 "transmission.torsion": bool(self.transmission.torsion),
                 "a body of a face gear": bool(elastic_gears(self.transmission)),
             }
-            for scaled in (name for name, given in springs.items() if given):
-                allowed = f"without bearing_stiffness beside {scaled}, whose springs it would scale"
-                raise ConfigError("branches.loci.parameters", list(section.loci.parameters), allowed)
+            for spring_owner in (name for name, is_present in springs.items() if is_present):
+                requirement = f"without bearing_stiffness beside {spring_owner}, whose springs it would scale"
+                raise ConfigError("branches.loci.parameters", list(section.loci.parameters), requirement)
         if section and not section.from_rpm <= speed <= section.to_rpm:
-            allowed = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
-            raise ConfigError("dynamics.speed_rpm", speed, allowed)
+            requirement = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
+            raise ConfigError("dynamics.speed_rpm", speed, requirement)
 
     def _check_reproduction(self) -> None:
         if self.reproduction is not None and not Path(self.reproduction).is_file():
@@ -166,8 +167,8 @@ class Config(Section):
         elif self.lubrication is not None:
             raise ConfigError("tooth_pair.pinion", None, "given, as required by lubrication")
         elif self.mesh_stiffness.source != "harmonics":
-            allowed = "given, as mesh_stiffness.source is not harmonics"
-            raise ConfigError("tooth_pair.pinion", None, allowed)
+            requirement = "given, as mesh_stiffness.source is not harmonics"
+            raise ConfigError("tooth_pair.pinion", None, requirement)
         if self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication is not None:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
@@ -181,8 +182,10 @@ class Config(Section):
     @property
     def mesh_used(self) -> Mesh:
         """The mesh with fillets as root stress needs them, unless it says itself what they are."""
-        asked = self.mesh.thin_fillet
-        return self.mesh.model_copy(update={"thin_fillet": self._root_stress if asked is None else asked})
+        thin_fillet = self.mesh.thin_fillet
+        return self.mesh.model_copy(
+            update={"thin_fillet": self._root_stress if thin_fillet is None else thin_fillet}
+        )
 
     @property
     def contact_used(self) -> Contact:
@@ -190,18 +193,18 @@ class Config(Section):
 
         One so small that the mesh cannot resolve its contact is left out.
         """
-        given = self.contact.torques_n_m
+        torques = self.contact.torques_n_m
         if self.strength is None or self.tooth_pair.pinion is None:
             return self.contact
         design, plan = pair_design(self.tooth_pair), contact_plan(self.contact)
         spacing = node_spacing(mesh_sizes(self.mesh_used, design.module), plan)
-        needed = [
+        duty_torques = [
             torque
             for torque in self.strength.torques
-            if not given[0] <= torque <= given[-1]
+            if not torques[0] <= torque <= torques[-1]
             and resolves(spacing, design, materials(self.tooth_pair), torque)
         ]
-        return self.contact.model_copy(update={"torques_n_m": tuple(sorted({*given, *needed}))})
+        return self.contact.model_copy(update={"torques_n_m": tuple(sorted({*torques, *duty_torques}))})
 
     @property
     def _root_stress(self) -> bool:
@@ -212,13 +215,13 @@ class Config(Section):
             return
         for body in ("pinion", "face_gear"):
             card = getattr(self.strength, body).card
-            own = getattr(self.tooth_pair, body)
-            material = (own.material if own else None) or self.tooth_pair.material
+            body_section = getattr(self.tooth_pair, body)
+            material = (body_section.material if body_section else None) or self.tooth_pair.material
             for key in ("young_modulus_gpa", "poisson_ratio"):
-                taken, rated = getattr(material, key), getattr(card, key)
-                if not isclose(taken, rated, rel_tol=SAME_ELASTICITY):
-                    allowed = f"{taken:g}, as contact and stress take it from tooth_pair"
-                    raise ConfigError(f"strength.{body}.card.{key}", rated, allowed)
+                pair_value, card_value = getattr(material, key), getattr(card, key)
+                if not isclose(pair_value, card_value, rel_tol=SAME_ELASTICITY):
+                    requirement = f"{pair_value:g}, as contact and stress take it from tooth_pair"
+                    raise ConfigError(f"strength.{body}.card.{key}", card_value, requirement)
         if self.contact.element != "hex27":
             raise ConfigError("contact.element", self.contact.element, "hex27, where strength is asked for")
 
@@ -228,8 +231,8 @@ class Config(Section):
             return
         for number, load in enumerate(self.strength.duty):
             if not sweep.from_rpm <= load.speed_rpm <= sweep.to_rpm:
-                allowed = f"within dynamics.sweep, {sweep.from_rpm:g} to {sweep.to_rpm:g}"
-                raise ConfigError(f"strength.duty[{number}].speed_rpm", load.speed_rpm, allowed)
+                requirement = f"within dynamics.sweep, {sweep.from_rpm:g} to {sweep.to_rpm:g}"
+                raise ConfigError(f"strength.duty[{number}].speed_rpm", load.speed_rpm, requirement)
 
     def _check_sharing_map(self, machine: Transmission) -> None:
         if self.sharing_map is None:
@@ -261,8 +264,8 @@ class Config(Section):
         check_bodies(pair, machine)
         check_pitch_once(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
-            allowed = "given, as tooth_pair has no bodies that it could be taken from"
-            raise ConfigError("transmission.backlash_um", None, allowed)
+            requirement = "given, as tooth_pair has no bodies that it could be taken from"
+            raise ConfigError("transmission.backlash_um", None, requirement)
         errors = {"transmission_error": machine.transmission_error}
         errors |= {
             f"single_meshes.{name}.transmission_error": mesh.transmission_error
@@ -274,36 +277,46 @@ class Config(Section):
                 raise ConfigError(f"transmission.{key}", "from_contact", FROM_CONTACT)
         complete = with_backlash(pair, machine)
         require_buildable(complete, pair_teeth(pair))
-        solved = self.mesh_stiffness.source != "harmonics"
+        has_contact = self.mesh_stiffness.source != "harmonics"
         if self.tolerances is not None:
-            check_tolerances(self.tolerances, pair, complete, self.lubrication, solved)
+            check_tolerances(self.tolerances, pair, complete, self.lubrication, has_contact)
         if self.search is not None:
             stress = "root stress" if self._root_stress else "pressure"
-            check_search(self.search, self.tolerances, pair, complete, stress if solved else "none")
+            check_search(self.search, self.tolerances, pair, complete, stress if has_contact else "none")
 
 
-def resolved(config: Config) -> dict[str, Any]:
-    """Plain values of a config with what follows from other keys filled in.
+def resolved_values(config: Config) -> dict[str, Any]:
+    """Return the plain values of a config with what follows from other keys filled in.
 
     That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken, the
     backlash of the dynamics, the gauges and torques that a rating needs, the fillets that gauges need, and
     how often a turn loads a tooth: an input pinion's once by every face gear, a face gear's once by every
     pinion.
+
+    Parameters
+    ----------
+    config : Config
+        The config.
+
+    Returns
+    -------
+    dict[str, Any]
+        Plain values under the keys of the config.
     """
-    filled = config.model_dump(mode="json")
-    given = config.strength is not None and config.strength.load_factors == "given"
-    if given and (machine := config.transmission) is not None:
+    values = config.model_dump(mode="json")
+    has_given_factors = config.strength is not None and config.strength.load_factors == "given"
+    if has_given_factors and (machine := config.transmission) is not None:
         for body, meshes in (("pinion", machine.face_gears), ("face_gear", machine.pinions)):
-            section = filled["strength"][body]
+            section = values["strength"][body]
             section["cycles_per_turn"] = section["cycles_per_turn"] or len(meshes)
-    filled["contact"]["root_stress"] = config.contact.root_stress or config.strength is not None
-    filled["contact"]["torques_n_m"] = list(config.contact_used.torques_n_m)
-    filled["mesh"] = config.mesh_used.model_dump(mode="json")
-    stiffness = filled["mesh_stiffness"]
+    values["contact"]["root_stress"] = config.contact.root_stress or config.strength is not None
+    values["contact"]["torques_n_m"] = list(config.contact_used.torques_n_m)
+    values["mesh"] = config.mesh_used.model_dump(mode="json")
+    stiffness = values["mesh_stiffness"]
     stiffness["mean_n_per_m"] = config.mesh_stiffness.mean
     if stiffness["source"] != "harmonics" and stiffness["torque_n_m"] is None:
         stiffness["torque_n_m"] = config.contact.torques_n_m[-1]
     if config.transmission is not None:
         whole = with_backlash(config.tooth_pair, config.transmission)
-        filled["transmission"]["backlash_um"] = whole.backlash_um
-    return filled
+        values["transmission"]["backlash_um"] = whole.backlash_um
+    return values

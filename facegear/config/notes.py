@@ -10,7 +10,7 @@ from facegear.config.plausibility import plausibility_notes
 from facegear.config.tooth_pair import ToothPair
 from facegear.geometry.design import BACKLASH_DIFFERS_UM
 
-PRINTED = (
+PRINTED_NOTE = (
     "transmission.mesh_kinematics = printed: equation (13) of the source paper to the letter, to compare "
     "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's "
     "(docs/explanation/theory.md)"
@@ -45,18 +45,31 @@ SINGLE_TEETH = (
 
 
 def notes(values: Mapping[str, Any]) -> list[str]:
-    """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
-    with a backlash other than that of the teeth, for preloads and external forces, for numbers that several
-    causes move, for friction that samples and designs leave out of their motion, for friction of teeth as
-    assembled beside an operating pose, for single teeth, and for values far from their usual size.
+    """Return the notes on a config that a user sees once when a run starts.
+
+    There is a note for a config of one's own with the kinematics of the publication, for errors that turn,
+    for dynamics with a backlash other than that of the teeth, for preloads and external forces, for periodic
+    torques that do not repeat with the mesh, for numbers that several causes move, for friction that samples
+    and designs leave out of their motion, for friction of teeth as assembled beside an operating pose, for
+    single teeth, and for values far from their usual size.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of a whole config.
+
+    Returns
+    -------
+    list[str]
+        One line for each note.
     """
     transmission = values["transmission"]
     implausible = plausibility_notes(values)
     if transmission is None:
         return implausible
-    own = values["reproduction"] is None and transmission["mesh_kinematics"] == "printed"
+    is_printed = values["reproduction"] is None and transmission["mesh_kinematics"] == "printed"
     return (
-        [PRINTED] * own
+        [PRINTED_NOTE] * is_printed
         + [SLOW] * turns(transmission)
         + _backlash(values)
         + _preloads(values)
@@ -75,8 +88,8 @@ def _without_friction(values: Mapping[str, Any]) -> list[str]:
     oil = values.get("lubrication")
     if not oil or oil["friction"]["effect"] == "loss_only":
         return []
-    named = {"tolerances": "samples of tolerances", "search": "designs of the search"}
-    left = [words for section, words in named.items() if values.get(section)]
+    section_words = {"tolerances": "samples of tolerances", "search": "designs of the search"}
+    left = [words for section, words in section_words.items() if values.get(section)]
     return [WITHOUT_FRICTION.format(" and ".join(left))] if left else []
 
 
@@ -105,8 +118,10 @@ def _preloads(values: Mapping[str, Any]) -> list[str]:
 def _pushes(transmission: Mapping[str, Any]) -> list[str]:
     """Bodies with an external force."""
     singles = {**transmission["single_pinions"], **transmission["single_gears"]}
-    named = [name for name, own in singles.items() if any((own.get("force_n") or {}).values())]
-    return [EXTERNAL.format(", ".join(named))] if named else []
+    bodies = [
+        name for name, single_part in singles.items() if any((single_part.get("force_n") or {}).values())
+    ]
+    return [EXTERNAL.format(", ".join(bodies))] if bodies else []
 
 
 def _unrepeated(values: Mapping[str, Any]) -> list[str]:
@@ -139,20 +154,31 @@ def _sums(values: Mapping[str, Any]) -> list[str]:
 
 
 def turns(transmission: Mapping[str, Any]) -> bool:
-    """Whether a body has a runout or a curve of cumulative pitch deviations."""
+    """Whether a body has a runout or a curve of cumulative pitch deviations.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any]
+        Plain values of section `transmission`.
+
+    Returns
+    -------
+    bool
+        True if one has.
+    """
     singles = (*transmission["single_pinions"].values(), *transmission["single_gears"].values())
     bodies = (transmission["pinion"], transmission["face_gear"], *singles)
     return any(body.get("runout") or body.get("cumulative_pitch_um") for body in bodies)
 
 
 def _backlash(values: Mapping[str, Any]) -> list[str]:
-    own = values["transmission"].get("backlash_um")
-    if own is None or values.get("tooth_pair", {}).get("pinion") is None:
+    backlash_um = values["transmission"].get("backlash_um")
+    if backlash_um is None or values.get("tooth_pair", {}).get("pinion") is None:
         return []
     teeth = geometric_backlash(ToothPair.of_config(values["tooth_pair"]))
-    if abs(own - teeth) <= BACKLASH_DIFFERS_UM:
+    if abs(backlash_um - teeth) <= BACKLASH_DIFFERS_UM:
         return []
     return [
-        f"transmission.backlash_um = {own:g}: the teeth as assembled have {teeth:.1f} um; without the key "
-        "the dynamics take theirs"
+        f"transmission.backlash_um = {backlash_um:g}: the teeth as assembled have {teeth:.1f} um; "
+        "without the key the dynamics take theirs"
     ]

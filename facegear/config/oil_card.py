@@ -28,7 +28,7 @@ class EsterLaw(Section):
 
 
 class FixedLaw(Section):
-    """The same pressure coefficient at every temperature."""
+    """Pressure coefficient that is the same at every temperature."""
 
     law: Literal["fixed"] = Field(description="the same pressure coefficient at every temperature")
     per_gpa: float = Field(ge=1e-3, le=100, description="pressure coefficient, 1/GPa")
@@ -80,7 +80,18 @@ class OilCard(Section):
 
 
 def oil_of(card: OilCard) -> Oil:
-    """An oil card in SI units."""
+    """Convert an oil card to SI units.
+
+    Parameters
+    ----------
+    card : OilCard
+        The validated card.
+
+    Returns
+    -------
+    Oil
+        The oil; temperatures in C.
+    """
     return Oil(
         name=card.name,
         temperatures=card.temperatures_c,
@@ -95,7 +106,7 @@ def oil_of(card: OilCard) -> Oil:
     )
 
 
-def _law(given: PowerLaw | EsterLaw | FixedLaw) -> PowerOfViscosity | PolyolEster | FixedCoefficient:
-    if isinstance(given, PowerLaw):
-        return PowerOfViscosity(given.scale, given.exponent)
-    return FixedCoefficient(1e-9 * given.per_gpa) if isinstance(given, FixedLaw) else PolyolEster()
+def _law(section: PowerLaw | EsterLaw | FixedLaw) -> PowerOfViscosity | PolyolEster | FixedCoefficient:
+    if isinstance(section, PowerLaw):
+        return PowerOfViscosity(section.scale, section.exponent)
+    return FixedCoefficient(1e-9 * section.per_gpa) if isinstance(section, FixedLaw) else PolyolEster()

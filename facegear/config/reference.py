@@ -1,4 +1,4 @@
-"""All config keys in one table, for the docs.
+"""Table of all config keys, for the docs.
 
 Made by `python -m facegear.config.reference > docs/reference/config.md`.
 """
@@ -19,18 +19,25 @@ Required keys are required where their section is given.
 A file's name counts from the folder of the config that holds it.
 The page is made from the models that check a config (`python -m facegear.config.reference`).
 """
+"""Beginning of the page."""
 
 
 def reference() -> str:
-    """The page as Markdown."""
+    """Write the page of all config keys.
+
+    Returns
+    -------
+    str
+        The page as Markdown.
+    """
     schema = Config.model_json_schema()
     parts = [HEAD]
     for name, section in schema["properties"].items():
         parts.append(f"\n## {name}\n")
         parts.append(f"{meaning(schema, section)}\n")
         parts.append("\n| key | default | allowed | meaning |\n|---|---|---|---|\n")
-        required = name in schema.get("required", ())
-        parts.extend(_row(*row) for row in _rows(schema, name, section, required))
+        is_required = name in schema.get("required", ())
+        parts.extend(_row(*row) for row in _rows(schema, name, section, is_required))
     return "".join(parts)
 
 
@@ -39,11 +46,11 @@ def _row(*cells: str) -> str:
 
 
 def _rows(
-    schema: Mapping[str, Any], key: str, field: Mapping[str, Any], required: bool
+    schema: Mapping[str, Any], key: str, field: Mapping[str, Any], is_required: bool
 ) -> Iterator[tuple[str, str, str, str]]:
     """A row for the key itself, then those of the keys inside it."""
     inside = [_plain(schema, option) for option in _options(field)]
-    yield (f"`{key}`", _default(field, required), _allowed(schema, inside), meaning(schema, field))
+    yield (f"`{key}`", _default(field, is_required), _allowed_values(schema, inside), meaning(schema, field))
     for option in inside:
         item, name = option, key
         if isinstance(item.get("additionalProperties"), dict):
@@ -55,9 +62,19 @@ def _rows(
 
 
 def meaning(schema: Mapping[str, Any], field: Mapping[str, Any]) -> str:
-    """Return what a key stands for: its own description, or that of the section which it holds.
+    """Return the meaning of a key: its own description, or that of the section which it holds.
 
-    schema: the config's JSON schema; field: the part of it that describes the key.
+    Parameters
+    ----------
+    schema : Mapping[str, Any]
+        The config's JSON schema.
+    field : Mapping[str, Any]
+        The part of the schema that describes the key.
+
+    Returns
+    -------
+    str
+        The description in one line.
     """
     options = [_plain(schema, option) for option in _options(field)]
     texts = (
@@ -79,14 +96,14 @@ def _plain(schema: Mapping[str, Any], field: Mapping[str, Any]) -> Mapping[str, 
     return schema["$defs"][field["$ref"].rsplit("/", 1)[-1]]
 
 
-def _default(field: Mapping[str, Any], required: bool) -> str:
-    if required:
+def _default(field: Mapping[str, Any], is_required: bool) -> str:
+    if is_required:
         return "required"
     value = field.get("default")
     return "each key's own" if isinstance(value, dict) and value else f"`{json.dumps(value)}`"
 
 
-def _allowed(schema: Mapping[str, Any], options: list[Mapping[str, Any]]) -> str:
+def _allowed_values(schema: Mapping[str, Any], options: list[Mapping[str, Any]]) -> str:
     return " or ".join(dict.fromkeys(_kind(schema, option) for option in options))
 
 

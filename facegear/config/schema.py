@@ -1,4 +1,4 @@
-"""The config's JSON schema, for editors.
+"""JSON schema of the config, for editors.
 
 Made by `python -m facegear.config.schema > facegear/config/config.schema.json`.
 """
@@ -13,7 +13,13 @@ SCHEMA = Path(__file__).with_name("config.schema.json")
 
 
 def json_schema() -> str:
-    """The schema of a config file as text, made from the models that validate it."""
+    """Return the JSON schema of a config file, made from the models that validate it.
+
+    Returns
+    -------
+    str
+        The schema as text.
+    """
     return json.dumps(Config.model_json_schema(), indent=1, sort_keys=True) + "\n"
 
 

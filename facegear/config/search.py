@@ -5,14 +5,15 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
-from facegear.config.dynamics import SWEPT, SWEPT_TEXT, Accuracy, settings
+from facegear.config.dynamics import SWEEP_ACCURACY, SWEPT_TEXT, Accuracy, settings
 from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, of_jumps
 
-TAKEN = ("design", "error", "generation", "seed")
+RESERVED_COLUMNS = ("design", "error", "generation", "seed")
 """Columns beside those of variables, objectives and constraints."""
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
-Bounded = Annotated[float, Field(ge=-1e15, le=1e15)]
+"""Pattern of the names of variables, objectives and constraints, which are columns of tables."""
+BoundedNumber = Annotated[float, Field(ge=-1e15, le=1e15)]
 """Value of a free number or a limit, in the unit of any quantity."""
 
 
@@ -23,7 +24,7 @@ class VariableSection(Section):
     sets: tuple[str, ...] = Field(
         min_length=1, description="dotted keys of numbers of `transmission`, `tooth_pair`"
     )
-    limits: tuple[Bounded, Bounded] = Field(description="smallest and largest value")
+    limits: tuple[BoundedNumber, BoundedNumber] = Field(description="smallest and largest value")
     steps: int | None = Field(
         None,
         ge=2,
@@ -63,7 +64,7 @@ class ObjectiveSection(Section):
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """What it is the largest, or smallest, of."""
+        """Quantities of which the largest, or smallest, counts."""
         return self.smallest_of or self.largest_of
 
     @model_validator(mode="after")
@@ -79,8 +80,8 @@ class ObjectiveSection(Section):
 class ConstraintSection(ObjectiveSection):
     """Something that may not be larger, or smaller, than a limit."""
 
-    at_most: Bounded | None = Field(None, description="required with largest_of")
-    at_least: Bounded | None = Field(None, description="required with smallest_of")
+    at_most: BoundedNumber | None = Field(None, description="required with largest_of")
+    at_least: BoundedNumber | None = Field(None, description="required with smallest_of")
 
     @property
     def limit(self) -> float:
@@ -90,12 +91,16 @@ class ConstraintSection(ObjectiveSection):
         return bound
 
     @model_validator(mode="after")
-    def _limited(self) -> "ConstraintSection":
-        key, other = ("at_least", "at_most") if self.large else ("at_most", "at_least")
-        for name, wanted in ((key, True), (other, False)):
-            if (getattr(self, name) is not None) != wanted:
-                given = "smallest_of" if self.large else "largest_of"
-                refuse(name, getattr(self, name), f"{'given' if wanted else 'left out'} with {given}")
+    def _check_limit(self) -> "ConstraintSection":
+        key, opposite_key = ("at_least", "at_most") if self.large else ("at_most", "at_least")
+        for name, is_required in ((key, True), (opposite_key, False)):
+            if (getattr(self, name) is not None) != is_required:
+                quantities_key = "smallest_of" if self.large else "largest_of"
+                refuse(
+                    name,
+                    getattr(self, name),
+                    f"{'given' if is_required else 'left out'} with {quantities_key}",
+                )
         return self
 
 
@@ -110,7 +115,7 @@ class Jumps(Section):
     )
     step_rpm: float = Field(50, ge=1e-3, le=10_000, description="at most, from speed to speed")
     resolution_rpm: float = Field(1.0, ge=1e-6, le=1000, description="to which a jump is bracketed")
-    accuracy: Accuracy = Field(SWEPT, description=SWEPT_TEXT)
+    accuracy: Accuracy = Field(SWEEP_ACCURACY, description=SWEPT_TEXT)
 
     @model_validator(mode="after")
     def _inside(self) -> "Jumps":
@@ -162,8 +167,8 @@ class Search(Section):
         goals = [entry.name for entry in (*self.objectives, *self.constraints)]
         names = [*(entry.name for entry in self.variables), *goals]
         for number, name in enumerate(names):
-            if name in TAKEN:
-                refuse("name", name, f"another one: {', '.join(TAKEN)} are columns of their own")
+            if name in RESERVED_COLUMNS:
+                refuse("name", name, f"another one: {', '.join(RESERVED_COLUMNS)} are columns of their own")
             if name in names[:number]:
                 refuse("name", name, "one of its own for each variable, objective and constraint")
 
@@ -178,7 +183,18 @@ class Search(Section):
 
 
 def jump_range(section: Jumps) -> JumpRange:
-    """Where jumps are looked for, and how."""
+    """Return the range of speeds in which jumps are looked for.
+
+    Parameters
+    ----------
+    section : Jumps
+        Section `search.jumps` of the config.
+
+    Returns
+    -------
+    JumpRange
+        Speeds in rpm, with the settings of the sweeps.
+    """
     return JumpRange(
         range_rpm=section.range_rpm,
         step_rpm=section.step_rpm,

@@ -13,11 +13,18 @@ from facegear.shafts.beam import Elasticity, Segment
 from facegear.shafts.condensed import Bearing, Shaft
 
 SOFTEST_BEARING, STIFFEST_BEARING = 1e6, 1e14
+"""Limits of a bearing's stiffness across and along the shaft, N/m."""
 SHORTEST_MM, LONGEST_MM = 0.5, 1e4
+"""Limits of the length of a segment, mm."""
 STEEL = MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3)
+"""Material of a shaft that gives none."""
 MOTIONS_KEPT = "x, y, z, tilt_x, tilt_y"
+"""Order of rows and columns of a bearing's stiffness matrix."""
 SYMMETRIC = 1e-9
+"""Relative size up to which the skew part and a negative eigenvalue of a bearing's matrix count as rounding.
+"""
 RESERVED = ("x", "y", "z", "theta", "tilt_x", "tilt_y")
+"""Names that no turning mass may have: those of motions."""
 OUTPUT = "output"
 """Key of the masses behind the face gear that gives the power out."""
 
@@ -83,7 +90,13 @@ class ShaftBearing(Section):
             refuse("matrix", self.matrix, "such that it resists every motion: no negative eigenvalue")
 
     def stiffness(self) -> Array:
-        """(5, 5), SI units."""
+        """Return the stiffness matrix of the bearing.
+
+        Returns
+        -------
+        (5, 5) array
+            Stiffness in x, y, z, tilt_x and tilt_y, N/m, N/rad and N m/rad.
+        """
         if self.matrix is not None:
             return np.array(self.matrix, float)
         across, along, tilting = (
@@ -125,19 +138,19 @@ class ShaftSection(Section):
         for key in ("segments", "bearings"):
             if not getattr(self, key):
                 refuse(key, [], "one or more")
-        require_all(self._stations, self._held)
+        require_all(self._stations, self._check_support)
         return self
 
     def _stations(self) -> None:
         length = self.length_mm
-        allowed = f"on the shaft, from 0 to {length:g} mm"
+        requirement = f"on the shaft, from 0 to {length:g} mm"
         if self.pinion_mm > length:
-            refuse("pinion_mm", self.pinion_mm, allowed)
+            refuse("pinion_mm", self.pinion_mm, requirement)
         for number, bearing in enumerate(self.bearings):
             if bearing.at_mm > length:
-                refuse(f"bearings[{number}].at_mm", bearing.at_mm, allowed)
+                refuse(f"bearings[{number}].at_mm", bearing.at_mm, requirement)
 
-    def _held(self) -> None:
+    def _check_support(self) -> None:
         stations = [bearing.at_mm for bearing in self.bearings]
         if max(self.pinion_mm, *stations) > self.length_mm:
             return
@@ -169,8 +182,8 @@ class TurningMassSection(Section):
     @model_validator(mode="after")
     def _one_spring(self) -> "TurningMassSection":
         if (self.stiffness_n_m_per_rad is None) != bool(self.segments):
-            allowed = "given, or else segments, but not both"
-            refuse("stiffness_n_m_per_rad", self.stiffness_n_m_per_rad, allowed)
+            requirement = "given, or else segments, but not both"
+            refuse("stiffness_n_m_per_rad", self.stiffness_n_m_per_rad, requirement)
         if self.name in RESERVED:
             refuse("name", self.name, f"none of {', '.join(RESERVED)}, which name motions of the gear itself")
         return self

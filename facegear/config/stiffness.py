@@ -14,6 +14,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.stiffness.request import StiffnessRequest
 
 MAX_ORDER = 512
+"""Largest order of the mesh frequency in the series of k(t)."""
 SOFTEST = 1e5
 """Mean stiffness (N/m) below which no pair of gears is: a pinion of 1 mm in plastic has ten times as much."""
 SAME_MEAN = 1e-6
@@ -41,6 +42,7 @@ class HarmonicSection(Section):
 
 
 COLUMNS = tuple(HarmonicSection.model_fields)
+"""Columns of a csv of harmonics."""
 UNREAD = (
     *("amplitude_n_per_m", "truncation_error_n_per_m", "sampling_error_n_per_m"),
     *("e_sin_um", "e_cos_um", "e_peak_to_peak_um", "e_truncation_error_um"),
@@ -123,7 +125,7 @@ class MeshStiffness(Section):
         if values.get("source") != "harmonics":
             refuse("csv", name, "left out unless source is harmonics")
         try:
-            table, pitch = _given(name)
+            table, pitch = _read_csv(name)
         except CsvFault as fault:
             refuse("csv", name, f"a csv of numbers; {fault}")
         return {**values, "csv": None, "table": table, "csv_pitch_deg": pitch}
@@ -140,13 +142,13 @@ class MeshStiffness(Section):
             return self
         if not self.table:
             refuse("table", [], "given, here or in csv, where source is harmonics")
-        for number, (terms, following) in enumerate(pairwise(self.table)):
-            if following.order <= terms.order:
-                refuse(f"table[{number + 1}].order", following.order, "above the order before it")
+        for number, (terms, next_terms) in enumerate(pairwise(self.table)):
+            if next_terms.order <= terms.order:
+                refuse(f"table[{number + 1}].order", next_terms.order, "above the order before it")
         _check_mean(self.mean_n_per_m, self.table[0])
         if (mean := self.mean) is not None and mean < SOFTEST:
-            allowed = f"at least {SOFTEST:g} N/m; values in N/um are a million times too small"
-            refuse("csv or table" if self.mean_n_per_m is None else "mean_n_per_m", mean, allowed)
+            requirement = f"at least {SOFTEST:g} N/m; values in N/um are a million times too small"
+            refuse("csv or table" if self.mean_n_per_m is None else "mean_n_per_m", mean, requirement)
         minimum = given_series(self).kept(self.harmonics_kept).varied(self.variation).minimum
         if minimum <= 0.0:
             condition = "harmonics so small beside the mean that k(t) stays positive"
@@ -161,7 +163,18 @@ class MeshStiffness(Section):
 
 
 def given_series(section: MeshStiffness) -> Harmonics:
-    """The series written in the config (N/m), its mean included."""
+    """Return the series written in the config, its mean included.
+
+    Parameters
+    ----------
+    section : MeshStiffness
+        Section `mesh_stiffness` of the config.
+
+    Returns
+    -------
+    Harmonics
+        Mesh stiffness over a mesh period, N/m.
+    """
     order = max((row.order for row in section.table), default=0)
     sine, cosine = np.zeros(order + 1), np.zeros(order + 1)
     for row in section.table:
@@ -171,7 +184,18 @@ def given_series(section: MeshStiffness) -> Harmonics:
 
 
 def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
-    """What is asked of the stiffness stage, with the series written in the config if there is one."""
+    """Return the request of the stiffness stage, with the series written in the config if there is one.
+
+    Parameters
+    ----------
+    section : MeshStiffness
+        Section `mesh_stiffness` of the config.
+
+    Returns
+    -------
+    StiffnessRequest
+        The request in SI units.
+    """
     return StiffnessRequest(
         source=section.source,
         mean=section.mean,
@@ -198,14 +222,16 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
             refuse("mean_n_per_m", None, "given, as the harmonics have no order 0, which is the mean")
         return
     if first.sin_n_per_m != 0.0 or first.cos_n_per_m <= 0.0:
-        given = [first.sin_n_per_m, first.cos_n_per_m]
-        refuse("table", given, "0 for sin_n_per_m of order 0, and the mean, above 0, for its cos_n_per_m")
+        order_0_terms = [first.sin_n_per_m, first.cos_n_per_m]
+        refuse(
+            "table", order_0_terms, "0 for sin_n_per_m of order 0, and the mean, above 0, for its cos_n_per_m"
+        )
     if mean is not None and abs(mean / first.cos_n_per_m - 1.0) > SAME_MEAN:
         condition = f"the same as order 0 of the harmonics, {first.cos_n_per_m:.10g}, or left out"
         refuse("mean_n_per_m", mean, condition)
 
 
-def _given(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
+def _read_csv(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
     """Rows of `table` from a csv of orders, or from one over the pinion's angle with the pitch it covers."""
     if CURVE[0] in column_names(name):
         return _of_curve(read_numbers(name, CURVE))
@@ -213,7 +239,7 @@ def _given(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
 
 
 def _of_curve(curve: Sequence[CsvRow]) -> tuple[tuple[dict[str, Any], ...], float]:
-    """The same from rows over the angle, and the pitch (deg) that they cover."""
+    """Return rows of `table` from rows over the angle, and the pitch (deg) that they cover."""
     angle, stiffness = (np.array([row.values[column] for row in curve]) for column in CURVE)
     if not 4 <= len(curve) <= 2 * MAX_ORDER:
         raise CsvFault(f"it must have from 4 to {2 * MAX_ORDER} rows over the pitch, not {len(curve)}")

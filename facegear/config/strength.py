@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
+"""Columns of a csv of the duty cycle."""
 
 
 class DutySection(Section):
@@ -30,7 +31,7 @@ class DutySection(Section):
 
 
 class BodyStrength(Section):
-    """What the rating has to know of one gear."""
+    """Material, roughness and loading of one gear, for the rating."""
 
     card: Card = Field(description="name of a card of the package, a yaml file, or the card itself")
     root_roughness_um: float = Field(
@@ -127,10 +128,10 @@ class Strength(Section):
                 refuse(f"{name}.card", card.name, f"a card with {part}, which the rating needs")
         if card.bending.slip_layer_mm is None:
             refuse(f"{name}.card", card.name, "a card with bending.slip_layer_mm, which the rating needs")
-        both = getattr(self, name).both_ways or self.load_factors == "machine"
-        if both and card.bending.mean_stress is None:
-            allowed = "a card with bending.mean_stress, which teeth bent both ways need"
-            refuse(f"{name}.card", card.name, allowed)
+        loads_both_ways = getattr(self, name).both_ways or self.load_factors == "machine"
+        if loads_both_ways and card.bending.mean_stress is None:
+            requirement = "a card with bending.mean_stress, which teeth bent both ways need"
+            refuse(f"{name}.card", card.name, requirement)
 
     @property
     def torques(self) -> tuple[float, float]:
@@ -145,7 +146,18 @@ class Strength(Section):
 
 
 def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
-    """The bins of the duty cycle with all load factors that section strength gives, in SI units."""
+    """Return the bins of the duty cycle with all load factors that section `strength` gives.
+
+    Parameters
+    ----------
+    section : Strength
+        Section `strength` of the config.
+
+    Returns
+    -------
+    tuple[DutyBin, ...]
+        Torque on the pinion (N m), speed (1/s) and time (s) of each bin.
+    """
     return tuple(
         DutyBin(section.factor * load.torque_n_m, load.speed_rpm / 60.0, 3600.0 * load.hours)
         for load in section.duty
@@ -155,7 +167,23 @@ def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
 def rating_request(
     section: Strength, design: PairDesign, spectrum: "pd.DataFrame | None" = None
 ) -> RatingRequest:
-    """What the rating needs, in SI units; `spectrum` what the machine's teeth meet, of stage duty_loads."""
+    """Return the request of the rating in SI units.
+
+    Parameters
+    ----------
+    section : Strength
+        Section `strength` of the config.
+    design : PairDesign
+        Geometry of the pair.
+    spectrum : pd.DataFrame or None
+        Loads of the flanks in the machine, from stage duty_loads; None where the section gives the load
+        factors.
+
+    Returns
+    -------
+    RatingRequest
+        Limits and duty of both gears, time (s) and smallest safeties.
+    """
     duty, ratio = duty_bins(section), design.pinion.teeth / design.face_gear.teeth
     sections = {"pinion": section.pinion, "face_gear": section.face_gear}
     if spectrum is None:

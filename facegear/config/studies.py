@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, refuse
 
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
+"""Pattern of the names of cases and studies, which are names of folders and files."""
 FigureNumber = Annotated[int, Field(ge=1, le=999)]
 
 
@@ -40,20 +41,32 @@ class Axis(Section):
             refuse("points", len(self.points), "given where there is no key, and left out beside one")
         if self.key and not self.values:
             refuse("values", list(self.values), "at least one value, as a key is given")
-        labels = [point.label for point in self.resolved()]
+        labels = [point.label for point in self.study_points()]
         if len(set(labels)) < len(labels):
             refuse("points", labels, "points whose labels differ")
         return self
 
-    def resolved(self) -> tuple[StudyPoint, ...]:
-        """The axis as labelled points."""
+    def study_points(self) -> tuple[StudyPoint, ...]:
+        """Return the points of the axis; those of a key take its values as labels.
+
+        Returns
+        -------
+        tuple[StudyPoint, ...]
+            The points.
+        """
         if self.key:
             return tuple(StudyPoint(label=f"{value}", set={self.key: value}) for value in self.values)
         return self.points
 
     def numbers(self) -> dict[str, tuple[float, ...]]:
-        """Number of each point under every dotted key that all points set to numbers, no two alike."""
-        every = [dict(_leaves(point.set)) for point in self.resolved()]
+        """Return the dotted keys that all points set to different numbers.
+
+        Returns
+        -------
+        dict[str, tuple[float, ...]]
+            Number of each point under every such key, in the unit of the key.
+        """
+        every = [dict(_leaves(point.set)) for point in self.study_points()]
         columns: dict[str, tuple[Any, ...]] = {
             key: tuple(point.get(key) for point in every) for key in every[0]
         }
@@ -62,18 +75,33 @@ class Axis(Section):
     @property
     def keys(self) -> set[str]:
         """Dotted keys that some point sets."""
-        return {key for point in self.resolved() for key, _ in _leaves(point.set)}
+        return {key for point in self.study_points() for key, _ in _leaves(point.set)}
 
 
 def common_key(first: Iterable[str], second: Iterable[str]) -> str | None:
-    """Return a dotted key of `second` that is, holds or stands in one of `first`; None if there is none."""
+    """Find a dotted key of `second` that is, holds or stands in one of `first`.
+
+    Parameters
+    ----------
+    first : Iterable[str]
+        Dotted keys.
+    second : Iterable[str]
+        Dotted keys.
+
+    Returns
+    -------
+    str or None
+        The first such key in alphabetical order; None if there is none.
+    """
     first = sorted(first)
-    return next((key for key in sorted(second) if any(_same_place(key, other) for other in first)), None)
+    return next(
+        (key for key in sorted(second) if any(_same_place(key, first_key) for first_key in first)), None
+    )
 
 
-def _same_place(key: str, other: str) -> bool:
+def _same_place(key: str, other_key: str) -> bool:
     """Whether one dotted key is the other or holds it."""
-    return f"{key}.".startswith(f"{other}.") or f"{other}.".startswith(f"{key}.")
+    return f"{key}.".startswith(f"{other_key}.") or f"{other_key}.".startswith(f"{key}.")
 
 
 def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
@@ -107,6 +135,6 @@ class Study(Section):
     def _different_keys(self) -> "Study":
         for first, second in combinations(self.axes, 2):
             if (key := common_key(first.keys, second.keys)) is not None:
-                allowed = "keys that the other axis does not set, as one of the two values would be lost"
-                refuse("axes", key, allowed)
+                requirement = "keys that the other axis does not set, as one of the two values would be lost"
+                refuse("axes", key, requirement)
         return self

@@ -14,12 +14,14 @@ if TYPE_CHECKING:
     from facegear.scenarios.sampling import Population
 
 MAX_SAMPLES = 2**24
+"""Largest number of samples, and of blocks of the design for Sobol indices."""
 MAX_CHUNKS = 500
+"""Largest number of chunks, each of which is a job."""
 FARTHEST_CUT, NO_CUT = 6.0, 20.0
 """Standard deviations: beyond the first 1e-9 of a normal distribution is left, beyond the second nothing."""
 MAX_MAPPED = 200_000
 """Machines of a map of loads, which is one job."""
-TAKEN = ("sample", "error")
+RESERVED_COLUMNS = ("sample", "error")
 """Columns of a table of samples beside causes and quantities."""
 SMALLEST, LARGEST = 1e-15, 1e15
 """Bounds on deviations, in the unit of any key: no more than a guard against mistakes in an exponent."""
@@ -52,7 +54,7 @@ class CauseSection(Section):
     source: str = Field(min_length=1, max_length=200, description="ISO grade or drawing that it is from")
 
     @model_validator(mode="after")
-    def _shaped(self) -> "CauseSection":
+    def _check_shape(self) -> "CauseSection":
         asks = {
             "normal": ("spread",),
             "uniform": ("limits",),
@@ -77,8 +79,10 @@ class CauseSection(Section):
             reason = "beyond which next to nothing is left to sample"
             refuse("limits", list(self.limits), f"within {FARTHEST_CUT:g} spreads of the middle, {reason}")
         if high > NO_CUT and (low < -NO_CUT or self.shape == "rayleigh"):
-            allowed = f"nearer than {NO_CUT:g} spreads on one side at least, or left out: nothing is cut off"
-            refuse("limits", list(self.limits), allowed)
+            requirement = (
+                f"nearer than {NO_CUT:g} spreads on one side at least, or left out: nothing is cut off"
+            )
+            refuse("limits", list(self.limits), requirement)
 
 
 class RankCorrelation(Section):
@@ -105,11 +109,11 @@ class LoadMap(Section):
     )
 
     @model_validator(mode="after")
-    def _rising(self) -> "LoadMap":
+    def _check_loads(self) -> "LoadMap":
         for key in ("torque_factors", "speeds_rpm"):
-            given = getattr(self, key)
-            if list(given) != sorted(set(given)):
-                refuse(key, list(given), "rising, each once")
+            values = getattr(self, key)
+            if list(values) != sorted(set(values)):
+                refuse(key, list(values), "rising, each once")
         points = len(self.torque_factors) * max(len(self.speeds_rpm), 1)
         if points * self.samples > MAX_MAPPED:
             refuse(
@@ -120,7 +124,18 @@ class LoadMap(Section):
         return self
 
     def loads(self, speed_rpm: float) -> list[tuple[float, float]]:
-        """Torque factor and speed (rpm) of every point; the speed given where the section names none."""
+        """Return the points of the load map.
+
+        Parameters
+        ----------
+        speed_rpm : float
+            Pinion speed (rpm) to take where the section names none.
+
+        Returns
+        -------
+        list[tuple[float, float]]
+            Torque factor (unit 1) and speed (rpm) of every point.
+        """
         speeds = self.speeds_rpm or (speed_rpm,)
         return [(factor, speed) for factor in self.torque_factors for speed in speeds]
 
@@ -171,7 +186,7 @@ class Tolerances(Section):
         if not names:
             refuse("causes", [], "at least one")
         for number, name in enumerate(names):
-            if name in TAKEN or name in QUANTITIES:
+            if name in RESERVED_COLUMNS or name in QUANTITIES:
                 refuse(
                     f"causes[{number}].name", name, "another one: it is a column of its own in the samples"
                 )
@@ -179,12 +194,12 @@ class Tolerances(Section):
                 refuse(f"causes[{number}].name", name, "a name of its own for each cause")
         for number, pair in enumerate(self.correlations):
             if pair.between[0] == pair.between[1] or not set(pair.between) <= set(names):
-                allowed = f"two of {', '.join(names)}"
-                refuse(f"correlations[{number}].between", list(pair.between), allowed)
+                requirement = f"two of {', '.join(names)}"
+                refuse(f"correlations[{number}].between", list(pair.between), requirement)
         matrix = correlation_matrix(self)
         if matrix is not None and np.linalg.eigvalsh(matrix)[0] <= 0.0:
-            shown = [[*pair.between, pair.coefficient] for pair in self.correlations]
-            refuse("correlations", shown, "numbers that can hold together: the matrix is not positive")
+            coefficients = [[*pair.between, pair.coefficient] for pair in self.correlations]
+            refuse("correlations", coefficients, "numbers that can hold together: the matrix is not positive")
 
     def _check_map(self) -> None:
         if self.load_map is not None and self.load_map.speeds_rpm and self.model == "quasi_static":
@@ -215,22 +230,72 @@ Design = Literal["samples", "indices"]
 
 
 def sizes(section: Tolerances, design: Design) -> int:
-    """How many samples a design has."""
+    """Return the number of samples of a design.
+
+    Parameters
+    ----------
+    section : Tolerances
+        Section `tolerances` of the config.
+    design : Design
+        `samples` or `indices`.
+
+    Returns
+    -------
+    int
+        Number of samples.
+    """
     return section.samples if design == "samples" else section.index_blocks * (len(section.causes) + 2)
 
 
 def chunks(section: Tolerances, design: Design) -> list[tuple[int, int]]:
-    """Numbers of the first and last sample of each chunk of a design."""
+    """Return the chunks of a design.
+
+    Parameters
+    ----------
+    section : Tolerances
+        Section `tolerances` of the config.
+    design : Design
+        `samples` or `indices`.
+
+    Returns
+    -------
+    list[tuple[int, int]]
+        Numbers of the first and last sample of each chunk.
+    """
     return chunk_ranges(sizes(section, design), section.chunk_samples)
 
 
 def chunk_ranges(size: int, step: int) -> list[tuple[int, int]]:
-    """Numbers of the first and last of `size` samples in each chunk of at most `step`."""
+    """Divide numbered samples into chunks.
+
+    Parameters
+    ----------
+    size : int
+        Number of samples.
+    step : int
+        Largest number of samples in a chunk.
+
+    Returns
+    -------
+    list[tuple[int, int]]
+        Numbers of the first and last sample of each chunk.
+    """
     return [(first, min(first + step, size) - 1) for first in range(0, size, step)]
 
 
 def correlation_matrix(section: Tolerances) -> Array | None:
-    """Correlation of the normal scores (causes, causes); None where there is none."""
+    """Return the correlation of the normal scores of all causes.
+
+    Parameters
+    ----------
+    section : Tolerances
+        Section `tolerances` of the config.
+
+    Returns
+    -------
+    (causes, causes) array or None
+        Correlation coefficients, dimensionless; None where causes are independent.
+    """
     if not section.correlations:
         return None
     index = {cause.name: number for number, cause in enumerate(section.causes)}
@@ -242,7 +307,18 @@ def correlation_matrix(section: Tolerances) -> Array | None:
 
 
 def population(section: Tolerances) -> "Population":
-    """The causes with their distributions, as they are sampled."""
+    """Return the causes with their distributions, for sampling.
+
+    Parameters
+    ----------
+    section : Tolerances
+        Section `tolerances` of the config.
+
+    Returns
+    -------
+    Population
+        The causes; deviations in the units of their keys.
+    """
     # Imported here: a config is read without scipy.stats.
     from facegear.scenarios.distributions import Distribution, Shape
     from facegear.scenarios.sampling import Cause, Population

@@ -167,7 +167,7 @@ class ToothPair(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _measured(cls, values: Any) -> Any:
+    def _read_flank_files(cls, values: Any) -> Any:
         """Files of measured flanks are read here, so that a fault is reported before any work."""
         return read_files(values)
 
@@ -182,11 +182,11 @@ class ToothPair(Section):
 
     def _check_bodies(self) -> None:
         bodies = {name: getattr(self, name) for name in ("pinion", "face_gear", "shaper")}
-        missing = [name for name, body in bodies.items() if body is None]
-        if len(missing) == len(bodies) or self.face_gear_teeth <= self.pinion_teeth:
+        absent_bodies = [name for name, body in bodies.items() if body is None]
+        if len(absent_bodies) == len(bodies) or self.face_gear_teeth <= self.pinion_teeth:
             return
-        if missing:
-            refuse(missing[0], None, "given: pinion, face_gear and shaper go together")
+        if absent_bodies:
+            refuse(absent_bodies[0], None, "given: pinion, face_gear and shaper go together")
         nominal = _nominal(self)
         try:
             check(nominal)
@@ -197,30 +197,62 @@ class ToothPair(Section):
 
 
 def pair_design(section: ToothPair) -> PairDesign:
-    """The pair in SI units, its flanks with the mean deviations of their teeth.
+    """Return the geometry of the pair, its flanks with the mean deviations of their teeth.
 
-    Raises ConfigError for a section without bodies.
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    PairDesign
+        The pair in SI units.
+
+    Raises
+    ------
+    ConfigError
+        For a section without bodies.
     """
     design = _nominal(section)
-    for body, own, teeth in _measured_bodies(section):
-        flanks = common_flanks(own, flank_face(design, body), teeth)
+    for body, flanks_section, teeth in _measured_bodies(section):
+        flanks = common_flanks(flanks_section, flank_face(design, body), teeth)
         design = replace(design, **{body: replace(getattr(design, body), flanks=flanks)})
     return design
 
 
 def single_teeth(section: ToothPair, flank: str) -> dict[Body, Teeth]:
-    """Of each gear what the `flank` (drive or back) of its teeth deviates by from their mean, tooth by tooth.
+    """Return the differences of single teeth from the mean of all teeth, for one flank of each gear.
 
-    None where nothing does.
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+    flank : str
+        `drive` or `back`.
+
+    Returns
+    -------
+    dict[Body, Teeth]
+        Differences (m) tooth by tooth for each gear; None for a tooth without any.
+
+    Raises
+    ------
+    ConfigError
+        For a section without bodies.
     """
     sides: tuple[Side, Side] = ("right", "left") if flank == "drive" else ("left", "right")
     design = _nominal(section)
-    measured = {body: (own, teeth) for body, own, teeth in _measured_bodies(section)}
+    measured_bodies = {
+        body: (measured_body, teeth) for body, measured_body, teeth in _measured_bodies(section)
+    }
     counts = {"pinion": section.pinion_teeth, "face_gear": section.face_gear_teeth}
     by_body: dict[Body, Teeth] = {}
     for body, side in zip(BODIES, sides, strict=True):
-        own = measured.get(body)
-        grids = own and differences(own[0], side, flank_face(design, body), own[1])
+        measured_body = measured_bodies.get(body)
+        grids = measured_body and differences(
+            measured_body[0], side, flank_face(design, body), measured_body[1]
+        )
         by_body[body] = grids or (None,) * counts[body]
     return by_body
 
@@ -229,9 +261,9 @@ def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, 
     """Bodies with grids, and their numbers of teeth."""
     teeth = section.pinion_teeth, section.face_gear_teeth
     for body, count in zip(BODIES, teeth, strict=True):
-        own: PinionSection | FaceGearSection | None = getattr(section, body)
-        if own is not None and own.flanks.grids:
-            yield body, own.flanks, count
+        body_section: PinionSection | FaceGearSection | None = getattr(section, body)
+        if body_section is not None and body_section.flanks.grids:
+            yield body, body_section.flanks, count
 
 
 def _nominal(section: ToothPair) -> PairDesign:
@@ -275,9 +307,20 @@ def _nominal(section: ToothPair) -> PairDesign:
 
 
 def materials(section: ToothPair) -> tuple[Material, Material]:
-    """Materials of pinion and face gear in SI units."""
-    own = [body.material if body else None for body in (section.pinion, section.face_gear)]
-    pinion, gear = (_material(material or section.material) for material in own)
+    """Return the materials of pinion and face gear.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    tuple[Material, Material]
+        Both materials in SI units.
+    """
+    body_materials = [body.material if body else None for body in (section.pinion, section.face_gear)]
+    pinion, gear = (_material(material or section.material) for material in body_materials)
     return pinion, gear
 
 
@@ -289,12 +332,39 @@ class Pair:
     materials: tuple[Material, Material]
 
     def material(self, body: str) -> Material:
-        """Material of `pinion` or `face_gear`."""
+        """Return the material of one gear.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+
+        Returns
+        -------
+        Material
+            Its material.
+        """
         return self.materials[("pinion", "face_gear").index(body)]
 
 
 def pair(section: ToothPair) -> Pair:
-    """The pair in SI units. Raises ConfigError for a section without bodies."""
+    """Return geometry and materials of the pair.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    Pair
+        The pair in SI units.
+
+    Raises
+    ------
+    ConfigError
+        For a section without bodies.
+    """
     return Pair(pair_design(section), materials(section))
 
 

@@ -11,6 +11,7 @@ from facegear.config.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.config.transmission_error import TransmissionError
 
 MAX_PINIONS = 60
+"""Largest number of pinions of a config."""
 
 GEAR_NAMES = ("lower face gear", "upper face gear")
 """Names of the face gears among the bodies of every table; no pinion may share one of them."""
@@ -56,7 +57,7 @@ class DampingSection(Section):
 
 
 class SingleMesh(Section):
-    """What is different in one mesh; null keeps what all meshes have."""
+    """Values of one mesh that differ from the others; null keeps what all meshes have."""
 
     error_um: float = Field(
         0.0, ge=-5000, le=5000, description="constant, positive where the drive flank comes late"
@@ -129,7 +130,7 @@ class Transmission(Section):
     @model_validator(mode="after")
     def _possible(self) -> "Transmission":
         require_all(
-            self._known,
+            self._check_names,
             self._lags,
             self._kinematics,
             self._held_once,
@@ -140,23 +141,34 @@ class Transmission(Section):
         return self
 
     def shaft_of(self, pinion: PinionPlace) -> ShaftSection | None:
-        """The shaft of a pinion by its name, or else by its role; None for a bearing stiffness."""
+        """Return the shaft of a pinion, by its name, or else by its role.
+
+        Parameters
+        ----------
+        pinion : PinionPlace
+            The pinion.
+
+        Returns
+        -------
+        ShaftSection or None
+            Section of the shaft; None for a pinion on a bearing stiffness.
+        """
         return self.shafts.get(pinion.name) or self.shafts.get(pinion.role)
 
-    def _known(self) -> None:
+    def _check_names(self) -> None:
         names = [pinion.name for pinion in self.pinions]
         meshes = [f"{name}/{side}" for side in self.face_gears for name in names]
-        driven = [*names, *dict.fromkeys(pinion.role for pinion in self.pinions)]
-        for key, given, known in (
-            ("shafts", self.shafts, driven),
-            ("torsion", self.torsion, [*driven, OUTPUT]),
+        pinion_keys = [*names, *dict.fromkeys(pinion.role for pinion in self.pinions)]
+        for key, entries, known_names in (
+            ("shafts", self.shafts, pinion_keys),
+            ("torsion", self.torsion, [*pinion_keys, OUTPUT]),
             ("single_meshes", self.single_meshes, meshes),
             ("single_pinions", self.single_pinions, names),
             ("single_gears", self.single_gears, list(self.face_gears)),
         ):
-            for name in given:
-                if name not in known:
-                    refuse(f"{key}.{name}", name, f"one of {', '.join(known)}")
+            for name in entries:
+                if name not in known_names:
+                    refuse(f"{key}.{name}", name, f"one of {', '.join(known_names)}")
         bodies = [*names, *self.face_gears]
         for number, excitation in enumerate(self.excitations):
             if excitation.body not in bodies:
@@ -168,10 +180,10 @@ class Transmission(Section):
             *(pinion.name for pinion in self.pinions),
             *dict.fromkeys(pinion.role for pinion in self.pinions),
         ]
-        known = [f"{name}/{side}" for side in self.face_gears for name in names]
+        known_names = [f"{name}/{side}" for side in self.face_gears for name in names]
         for name in phasing if isinstance(phasing, dict) else ():
-            if name not in known:
-                refuse(f"transmission_error.phasing.{name}", name, f"one of {', '.join(known)}")
+            if name not in known_names:
+                refuse(f"transmission_error.phasing.{name}", name, f"one of {', '.join(known_names)}")
         for name, mesh in self.single_meshes.items():
             if mesh.transmission_error and isinstance(mesh.transmission_error.phasing, dict):
                 key = f"single_meshes.{name}.transmission_error.phasing"
@@ -180,21 +192,21 @@ class Transmission(Section):
     def _kinematics(self) -> None:
         radius = self.face_gear.mesh_radius_mm
         if self.mesh_kinematics == "geometric":
-            for key, given in (
+            for key, radius_mm in (
                 ("face_gear.mesh_radius_mm", radius),
                 ("pinion.base_radius_mm", self.pinion.base_radius_mm),
             ):
-                if given is not None:
-                    refuse(key, given, "left out: it belongs to mesh_kinematics printed")
+                if radius_mm is not None:
+                    refuse(key, radius_mm, "left out: it belongs to mesh_kinematics printed")
             return
         if radius is None:
             refuse("face_gear.mesh_radius_mm", None, "given, as required by mesh_kinematics printed")
         for key in ("single_meshes", "single_pinions", "single_gears"):
-            if named := list(getattr(self, key)):
-                refuse(key, named, "none where mesh_kinematics is printed: it knows no errors of one part")
+            if names := list(getattr(self, key)):
+                refuse(key, names, "none where mesh_kinematics is printed: it knows no errors of one part")
         for key in ("shafts", "torsion", "excitations"):
-            if named := list(getattr(self, key)):
-                refuse(key, named, "none where mesh_kinematics is printed")
+            if names := list(getattr(self, key)):
+                refuse(key, names, "none where mesh_kinematics is printed")
         if self.operating_pose != "none":
             refuse("operating_pose", self.operating_pose, "none where mesh_kinematics is printed")
         for key, value in (
@@ -204,20 +216,24 @@ class Transmission(Section):
             ("face_gear.tilt", self.face_gear.tilt),
         ):
             if value is not None:
-                shown = value if isinstance(value, float) else value.model_dump()
-                refuse(key, shown, "none where mesh_kinematics is printed")
+                shown_value = value if isinstance(value, float) else value.model_dump()
+                refuse(key, shown_value, "none where mesh_kinematics is printed")
 
     def _held_once(self) -> None:
         """Every pinion has a shaft or a bearing stiffness, and no stiffness is given in vain."""
         key, common = "pinion.bearing_stiffness_n_per_m", self.pinion.bearing_stiffness_n_per_m
         by_common = []
         for pinion in self.pinions:
-            own = self.single_pinions.get(pinion.name, LIKE_ALL_PINIONS).bearing_stiffness_n_per_m
+            own_stiffness = self.single_pinions.get(pinion.name, LIKE_ALL_PINIONS).bearing_stiffness_n_per_m
             shaft = self.shaft_of(pinion)
-            if own is not None and shaft is not None:
-                allowed = "left out: the pinion has a shaft, which its bearings hold"
-                refuse(f"single_pinions.{pinion.name}.bearing_stiffness_n_per_m", own.model_dump(), allowed)
-            if own is None and shaft is None:
+            if own_stiffness is not None and shaft is not None:
+                requirement = "left out: the pinion has a shaft, which its bearings hold"
+                refuse(
+                    f"single_pinions.{pinion.name}.bearing_stiffness_n_per_m",
+                    own_stiffness.model_dump(),
+                    requirement,
+                )
+            if own_stiffness is None and shaft is None:
                 by_common.append(pinion.name)
         if common is None and by_common:
             refuse(key, None, f"given: {by_common[0]!r} has no shaft and no bearing stiffness of its own")
@@ -230,19 +246,21 @@ class Transmission(Section):
                 refuse(f"torsion.{name}", [], "one turning mass or more")
             for number in range(len(chain)):
                 if chain[number].name in [mass.name for mass in chain[:number]]:
-                    allowed = "a name that no other mass of the chain has"
-                    refuse(f"torsion.{name}[{number}].name", chain[number].name, allowed)
+                    requirement = "a name that no other mass of the chain has"
+                    refuse(f"torsion.{name}[{number}].name", chain[number].name, requirement)
 
     def _clearance_in_round_bearings(self) -> None:
         for pinion in self.pinions:
             single = self.single_pinions.get(pinion.name, LIKE_ALL_PINIONS)
-            own = single.bearing_clearance_um is not None
-            clearance = single.bearing_clearance_um if own else self.pinion.bearing_clearance_um
-            key = f"single_pinions.{pinion.name}.clearance_um" if own else "pinion.clearance_um"
+            has_own_clearance = single.bearing_clearance_um is not None
+            clearance = single.bearing_clearance_um if has_own_clearance else self.pinion.bearing_clearance_um
+            key = f"single_pinions.{pinion.name}.clearance_um" if has_own_clearance else "pinion.clearance_um"
             if (shaft := self.shaft_of(pinion)) is not None:
                 if clearance and not (shaft.is_round and shaft.tilt_inertia_kg_m2 is None):
-                    allowed = "0 beside a shaft with tilt_inertia_kg_m2 or with a bearing given by its matrix"
-                    refuse(key, clearance, allowed)
+                    requirement = (
+                        "0 beside a shaft with tilt_inertia_kg_m2 or with a bearing given by its matrix"
+                    )
+                    refuse(key, clearance, requirement)
                 continue
             bearing = single.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
             if bearing is None:
@@ -260,9 +278,11 @@ class Transmission(Section):
         if len(set(self.face_gears)) < len(self.face_gears):
             refuse("face_gears", list(self.face_gears), "lower, upper, or both once")
         output = "upper" if "upper" in self.face_gears else self.face_gears[0]
-        if (own := self.single_gears.get(output)) and own.torque_n_m != 0.0:
+        if (output_gear := self.single_gears.get(output)) and output_gear.torque_n_m != 0.0:
             refuse(
-                f"single_gears.{output}.torque_n_m", own.torque_n_m, "left out: it follows from the balance"
+                f"single_gears.{output}.torque_n_m",
+                output_gear.torque_n_m,
+                "left out: it follows from the balance",
             )
         has_tail = any(pinion.role == "tail" for pinion in self.pinions)
         if self.torque.tail_share > 0 and not has_tail:

@@ -11,6 +11,7 @@ from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 
 FROM_CONTACT = "numbers, where mesh_stiffness.source is harmonics: no contact analysis gives e(t)"
+"""Requirement on a transmission error from contact where nothing computes the contact."""
 
 
 Lag = Annotated[float, Field(ge=0, lt=1)]
@@ -57,19 +58,19 @@ class TransmissionError(Section):
     def _short(cls, values: Any) -> Any:
         if values == "from_contact":
             return {"source": "from_contact"}
-        if isinstance(values, Mapping) and isinstance(more := values.get("more_harmonics"), list):
-            return {**values, "more_harmonics": tuple(more)}
+        if isinstance(values, Mapping) and isinstance(harmonics := values.get("more_harmonics"), list):
+            return {**values, "more_harmonics": tuple(harmonics)}
         return values
 
     @model_validator(mode="before")
     @classmethod
     def _known_phasing(cls, values: Any) -> Any:
-        given = values.get("phasing", "mesh") if isinstance(values, Mapping) else "mesh"
-        for name, lag in given.items() if isinstance(given, Mapping) else ():
+        phasing = values.get("phasing", "mesh") if isinstance(values, Mapping) else "mesh"
+        for name, lag in phasing.items() if isinstance(phasing, Mapping) else ():
             if not isinstance(lag, int | float) or not 0 <= lag < 1:
                 refuse(f"phasing.{name}", lag, "a number from 0 to below 1")
-        if not isinstance(given, Mapping) and given not in ("mesh", "in_step"):
-            refuse("phasing", given, "mesh, in_step, or lags by `pinion/side` or `role/side`")
+        if not isinstance(phasing, Mapping) and phasing not in ("mesh", "in_step"):
+            refuse("phasing", phasing, "mesh, in_step, or lags by `pinion/side` or `role/side`")
         return values
 
     @model_validator(mode="after")
@@ -77,8 +78,10 @@ class TransmissionError(Section):
         orders = [1, *(term.order for term in self.more_harmonics)]
         for number, order in enumerate(orders):
             if order in orders[:number]:
-                allowed = f"another one than {', '.join(map(str, orders[:number]))}; amplitude_um is order 1"
-                refuse(f"more_harmonics[{number - 1}].order", order, allowed)
+                requirement = (
+                    f"another one than {', '.join(map(str, orders[:number]))}; amplitude_um is order 1"
+                )
+                refuse(f"more_harmonics[{number - 1}].order", order, requirement)
         return self
 
     @model_validator(mode="after")
@@ -94,15 +97,30 @@ class TransmissionError(Section):
         return self
 
 
-def error_series(section: TransmissionError, unloaded: Harmonics | None = None) -> Harmonics:
-    """Transmission error of the reference mesh as a Fourier series in m; `unloaded` if it is from contact.
+def error_series(section: TransmissionError, unloaded_error: Harmonics | None = None) -> Harmonics:
+    """Return the transmission error of the reference mesh as a Fourier series.
 
-    Raises ConfigError where it is and there is none.
+    Parameters
+    ----------
+    section : TransmissionError
+        Section `transmission_error` of the config.
+    unloaded_error : Harmonics or None
+        Transmission error of the unloaded pair, m, where it comes from contact.
+
+    Returns
+    -------
+    Harmonics
+        The series, m.
+
+    Raises
+    ------
+    ConfigError
+        If it comes from contact and there is none.
     """
     if section.source == "from_contact":
-        if unloaded is None:
+        if unloaded_error is None:
             raise ConfigError("transmission.transmission_error", "from_contact", FROM_CONTACT)
-        return unloaded
+        return unloaded_error
     factor = {"amplitude": 1.0, "range": 0.5}[section.meaning]
     amplitude = factor * (section.amplitude_um or 0.0)
     first = ErrorHarmonic(order=1, amplitude_um=amplitude, phase_deg=section.phase_deg)

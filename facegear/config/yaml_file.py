@@ -28,6 +28,7 @@ MAX_VALUES = 50_000
 """Values of a file, what its aliases (`*name`) stand for counted as often as they are used."""
 
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+"""Text that stands for a decimal number."""
 
 
 def read_yaml(path: str | Path) -> dict[str, Any]:
@@ -55,13 +56,13 @@ def read_yaml(path: str | Path) -> dict[str, Any]:
     try:
         _require_bounded(YAML(typ="safe", pure=True).parse(text))
         value = YAML(typ="safe", pure=True).load(text)
-    except _Refused as error:
+    except _DocumentFault as error:
         raise ConfigErrors(f"{path}:{error.line}", [str(error)]) from None
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        said = ", ".join(part for part in (error.context, error.problem) if part)
-        where = f"{path}:{mark.line + 1}" if mark else str(path)
-        raise ConfigErrors(where, [f"not valid YAML: {' '.join(said.split())}"]) from None
+        reasons = ", ".join(part for part in (error.context, error.problem) if part)
+        location = f"{path}:{mark.line + 1}" if mark else str(path)
+        raise ConfigErrors(location, [f"not valid YAML: {' '.join(reasons.split())}"]) from None
     except (YAMLError, ValueError) as error:
         raise ConfigErrors(str(path), [f"not valid YAML: {str(error).splitlines()[0]}"]) from None
     if not isinstance(value, dict):
@@ -70,9 +71,19 @@ def read_yaml(path: str | Path) -> dict[str, Any]:
 
 
 def numbers(value: Any) -> Any:
-    """The same values with text such as '6.5e7' turned into the number it stands for.
+    """Convert text such as '6.5e7' to the number it stands for, in nested values.
 
     For values that come from a command line, not for files, where quoted text stays text.
+
+    Parameters
+    ----------
+    value : Any
+        Nested mappings and lists.
+
+    Returns
+    -------
+    Any
+        A copy with numbers in place of such text.
     """
     if isinstance(value, dict):
         return {str(key): numbers(item) for key, item in value.items()}
@@ -103,7 +114,7 @@ def _text(path: Path) -> str:
         raise ConfigErrors(f"{path}:{line}", [message]) from None
 
 
-class _Refused(Exception):
+class _DocumentFault(Exception):
     """A fault of the document at an event of the parser, with the line (from 1) where it stands."""
 
     def __init__(self, event: Event, problem: str) -> None:
@@ -115,28 +126,28 @@ def _require_bounded(events: Iterable[Event]) -> None:
     """Refuse a document that is too deep or too large before any of its values is built."""
     sizes = [0]  # values so far of the document and of each list or mapping that is open
     names: list[str | None] = []
-    known: dict[str | None, int] = {}
+    anchor_sizes: dict[str | None, int] = {}
     for event in events:
         size = 1
         if isinstance(event, DocumentStartEvent) and event.version not in (None, (1, 2)):
-            raise _Refused(event, "a config follows YAML 1.2: leave out the line %YAML")
+            raise _DocumentFault(event, "a config follows YAML 1.2: leave out the line %YAML")
         if isinstance(event, MappingStartEvent | SequenceStartEvent):
             names.append(event.anchor)
             sizes.append(0)
             if len(names) > DEEPEST:
-                raise _Refused(event, f"nested more than {DEEPEST} levels deep")
+                raise _DocumentFault(event, f"nested more than {DEEPEST} levels deep")
             continue
         if isinstance(event, MappingEndEvent | SequenceEndEvent):
             size += sizes.pop()
-            known[names.pop()] = size
+            anchor_sizes[names.pop()] = size
         elif isinstance(event, AliasEvent):
-            if event.anchor not in known:
-                raise _Refused(event, f"alias *{event.anchor} stands for nothing that came before it")
-            size = known[event.anchor]
+            if event.anchor not in anchor_sizes:
+                raise _DocumentFault(event, f"alias *{event.anchor} stands for nothing that came before it")
+            size = anchor_sizes[event.anchor]
         elif isinstance(event, ScalarEvent):
-            known[event.anchor] = size
+            anchor_sizes[event.anchor] = size
         else:
             continue
         sizes[-1] += size
         if sizes[-1] > MAX_VALUES:
-            raise _Refused(event, f"more than {MAX_VALUES} values, aliases written out")
+            raise _DocumentFault(event, f"more than {MAX_VALUES} values, aliases written out")

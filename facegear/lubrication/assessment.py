@@ -13,47 +13,65 @@ from facegear.lubrication.columns import (
     MAP_COLUMNS,
     POSITION_COLUMNS,
 )
+from facegear.lubrication.contact_points import ContactPoints, LoadedContact
 from facegear.lubrication.friction import LIMIT_SOURCES
 from facegear.lubrication.heat import Running, TooHot, mean_flash, running
 from facegear.lubrication.loss import loss_factors
 from facegear.lubrication.machine_loss import LoadedPair
-from facegear.lubrication.places import LoadedContact, Places
 from facegear.lubrication.request import Limits, Lubrication
 from facegear.lubrication.scuffing import integral_temperature, temperature_safety
 
 RPM = pi / 30
+"""Angular speed of one revolution a minute, rad/s."""
 
 
 def by_torque_table(
     pair: LoadedPair, states: Sequence[Running], speed: float, limits: Limits
 ) -> pd.DataFrame:
-    """One row a torque at the pinion's speed (rad/s), columns as BY_TORQUE_COLUMNS."""
+    """Tabulate loss, heat, film, scuffing and micropitting of the pair by torque.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+        The lubricated pair.
+    states : Sequence[Running]
+        State of the flanks at each torque.
+    speed : float
+        Pinion speed, rad/s.
+    limits : Limits
+        Limits of temperatures and films.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each torque, columns BY_TORQUE_COLUMNS.
+    """
     rows = [
-        _torque_row(pair.known, contact, state, speed, limits)
+        _torque_row(pair.lubrication, contact, state, speed, limits)
         for contact, state in zip(pair.contacts, states, strict=True)
     ]
     return pd.DataFrame(rows, columns=list(BY_TORQUE_COLUMNS))
 
 
 def _torque_row(
-    known: Lubrication, contact: LoadedContact, state: Running, speed: float, limits: Limits
+    lubrication: Lubrication, contact: LoadedContact, state: Running, speed: float, limits: Limits
 ) -> dict[str, object]:
-    torque, places, hats = contact.torque, contact.places, contact.hats
-    on, factor, power = places.inside, loss_factors(hats), torque * speed
+    torque, points, hats = contact.torque, contact.points, contact.hats
+    on, factor, power = points.inside, loss_factors(hats), torque * speed
     rise = np.where(on, state.flash, -1.0)
     hottest, largest, mean = (
         int(rise.argmax()),
         state.flash[on].max(initial=0.0),
-        mean_flash(places, state.flash),
+        mean_flash(points, state.flash),
     )
     temperatures, integral = state.mean_bulk + largest, float(integral_temperature(state.mean_bulk, mean))
-    allowed = limits.allowed_contact(known.oil, known.oil_temperature)
-    allowed_integral = limits.allowed_integral(known.oil)
+    allowed_contact = limits.allowed_contact(lubrication.oil, lubrication.oil_temperature)
+    allowed_integral = limits.allowed_integral(lubrication.oil)
     ratio = _min_of(state.micropitting, on)
     return {
         "torque_n_m": torque,
         "speed_rpm": speed / RPM,
-        "friction_model": known.friction.name,
+        "friction_model": lubrication.friction.name,
         "loss_factor": factor.mean[0],
         "loss_factor_min": factor.at.min(),
         "loss_factor_max": factor.at.max(),
@@ -66,18 +84,20 @@ def _torque_row(
         "face_gear_bulk_c": state.bulk[1],
         "largest_sliding_m_per_s": speed * hats.sliding.max(),
         "largest_flash_k": largest,
-        "flash_position": places.position[hottest] if on.any() else np.nan,
-        "flash_pair": places.tooth[hottest] if on.any() else np.nan,
-        "flash_axial_mm": 1e3 * places.y[hottest] if on.any() else np.nan,
+        "flash_position": points.position[hottest] if on.any() else np.nan,
+        "flash_pair": points.tooth[hottest] if on.any() else np.nan,
+        "flash_axial_mm": 1e3 * points.y[hottest] if on.any() else np.nan,
         "contact_temperature_c": temperatures,
-        "allowed_contact_temperature_c": allowed,
+        "allowed_contact_temperature_c": allowed_contact,
         "allowed_contact_temperature_source": limits.contact_temperature_source,
-        "scuffing_safety": float(temperature_safety(allowed, known.oil_temperature, temperatures)),
-        "scuffing_margin_k": allowed - temperatures,
+        "scuffing_safety": float(
+            temperature_safety(allowed_contact, lubrication.oil_temperature, temperatures)
+        ),
+        "scuffing_margin_k": allowed_contact - temperatures,
         "mean_flash_k": mean,
         "integral_temperature_c": integral,
         "allowed_integral_temperature_c": allowed_integral,
-        "integral_safety": float(temperature_safety(allowed_integral, known.oil_temperature, integral)),
+        "integral_safety": float(temperature_safety(allowed_integral, lubrication.oil_temperature, integral)),
         "smallest_film_um": 1e6 * _min_of(state.film, on),
         "smallest_short_film_um": 1e6 * _min_of(state.short_film, on),
         "smallest_film_ratio": _min_of(state.film_ratio, on),
@@ -87,17 +107,30 @@ def _torque_row(
 
 
 def position_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
-    """One row a torque and position, columns as POSITION_COLUMNS; nan where edges carry all."""
+    """Tabulate loss, flash temperature and film of the pair by torque and position.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+        The lubricated pair.
+    states : Sequence[Running]
+        State of the flanks at each torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each torque and position, columns POSITION_COLUMNS; nan where edges carry all.
+    """
     frames = [_positions(contact, state) for contact, state in zip(pair.contacts, states, strict=True)]
     return pd.concat(frames, ignore_index=True)
 
 
 def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
-    torque, places, hats = contact.torque, contact.places, contact.hats
+    torque, points, hats = contact.torque, contact.points, contact.hats
     factor = loss_factors(hats)
     rows = np.searchsorted(factor.positions, hats.position)
     loss = np.bincount(rows, weights=state.hat_loss, minlength=factor.positions.size)
-    column, on = np.searchsorted(factor.positions, places.position), places.inside
+    column, on = np.searchsorted(factor.positions, points.position), points.inside
     rise = np.zeros(factor.positions.size)
     np.maximum.at(rise, column[on], state.flash[on])
     films = []
@@ -110,11 +143,24 @@ def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
 
 
 def limit_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
-    """How much of the loss lies outside each limit of the friction model, columns as LIMIT_COLUMNS."""
-    model, rows = pair.known.friction, []
+    """Tabulate how much of the loss lies outside each limit of the friction model.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+        The lubricated pair.
+    states : Sequence[Running]
+        State of the flanks at each torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns LIMIT_COLUMNS.
+    """
+    model, rows = pair.lubrication.friction, []
     for contact, state in zip(pair.contacts, states, strict=True):
-        places = contact.places
-        heat = state.friction * places.line_load * places.length * places.sliding
+        points = contact.points
+        heat = state.friction * points.line_load * points.length * points.sliding
         for limit, within in model.within(state.rubbing).items():
             outside = 100 * heat[~within].sum() / heat.sum() if heat.sum() > 0 else 0.0
             rows.append((model.name, limit, LIMIT_SOURCES[model.name, limit], contact.torque, outside))
@@ -122,54 +168,84 @@ def limit_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
 
 
 def map_table(pair: LoadedPair, speeds: Sequence[float]) -> pd.DataFrame:
-    """Loss and temperature at every torque and speed (rpm), columns as MAP_COLUMNS.
+    """Tabulate loss and temperature at every torque and speed.
 
-    Empty where a body would pass the flash point of the oil. Raises NotConverged as `running` does.
+    Parameters
+    ----------
+    pair : LoadedPair
+        The lubricated pair.
+    speeds : Sequence[float]
+        Pinion speeds, rpm.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns MAP_COLUMNS; empty where a body would pass the flash point of the oil.
+
+    Raises
+    ------
+    NotConverged
+        If bulk temperatures do not settle.
     """
-    rows = [_map_row(contact, speed, pair.known) for contact in pair.contacts for speed in speeds]
+    rows = [_map_row(contact, speed, pair.lubrication) for contact in pair.contacts for speed in speeds]
     return pd.DataFrame(rows, columns=list(MAP_COLUMNS))
 
 
-def _map_row(contact: LoadedContact, speed: float, known: Lubrication) -> tuple[float, ...]:
+def _map_row(contact: LoadedContact, speed: float, lubrication: Lubrication) -> tuple[float, ...]:
     key = contact.torque, speed
     try:
-        state = running(contact, speed * RPM, known)
+        state = running(contact, speed * RPM, lubrication)
     except TooHot:
         return (*key, *(len(MAP_COLUMNS) - len(key)) * (np.nan,))
-    on, power = contact.places.inside, contact.torque * speed * RPM
+    on, power = contact.points.inside, contact.torque * speed * RPM
     rise = float(state.flash[on].max(initial=0.0))
     values = state.loss, 1 - state.loss / power, rise, state.mean_bulk + rise
     return (*key, *values, _min_of(state.film_ratio, on))
 
 
 def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> dict[str, AnyArray]:
-    """What holds at every loaded plane of a contact line at the speed (rad/s), as LOCAL_ARRAYS."""
+    """Return the local quantities of every loaded plane of a contact line.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+        The lubricated pair.
+    states : Sequence[Running]
+        State of the flanks at each torque.
+    speed : float
+        Pinion speed, rad/s.
+
+    Returns
+    -------
+    dict of (m,) arrays
+        Arrays LOCAL_ARRAYS, each in the unit that its name says, and the speed (1,).
+    """
     rows = [
-        _local(contact.places, state, speed) for contact, state in zip(pair.contacts, states, strict=True)
+        _local(contact.points, state, speed) for contact, state in zip(pair.contacts, states, strict=True)
     ]
-    joined = {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
-    return {**joined, "speed_rad_per_s": np.array([speed])}
+    arrays = {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
+    return {**arrays, "speed_rad_per_s": np.array([speed])}
 
 
-def _local(places: Places, state: Running, speed: float) -> dict[str, AnyArray]:
+def _local(points: ContactPoints, state: Running, speed: float) -> dict[str, AnyArray]:
     return {
-        "torque_n_m": places.torque,
-        "position": places.position,
-        "tooth": places.tooth,
-        "plane": places.plane,
-        "inside": places.inside.astype(np.int64),
-        "axial_m": places.y,
-        "roll_rad": places.roll,
-        "line_load_n_per_m": places.line_load,
-        "radius_m": places.radius,
-        "u1_m_per_s": speed * places.u1,
-        "u2_m_per_s": speed * places.u2,
-        "sliding_m_per_s": speed * places.sliding,
-        "sliding_across_m_per_s": speed * places.across,
-        "sliding_along_m_per_s": speed * places.along,
-        "entrained_along_m_per_s": speed * places.entrained,
+        "torque_n_m": points.torque,
+        "position": points.position,
+        "tooth": points.tooth,
+        "plane": points.plane,
+        "inside": points.inside.astype(np.int64),
+        "axial_m": points.y,
+        "roll_rad": points.roll,
+        "line_load_n_per_m": points.line_load,
+        "radius_m": points.radius,
+        "u1_m_per_s": speed * points.u1,
+        "u2_m_per_s": speed * points.u2,
+        "sliding_m_per_s": speed * points.sliding,
+        "sliding_across_m_per_s": speed * points.across,
+        "sliding_along_m_per_s": speed * points.along,
+        "entrained_along_m_per_s": speed * points.line_entrainment,
         "friction": state.friction,
-        "loss_w_per_m": state.friction * places.line_load * speed * places.sliding,
+        "loss_w_per_m": state.friction * points.line_load * speed * points.sliding,
         "flash_k": state.flash,
         "pinion_heat_fraction": state.heat_fraction,
         "film_m": state.film,

@@ -34,6 +34,7 @@ BY_TORQUE_COLUMNS = (
     "smallest_micropitting_film_ratio",
     "micropitting_safety",
 )
+"""Columns of `assessment.by_torque_table`."""
 BY_TORQUE_FINITE = tuple(
     name
     for name in BY_TORQUE_COLUMNS
@@ -53,6 +54,7 @@ POSITION_COLUMNS = (
     "smallest_film_um",
     "smallest_film_ratio",
 )
+"""Columns of `assessment.position_table`."""
 POSITION_FINITE = POSITION_COLUMNS[:5]
 
 EXCITATION_COLUMNS = (
@@ -67,6 +69,7 @@ EXCITATION_COLUMNS = (
 """Friction over the force of the mesh: forces on the pinion, moments on pinion and face gear."""
 
 LIMIT_COLUMNS = ("friction_model", "limit", "limit_source", "torque_n_m", "loss_outside_percent")
+"""Columns of `assessment.limit_table`."""
 
 MAP_COLUMNS = (
     "torque_n_m",
@@ -77,6 +80,7 @@ MAP_COLUMNS = (
     "contact_temperature_c",
     "smallest_film_ratio",
 )
+"""Columns of `assessment.map_table`."""
 MAP_FINITE = MAP_COLUMNS[:2]
 """The rest is empty where a body would pass the flash point of the oil."""
 

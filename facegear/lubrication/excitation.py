@@ -19,11 +19,25 @@ from facegear.lubrication.machine_loss import LoadedPair
 
 
 def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array:
-    """Ratios (p, 5) at the p positions of a pitch, rising, of hats of one torque with coefficients (h,).
+    """Compute force and moments of friction over the mesh force at each position of a pitch.
 
-    Force on the pinion along x, y and -z of the mesh frame (tangential, along the pinion's axis, along the
-    gear's axis), the moment on the pinion about its axis and that on the face gear about its own, m; over
-    the force along the line of action that carries the torque.
+    The mesh force is the force along the line of action that carries the torque.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Geometry of the pair.
+    hats : HatSlip
+        Loaded hats of one torque.
+    friction : (h,) array
+        Friction coefficient of each hat, dimensionless.
+
+    Returns
+    -------
+    (p, 5) array
+        For each position, rising: force on the pinion along x, y and -z of the mesh frame (tangential, along
+        the pinion's axis, along the gear's axis), dimensionless; moment on the pinion about its axis and on
+        the face gear about its own, m.
     """
     positions, row = np.unique(hats.position, return_inverse=True)
     sliding = hats.sliding
@@ -35,13 +49,28 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
         for body, sign in ((pinion, 1.0), (gear, -1.0))
     )
     parts = np.stack([force[:, 0], force[:, 1], -force[:, 2], on_pinion, on_gear], axis=1)
-    summed = np.zeros((positions.size, 5))
-    np.add.at(summed, row, parts)
-    return summed * design.pinion_base_radius / float(hats.torque[0])
+    sums = np.zeros((positions.size, 5))
+    np.add.at(sums, row, parts)
+    return sums * design.pinion_base_radius / float(hats.torque[0])
 
 
 def excitation_table(pair: LoadedPair, states: Sequence[Running], design: PairDesign) -> pd.DataFrame:
-    """One row a torque and position, columns as EXCITATION_COLUMNS."""
+    """Tabulate force and moments of friction over the mesh force.
+
+    Parameters
+    ----------
+    pair : LoadedPair
+        The lubricated pair.
+    states : Sequence[Running]
+        State of the flanks at each torque.
+    design : PairDesign
+        Geometry of the pair.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each torque and position, columns EXCITATION_COLUMNS.
+    """
     frames = []
     for contact, state in zip(pair.contacts, states, strict=True):
         hats = contact.hats

@@ -1,4 +1,4 @@
-"""Flash temperature: what friction heats the flanks by while they touch.
+"""Flash temperature: rise of the flanks' temperature by friction while they touch.
 
 Both flanks run the same way through the contact, so above a Peclet number of some 5 the temperatures of both
 match at every point, and each takes a share of the heat as its B sqrt(u) says (Blok 1937). Where one of them
@@ -13,7 +13,7 @@ from scipy.optimize import minimize_scalar
 from scipy.special import kve
 
 from facegear.arrays import Array
-from facegear.lubrication.request import Heated
+from facegear.lubrication.request import FlankMaterial
 
 Numbers = float | Array
 
@@ -21,7 +21,9 @@ HERTZ = 1.1115483781
 """C for heat spread as Hertz's pressure over the width; hottest 0.65223 b behind its middle."""
 
 POINTS = 120
+"""Number of Gauss points on each part of Jaeger's integral."""
 SLOWEST, FASTEST = 1e-3, 1e3
+"""Peclet numbers between which `slow_factor` is interpolated; it is constant below and 1 above."""
 
 
 def flash(
@@ -32,10 +34,30 @@ def flash(
     half_width: Numbers,
     coefficients: tuple[Numbers, Numbers],
 ) -> tuple[Array, Array]:
-    """Largest temperature rise (K) of the contact and the first flank's share of the heat (Blok).
+    """Compute the largest temperature rise of the contact and the first flank's share of the heat (Blok
+    1937).
 
-    `C mu w |v_s| / ((B1 sqrt u1 + B2 sqrt u2) sqrt(2b))`; line_load N/m, sliding and speeds across the line
-    m/s, half_width b m, coefficients B1 and B2.
+    `C mu w |v_s| / ((B1 sqrt u1 + B2 sqrt u2) sqrt(2b))`; all are numbers or arrays of one shape.
+
+    Parameters
+    ----------
+    friction : Numbers
+        Friction coefficient mu, dimensionless.
+    line_load : Numbers
+        Load over length w, N/m.
+    sliding : Numbers
+        Sliding velocity v_s, m/s.
+    speeds : tuple[Numbers, Numbers]
+        Rolling velocities u1 and u2 of both flanks across the line, m/s.
+    half_width : Numbers
+        Half width b of the contact, m.
+    coefficients : tuple[Numbers, Numbers]
+        Thermal contact coefficients B1 and B2, W s^0.5/(m2 K).
+
+    Returns
+    -------
+    two (...) arrays
+        Temperature rise, K, and share of the heat, a fraction.
     """
     first, second = (
         np.asarray(coefficient, float) * np.sqrt(np.abs(speed))
@@ -52,9 +74,32 @@ def flash_at_any_speed(
     sliding: Numbers,
     speeds: tuple[Numbers, Numbers],
     half_width: Numbers,
-    flanks: tuple[Heated, Heated],
+    flanks: tuple[FlankMaterial, FlankMaterial],
 ) -> tuple[Array, Array]:
-    """The same for heat spread as Hertz's pressure and flanks that may be slow, by Jaeger's integral."""
+    """Compute the flash temperature of flanks that may be slow, by Jaeger's integral.
+
+    The heat is spread as Hertz's pressure. Arguments are those of `flash` but for the last.
+
+    Parameters
+    ----------
+    friction : Numbers
+        Friction coefficient mu, dimensionless.
+    line_load : Numbers
+        Load over length w, N/m.
+    sliding : Numbers
+        Sliding velocity v_s, m/s.
+    speeds : tuple[Numbers, Numbers]
+        Rolling velocities u1 and u2 of both flanks across the line, m/s.
+    half_width : Numbers
+        Half width b of the contact, m.
+    flanks : tuple[FlankMaterial, FlankMaterial]
+        Materials of both flanks.
+
+    Returns
+    -------
+    two (...) arrays
+        Temperature rise, K, and the first flank's share of the heat, a fraction.
+    """
     first, second = (
         flank.contact_coefficient / slow_factor(peclet(speed, half_width, flank))
         for flank, speed in zip(flanks, speeds, strict=True)
@@ -62,16 +107,42 @@ def flash_at_any_speed(
     return flash(friction, line_load, sliding, speeds, half_width, (first, second))
 
 
-def peclet(speed: Numbers, half_width: Numbers, flank: Heated) -> Array:
-    """u b / (2 kappa)."""
+def peclet(speed: Numbers, half_width: Numbers, flank: FlankMaterial) -> Array:
+    """Compute the Peclet number u b / (2 kappa).
+
+    Parameters
+    ----------
+    speed : Numbers
+        Rolling velocity u, m/s.
+    half_width : Numbers
+        Half width b of the contact, m.
+    flank : FlankMaterial
+        Material of the flank, with its diffusivity kappa.
+
+    Returns
+    -------
+    (...) array
+        Peclet number, dimensionless.
+    """
     return np.abs(np.asarray(speed, float)) * half_width / (2 * flank.diffusivity)
 
 
 def slow_factor(number: Numbers) -> Array:
-    """What a half space heats up by over what it would at a high Peclet number; 1 beyond 1000."""
+    """Ratio of the temperature rise of a half space to the limit for high Peclet numbers.
+
+    Parameters
+    ----------
+    number : Numbers
+        Peclet number, dimensionless.
+
+    Returns
+    -------
+    (...) array
+        Ratio, 1 beyond a Peclet number of 1000.
+    """
     number = np.asarray(number, float)
-    asked = np.log(np.clip(number, SLOWEST, FASTEST))
-    return np.where(number >= FASTEST, 1.0, np.exp(_slow_spline()(asked)))
+    log_number = np.log(np.clip(number, SLOWEST, FASTEST))
+    return np.where(number >= FASTEST, 1.0, np.exp(_slow_spline()(log_number)))
 
 
 @cache
@@ -84,9 +155,17 @@ def _slow_spline() -> CubicSpline:
 
 
 def moving_heat(number: float) -> float:
-    """Largest temperature under a moving strip of heat spread as Hertz's pressure, over q0 b/k (Jaeger 1942).
+    """Compute the largest temperature under a moving strip of heat spread as Hertz's pressure (Jaeger 1942).
 
-    number: Peclet number u b/(2 kappa); q0 the largest flux.
+    Parameters
+    ----------
+    number : float
+        Peclet number u b/(2 kappa), dimensionless.
+
+    Returns
+    -------
+    float
+        Temperature over q0 b/k with the largest flux q0, dimensionless.
     """
     optimum = minimize_scalar(
         lambda at: -moving_temperature(at, number), bounds=(-1.0, 1.0), method="bounded"
@@ -95,9 +174,21 @@ def moving_heat(number: float) -> float:
 
 
 def moving_temperature(at: float, number: float) -> float:
-    """The same at a place `at` (in b, against the motion of the material before 0, with it behind).
+    """Compute the temperature at a point under a moving strip of heat spread as Hertz's pressure.
 
     1/pi times the integral over the strip of `sqrt(1 - s^2) e^(Pe (at - s)) K0(Pe |at - s|)`.
+
+    Parameters
+    ----------
+    at : float
+        Position over b, dimensionless: against the motion of the material below 0, with it above.
+    number : float
+        Peclet number u b/(2 kappa), dimensionless.
+
+    Returns
+    -------
+    float
+        Temperature over q0 b/k with the largest flux q0, dimensionless.
     """
     half, weights = _gauss()
     total = 0.0

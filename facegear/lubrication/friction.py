@@ -22,7 +22,9 @@ LARGEST_SPEED = 50.0
 """Largest pitch line velocity, m/s, of the same gear tests."""
 
 LINE_LOAD, PITCH_SPEED = "line load at least 150 N/mm", "pitch line velocity at most 50 m/s"
+"""Limits of the gear tests in words."""
 SLIDING, SLIDE_TO_ROLL = "sliding above 0.1 % of the rolling velocities", "slide to roll ratio at most 1"
+"""Limits of the models of Benedict and Kelley and of Xu in words."""
 LIMIT_SOURCES = {
     ("schlenk", LINE_LOAD): "ISO/TR 14179-2, unverified: the document was not at hand",
     ("schlenk", PITCH_SPEED): "ISO/TR 14179-2, unverified: the document was not at hand",
@@ -43,14 +45,14 @@ XU = (-8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0
 
 @dataclass(frozen=True, eq=False)
 class Rubbing:
-    """Where flanks rub: m places, all (m,) unless stated.
+    """Conditions in which flanks rub, at m points; all (m,) unless stated.
 
     `line_load` N/m, relative `radius` of curvature across the line m, largest `pressure` Pa, rolling
     velocities `u1` and `u2` across the line and the whole `sliding` velocity m/s. `pitch_speed` m/s;
     viscosity (Pa s) of the oil as supplied, `oil_viscosity`, and at the flanks' bulk temperature,
     `bulk_viscosity`; `film_ratio` lambda. The last two may have further axes in front, one bulk temperature
-    each. `ra` the mean of both flanks' arithmetic roughness, `rq` the root
-    of the sum of the squares of their root mean square roughness, m.
+    each. `ra` the mean of both flanks' arithmetic roughness, `rq` the root of the sum of the squares of their
+    root mean square roughness, m.
     """
 
     line_load: Array
@@ -67,13 +69,13 @@ class Rubbing:
     rq: float
 
     @property
-    def rolled(self) -> Array:
-        """v_S = u1 + u2, m/s."""
+    def sum_velocity(self) -> Array:
+        """Sum of the rolling velocities, v_S = u1 + u2, m/s."""
         return self.u1 + self.u2
 
 
 class FrictionModel(Protocol):
-    """A coefficient of friction at every place, and where it was measured."""
+    """Coefficient of friction at every point, and where it was measured."""
 
     @property
     def name(self) -> str: ...
@@ -83,47 +85,115 @@ class FrictionModel(Protocol):
         """Whether the coefficient depends on the film ratio."""
 
     def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
+        """Compute the friction coefficient.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        (m,) array
+            Coefficient mu, dimensionless.
+        """
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Which places (m,) lie within each limit of the model, by what the limit says."""
+        """Find the points within each limit of the model.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        mapping of (m,) arrays of bool
+            True within the limit, by the limit in words.
+        """
 
 
 @dataclass(frozen=True)
 class Constant:
-    """The same coefficient everywhere: for tests, and as a bound."""
+    """Constant coefficient: for tests, and as a bound."""
 
     value: float
     name: str = "constant"
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
+        """Return the constant.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        (m,) array
+            Coefficient mu, dimensionless.
+        """
         return np.full_like(at.line_load, self.value)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """No limits."""
+        """Return no limits.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        mapping of (m,) arrays of bool
+            Empty.
+        """
         return {}
 
 
 @dataclass(frozen=True)
 class GearTested:
-    """A mean coefficient from gear tests, taken at every place: FORMULAS by name."""
+    """Mean coefficient from gear tests, taken at every point: FORMULAS by name."""
 
     lubricant_factor: float = 1.0
     name: ClassVar[str]
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
+        """Compute the friction coefficient by the formula of the model.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        (m,) array
+            Coefficient mu, dimensionless.
+        """
         formula = FORMULAS[self.name]
-        return formula(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
+        return formula(
+            at.line_load, at.sum_velocity, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor
+        )
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Line load and speed of the gear tests."""
+        """Find the points within line load and speed of the gear tests.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        mapping of (m,) arrays of bool
+            True within the limit, by the limit in words.
+        """
         return {
             LINE_LOAD: at.line_load >= MIN_LINE_LOAD,
-            PITCH_SPEED: _slow(at),
+            PITCH_SPEED: _within_test_speed(at),
         }
 
 
@@ -148,8 +218,19 @@ class Iso633620(GearTested):
     name = "iso_6336_20"
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """The speed of the gear tests."""
-        return {PITCH_SPEED: _slow(at)}
+        """Find the points within the speed of the gear tests.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        mapping of (m,) arrays of bool
+            True within the limit, by the limit in words.
+        """
+        return {PITCH_SPEED: _within_test_speed(at)}
 
 
 @dataclass(frozen=True)
@@ -160,12 +241,34 @@ class BenedictKelley:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
-        return benedict_kelley(at.line_load, at.rolled, at.sliding, at.bulk_viscosity, at.ra)
+        """Compute the friction coefficient by `benedict_kelley`.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        (m,) array
+            Coefficient mu, dimensionless.
+        """
+        return benedict_kelley(at.line_load, at.sum_velocity, at.sliding, at.bulk_viscosity, at.ra)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Where the logarithm is not cut."""
-        return {SLIDING: at.sliding > SMALLEST_SLIDE * at.rolled}
+        """Find the points where the logarithm is not cut.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        mapping of (m,) arrays of bool
+            True within the limit, by the limit in words.
+        """
+        return {SLIDING: at.sliding > SMALLEST_SLIDE * at.sum_velocity}
 
 
 @dataclass(frozen=True)
@@ -176,12 +279,34 @@ class Xu:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
+        """Compute the friction coefficient by `xu`.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        (m,) array
+            Coefficient mu, dimensionless.
+        """
         return xu(at.pressure, at.radius, at.u1, at.u2, at.bulk_viscosity, at.rq)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Slide to roll ratio of the tests."""
-        return {SLIDE_TO_ROLL: 2 * np.abs(at.u1 - at.u2) <= np.abs(at.rolled)}
+        """Find the points within the slide to roll ratio of the tests.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        mapping of (m,) arrays of bool
+            True within the limit, by the limit in words.
+        """
+        return {SLIDE_TO_ROLL: 2 * np.abs(at.u1 - at.u2) <= np.abs(at.sum_velocity)}
 
 
 @dataclass(frozen=True)
@@ -205,75 +330,211 @@ class Doleschel:
     by_film: ClassVar = True
 
     def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
+        """Compute the friction coefficient.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        (m,) array
+            Coefficient mu, dimensionless.
+        """
         fraction = np.where(at.film_ratio < 2, (1 - np.minimum(at.film_ratio, 2.0) / 2) ** 2, 0.0)
         pressure = 1e-9 * at.pressure
-        solid = self.solid * pressure**self.solid_pressure * at.rolled**self.solid_speed
-        fluid = self.fluid * pressure**self.fluid_pressure * at.rolled**self.fluid_speed
+        solid = self.solid * pressure**self.solid_pressure * at.sum_velocity**self.solid_speed
+        fluid = self.fluid * pressure**self.fluid_pressure * at.sum_velocity**self.fluid_speed
         return fraction * solid + (1 - fraction) * fluid * (1e3 * at.oil_viscosity) ** self.fluid_viscosity
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """None known: those of the test that gave the constants."""
+        """Return no limits: those of the test that gave the constants are not known.
+
+        Parameters
+        ----------
+        at : Rubbing
+            Conditions at m points.
+
+        Returns
+        -------
+        mapping of (m,) arrays of bool
+            Empty.
+        """
         return {}
 
 
 def schlenk(
     line_load: Numbers,
-    rolled: Numbers,
+    sum_velocity: Numbers,
     radius: Numbers,
     viscosity: Numbers,
     ra: float,
     factor: float = 1.0,
 ) -> Array:
-    """0.048 (w/(v_S rho))^0.2 eta^-0.05 Ra^0.25 X_L."""
+    """Compute 0.048 (w/(v_S rho))^0.2 eta^-0.05 Ra^0.25 X_L.
+
+    All but roughness and factor are numbers or arrays of one shape.
+
+    Parameters
+    ----------
+    line_load : Numbers
+        Load over length w, N/m.
+    sum_velocity : Numbers
+        v_S = u1 + u2, m/s.
+    radius : Numbers
+        Relative radius of curvature rho, m.
+    viscosity : Numbers
+        Dynamic viscosity eta of the oil as supplied, Pa s.
+    ra : float
+        Mean Ra of both flanks, m.
+    factor : float
+        Lubricant factor X_L, dimensionless.
+
+    Returns
+    -------
+    (...) array
+        Friction coefficient, dimensionless.
+    """
     rough = (1e6 * ra) ** 0.25
-    return 0.048 * _loaded(line_load, rolled, radius) * _thick(viscosity) * rough * factor
+    return 0.048 * _load_term(line_load, sum_velocity, radius) * _viscosity_term(viscosity) * rough * factor
 
 
 def iso_6336_22(
     line_load: Numbers,
-    rolled: Numbers,
+    sum_velocity: Numbers,
     radius: Numbers,
     viscosity: Numbers,
     ra: float,
     factor: float = 1.0,
 ) -> Array:
-    """0.045 (w K/(v_S rho))^0.2 eta^-0.05 X_R X_L, X_R = 2.2 (Ra/rho)^0.25; `line_load` has K in it."""
+    """Compute 0.045 (w K/(v_S rho))^0.2 eta^-0.05 X_R X_L, X_R = 2.2 (Ra/rho)^0.25.
+
+    All but roughness and factor are numbers or arrays of one shape.
+
+    Parameters
+    ----------
+    line_load : Numbers
+        Load over length w, with K in it, N/m.
+    sum_velocity : Numbers
+        v_S = u1 + u2, m/s.
+    radius : Numbers
+        Relative radius of curvature rho, m.
+    viscosity : Numbers
+        Dynamic viscosity eta of the oil as supplied, Pa s.
+    ra : float
+        Mean Ra of both flanks, m.
+    factor : float
+        Lubricant factor X_L, dimensionless.
+
+    Returns
+    -------
+    (...) array
+        Friction coefficient, dimensionless.
+    """
     rough = 2.2 * (1e3 * ra / np.asarray(radius, float)) ** 0.25
-    return 0.045 * _loaded(line_load, rolled, radius) * _thick(viscosity) * rough * factor
+    return 0.045 * _load_term(line_load, sum_velocity, radius) * _viscosity_term(viscosity) * rough * factor
 
 
 def iso_6336_20(
     line_load: Numbers,
-    rolled: Numbers,
+    sum_velocity: Numbers,
     radius: Numbers,
     viscosity: Numbers,
     ra: float,
     factor: float = 1.0,
 ) -> Array:
-    """0.060 (w_Bt/(v_S rho))^0.2 X_L Ra^0.25 with X_L = factor eta^-0.05."""
+    """Compute 0.060 (w_Bt/(v_S rho))^0.2 X_L Ra^0.25 with X_L = factor eta^-0.05.
+
+    All but roughness and factor are numbers or arrays of one shape.
+
+    Parameters
+    ----------
+    line_load : Numbers
+        Load over length w_Bt, N/m.
+    sum_velocity : Numbers
+        v_S = u1 + u2, m/s.
+    radius : Numbers
+        Relative radius of curvature rho, m.
+    viscosity : Numbers
+        Dynamic viscosity eta of the oil as supplied, Pa s.
+    ra : float
+        Mean Ra of both flanks, m.
+    factor : float
+        Lubricant factor without the power of the viscosity, dimensionless.
+
+    Returns
+    -------
+    (...) array
+        Friction coefficient, dimensionless.
+    """
     rough = (1e6 * ra) ** 0.25
-    return 0.060 * _loaded(line_load, rolled, radius) * _thick(viscosity) * rough * factor
+    return 0.060 * _load_term(line_load, sum_velocity, radius) * _viscosity_term(viscosity) * rough * factor
 
 
 def benedict_kelley(
-    line_load: Numbers, rolled: Numbers, sliding: Numbers, viscosity: Numbers, ra: float
+    line_load: Numbers, sum_velocity: Numbers, sliding: Numbers, viscosity: Numbers, ra: float
 ) -> Array:
-    """0.0127 min(3, 1.13/(1.13 - Ra)) log10(29 660 w/(eta v_s v_S^2)), not below 0."""
+    """Compute 0.0127 min(3, 1.13/(1.13 - Ra)) log10(29 660 w/(eta v_s v_S^2)), not below 0.
+
+    All but the roughness are numbers or arrays of one shape.
+
+    Parameters
+    ----------
+    line_load : Numbers
+        Load over length w, N/m.
+    sum_velocity : Numbers
+        v_S = u1 + u2, m/s.
+    sliding : Numbers
+        Sliding velocity v_s, m/s; at least SMALLEST_SLIDE times v_S is taken.
+    viscosity : Numbers
+        Dynamic viscosity eta at the bulk temperature, Pa s.
+    ra : float
+        Mean Ra of both flanks, m.
+
+    Returns
+    -------
+    (...) array
+        Friction coefficient, dimensionless.
+    """
     left = 1.13 - 1e6 * ra
     rough = min(3.0, 1.13 / left) if left > 0 else 3.0
-    rolled = np.asarray(rolled, float)
-    slid = np.maximum(np.asarray(sliding, float), SMALLEST_SLIDE * rolled)
+    sum_velocity = np.asarray(sum_velocity, float)
+    slid = np.maximum(np.asarray(sliding, float), SMALLEST_SLIDE * sum_velocity)
     inside = (
-        29660 * 1e-3 * np.asarray(line_load, float) / (1e3 * np.asarray(viscosity, float) * slid * rolled**2)
+        29660
+        * 1e-3
+        * np.asarray(line_load, float)
+        / (1e3 * np.asarray(viscosity, float) * slid * sum_velocity**2)
     )
     return np.maximum(0.0127 * rough * np.log10(inside), 0.0)
 
 
 def xu(pressure: Numbers, radius: Numbers, u1: Numbers, u2: Numbers, viscosity: Numbers, rq: float) -> Array:
-    """`e^f p^b2 |SR|^b3 u_e^b6 eta^b7 R^b8`, `f = b1 + b4 A + b5 e^-A + b9 e^S`, `A = |SR| p log10 eta`.
+    """Compute `e^f p^b2 |SR|^b3 u_e^b6 eta^b7 R^b8` (Xu 2005).
 
-    p GPa, u_e = (u1 + u2)/2, SR = (u1 - u2)/u_e, R m, S um.
+    `f = b1 + b4 A + b5 e^-A + b9 e^S`, `A = |SR| p log10 eta`; p GPa, u_e = (u1 + u2)/2, SR = (u1 - u2)/u_e,
+    R m, S um. All but the roughness are numbers or arrays of one shape.
+
+    Parameters
+    ----------
+    pressure : Numbers
+        Largest pressure p, Pa.
+    radius : Numbers
+        Relative radius of curvature R, m.
+    u1 : Numbers
+        Rolling velocity of the first flank, m/s.
+    u2 : Numbers
+        Rolling velocity of the second flank, m/s.
+    viscosity : Numbers
+        Dynamic viscosity eta at the bulk temperature, Pa s.
+    rq : float
+        Composite roughness S, m.
+
+    Returns
+    -------
+    (...) array
+        Friction coefficient, dimensionless.
     """
     p, speed, thick = (
         1e-9 * np.asarray(pressure, float),
@@ -287,19 +548,19 @@ def xu(pressure: Numbers, radius: Numbers, u1: Numbers, u2: Numbers, viscosity: 
     return np.exp(power) * p**b2 * slide**b3 * speed**b6 * thick**b7 * np.asarray(radius, float) ** b8
 
 
-def _loaded(line_load: Numbers, rolled: Numbers, radius: Numbers) -> Array:
-    """(w/(v_S rho))^0.2 in N/mm, m/s and mm."""
+def _load_term(line_load: Numbers, sum_velocity: Numbers, radius: Numbers) -> Array:
+    """Return (w/(v_S rho))^0.2 in N/mm, m/s and mm."""
     return (
-        1e-6 * np.asarray(line_load, float) / (np.asarray(rolled, float) * np.asarray(radius, float))
+        1e-6 * np.asarray(line_load, float) / (np.asarray(sum_velocity, float) * np.asarray(radius, float))
     ) ** 0.2
 
 
-def _thick(viscosity: Numbers) -> Array:
-    """eta^-0.05 in mPa s."""
+def _viscosity_term(viscosity: Numbers) -> Array:
+    """Return eta^-0.05 in mPa s."""
     return (1e3 * np.asarray(viscosity, float)) ** -0.05
 
 
-def _slow(at: Rubbing) -> Mask:
+def _within_test_speed(at: Rubbing) -> Mask:
     return np.full(at.line_load.shape, at.pitch_speed <= LARGEST_SPEED)
 
 

@@ -1,4 +1,4 @@
-"""Friction, heat and film at every place of the loaded contact, and the bulk temperature they bring about."""
+"""Friction, heat and film at every point of the loaded contact, and the bulk temperature they bring about."""
 
 from dataclasses import dataclass, fields
 
@@ -7,33 +7,34 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.contact.pattern import passage
 from facegear.errors import FacegearError, NotConverged
+from facegear.lubrication.contact_points import ContactPoints, LoadedContact
 from facegear.lubrication.film import elliptic_film, line_film, shear_heating
 from facegear.lubrication.flash import flash_at_any_speed
 from facegear.lubrication.friction import Rubbing
 from facegear.lubrication.micropitting import local_film, sliding_factor
 from facegear.lubrication.oil import Oil
-from facegear.lubrication.places import LoadedContact, Places
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication
 
 STEPS = 60
-SETTLED = 1e-6
+"""Largest number of steps of the iteration of loss and bulk temperature."""
+BULK_TOLERANCE = 1e-6
 """Change (K) of the bulk temperatures at which they have settled."""
 
 
 class TooHot(FacegearError):
     """The cooling that is given lets a body pass the flash point of the oil."""
 
-    def __init__(self, torque: float, speed: float, reached: float, allowed: float) -> None:
+    def __init__(self, torque: float, speed: float, temperature: float, flash_point: float) -> None:
         at = f"{torque:g} N m and {speed * 30 / np.pi:.0f} rpm"
         super().__init__(
-            f"lubrication.bulk: a body reaches {reached:.0f} C at {at}, above the oil's flash point of "
-            f"{allowed:g} C"
+            f"lubrication.bulk: a body reaches {temperature:.0f} C at {at}, above the oil's flash point of "
+            f"{flash_point:g} C"
         )
 
 
 @dataclass(frozen=True, eq=False)
 class Local:
-    """What holds at m places, all (m,), or (..., m) for as many bulk temperatures.
+    """Local state at m points, all (m,), or (..., m) for as many bulk temperatures.
 
     `friction` mu, `flash` (K) with the pinion's `heat_fraction` of the heat, smallest `film` (m) of the line
     with shear heating, its factor `sheared`, the film of the elliptic form `short_film` (m), `film_ratio`
@@ -53,7 +54,7 @@ class Local:
 
 @dataclass(frozen=True, eq=False)
 class Running(Local):
-    """The flanks at one torque and speed: m places, h hats.
+    """State of the flanks at one torque and speed, with m points and h hats.
 
     `bulk` temperatures (C) of pinion and gear; `loss` (W) and the `heat` (W) that goes to each. `hat_loss`
     (h,) W: of each hat at its position.
@@ -70,46 +71,119 @@ class Running(Local):
         return 0.5 * sum(self.bulk)
 
 
-def running(contact: LoadedContact, speed: float, known: Lubrication) -> Running:
-    """At the pinion's speed (rad/s); one mesh, bodies of its own.
+def running(contact: LoadedContact, speed: float, lubrication: Lubrication) -> Running:
+    """Compute the state of the flanks of one mesh with bodies of its own.
 
-    Where bulk temperatures follow from the loss both are iterated. Raises TooHot where a body passes the
-    oil's flash point, NotConverged where they do not settle.
+    Where bulk temperatures follow from the loss both are iterated.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        Contact at one torque.
+    speed : float
+        Pinion speed, rad/s.
+    lubrication : Lubrication
+        How the flanks are lubricated.
+
+    Returns
+    -------
+    Running
+        The state.
+
+    Raises
+    ------
+    TooHot
+        If a body passes the oil's flash point.
+    NotConverged
+        If loss and bulk temperature do not settle.
     """
-    bulk = starting_bulk(known)
+    bulk = starting_bulk(lubrication)
     for _ in range(STEPS):
-        state = running_at(contact, speed, known, bulk)
-        after = _bulk_after(state, contact.places, known)
-        if settled(after, bulk):
+        state = running_at(contact, speed, lubrication, bulk)
+        after = _bulk_after(state, contact.points, lubrication)
+        if has_settled(after, bulk):
             return state
-        require_cool(after, known, contact.torque, speed)
+        require_cool(after, lubrication, contact.torque, speed)
         bulk = after
-    where = f"torque {contact.torque:g} N m, {speed:g} rad/s"
-    raise NotConverged("bulk temperature", where, f"{STEPS} steps of loss and bulk temperature")
+    load_point = f"torque {contact.torque:g} N m, {speed:g} rad/s"
+    raise NotConverged("bulk temperature", load_point, f"{STEPS} steps of loss and bulk temperature")
 
 
-def starting_bulk(known: Lubrication) -> tuple[float, float]:
-    """Bulk temperatures (C) of pinion and gear to start from: those given, or the oil's."""
-    if isinstance(known.bulk, GivenBulk):
-        return known.bulk.temperature, known.bulk.temperature
-    return known.oil_temperature, known.oil_temperature
+def starting_bulk(lubrication: Lubrication) -> tuple[float, float]:
+    """Return the bulk temperatures to start from: those given, or the oil's.
+
+    Parameters
+    ----------
+    lubrication : Lubrication
+        How the flanks are lubricated.
+
+    Returns
+    -------
+    tuple[float, float]
+        Temperatures of pinion and gear, C.
+    """
+    if isinstance(lubrication.bulk, GivenBulk):
+        return lubrication.bulk.temperature, lubrication.bulk.temperature
+    return lubrication.oil_temperature, lubrication.oil_temperature
 
 
-def settled(after: tuple[float, float], before: tuple[float, float]) -> bool:
-    """Whether two bulk temperatures have changed by no more than SETTLED."""
-    return max(abs(new - old) for new, old in zip(after, before, strict=True)) < SETTLED
+def has_settled(after: tuple[float, float], before: tuple[float, float]) -> bool:
+    """Whether two bulk temperatures have changed by less than BULK_TOLERANCE.
+
+    Parameters
+    ----------
+    after : tuple[float, float]
+        Temperatures of pinion and gear after a step, C.
+    before : tuple[float, float]
+        Temperatures before it, C.
+
+    Returns
+    -------
+    bool
+        True if they have settled.
+    """
+    return max(abs(new - old) for new, old in zip(after, before, strict=True)) < BULK_TOLERANCE
 
 
-def require_cool(bulk: tuple[float, float], known: Lubrication, torque: float, speed: float) -> None:
-    """Raise TooHot for bulk temperatures (C) above the oil's flash point."""
-    if max(bulk) > known.oil.flash_point:
-        raise TooHot(torque, speed, max(bulk), known.oil.flash_point)
+def require_cool(bulk: tuple[float, float], lubrication: Lubrication, torque: float, speed: float) -> None:
+    """Require that bulk temperatures do not exceed the oil's flash point.
+
+    Parameters
+    ----------
+    bulk : tuple[float, float]
+        Temperatures of pinion and gear, C.
+    lubrication : Lubrication
+        How the flanks are lubricated.
+    torque : float
+        Torque on the pinion, N m, for the message.
+    speed : float
+        Pinion speed, rad/s, for the message.
+
+    Raises
+    ------
+    TooHot
+        If one does.
+    """
+    if max(bulk) > lubrication.oil.flash_point:
+        raise TooHot(torque, speed, max(bulk), lubrication.oil.flash_point)
 
 
-def mean_flash(contact_places: Places, rise: Array) -> float:
-    """Mean along the path of contact of the largest flash at each place of it (K), away from edges.
+def mean_flash(contact_places: ContactPoints, rise: Array) -> float:
+    """Mean along the path of contact of the largest flash temperature at each place of it, away from edges.
 
-    found: places of one torque. The path runs through all positions of all pairs; 0 without any.
+    The path runs through all positions of all pairs.
+
+    Parameters
+    ----------
+    contact_places : ContactPoints
+        Contact points of one torque.
+    rise : (m,) array
+        Flash temperature at each point, K.
+
+    Returns
+    -------
+    float
+        Mean flash temperature, K; 0 without any point.
     """
     stage = passage(contact_places.position, contact_places.tooth)[contact_places.inside]
     if stage.size == 0:
@@ -121,31 +195,65 @@ def mean_flash(contact_places: Places, rise: Array) -> float:
 
 
 def warmed(heat: tuple[float, float], cooling: Cooling, oil_temperature: float) -> tuple[float, float]:
-    """Bulk temperatures (C) of pinion and gear that take up `heat` (W)."""
+    """Compute the bulk temperatures of bodies that take up heat.
+
+    Parameters
+    ----------
+    heat : tuple[float, float]
+        Heat that goes to pinion and gear, W.
+    cooling : Cooling
+        Heat that they give off, W/K.
+    oil_temperature : float
+        Temperature of the oil, C.
+
+    Returns
+    -------
+    tuple[float, float]
+        Temperatures of pinion and gear, C.
+    """
     return (
         oil_temperature + heat[0] / cooling.pinion,
         oil_temperature + heat[1] / cooling.face_gear,
     )
 
 
-def _bulk_after(state: "Running", contact_places: Places, known: Lubrication) -> tuple[float, float]:
-    if isinstance(known.bulk, Cooling):
-        return warmed(state.heat, known.bulk, known.oil_temperature)
-    if isinstance(known.bulk, BorrowedBulk):
-        rise = 0.47 * known.bulk.supply_factor * mean_flash(contact_places, state.flash)
-        return known.oil_temperature + rise, known.oil_temperature + rise
+def _bulk_after(
+    state: "Running", contact_places: ContactPoints, lubrication: Lubrication
+) -> tuple[float, float]:
+    if isinstance(lubrication.bulk, Cooling):
+        return warmed(state.heat, lubrication.bulk, lubrication.oil_temperature)
+    if isinstance(lubrication.bulk, BorrowedBulk):
+        rise = 0.47 * lubrication.bulk.supply_factor * mean_flash(contact_places, state.flash)
+        return lubrication.oil_temperature + rise, lubrication.oil_temperature + rise
     return state.bulk
 
 
 def running_at(
-    contact: LoadedContact, speed: float, known: Lubrication, bulk: tuple[float, float]
+    contact: LoadedContact, speed: float, lubrication: Lubrication, bulk: tuple[float, float]
 ) -> Running:
-    """The same with bulk temperatures (C) of pinion and gear as they are given."""
+    """Compute the state of the flanks at given bulk temperatures.
+
+    Parameters
+    ----------
+    contact : LoadedContact
+        Contact at one torque.
+    speed : float
+        Pinion speed, rad/s.
+    lubrication : Lubrication
+        How the flanks are lubricated.
+    bulk : tuple[float, float]
+        Bulk temperatures of pinion and gear, C.
+
+    Returns
+    -------
+    Running
+        The state.
+    """
     hats = contact.hats
-    local = local_state(contact.places, speed, known, 0.5 * sum(bulk))
-    lost = hats.force * speed * hats.sliding
-    hat_loss = contact.at_hats(local.friction) * lost
-    to_pinion = contact.at_hats(local.friction * local.heat_fraction) * lost
+    local = local_state(contact.points, speed, lubrication, 0.5 * sum(bulk))
+    sliding_power = hats.force * speed * hats.sliding
+    hat_loss = contact.at_hats(local.friction) * sliding_power
+    to_pinion = contact.at_hats(local.friction * local.heat_fraction) * sliding_power
     loss, heat = (float(part.sum()) / contact.positions for part in (hat_loss, to_pinion))
     return Running(
         **{field.name: getattr(local, field.name) for field in fields(local)},
@@ -156,32 +264,49 @@ def running_at(
     )
 
 
-def local_state(spots: Places, speed: float, known: Lubrication, warm: float | Array) -> Local:
-    """At the pinion's speed (rad/s) and bulk temperatures (C), a number or an array (..., 1) or (..., m)."""
-    oil = known.oil
+def local_state(spots: ContactPoints, speed: float, lubrication: Lubrication, warm: float | Array) -> Local:
+    """Compute friction, heat and film at contact points.
+
+    Parameters
+    ----------
+    spots : ContactPoints
+        Contact points (m,).
+    speed : float
+        Pinion speed, rad/s.
+    lubrication : Lubrication
+        How the flanks are lubricated.
+    warm : float or Array
+        Mean bulk temperature, C, a number or an array (..., 1) or (..., m).
+
+    Returns
+    -------
+    Local
+        Local state (m,) or (..., m).
+    """
+    oil = lubrication.oil
     viscosity, coefficient = oil.viscosity(warm), oil.pressure_coefficient_at(warm)
-    film, sheared = _line_film(spots, speed, known, warm)
-    rubbing = _rubbing(spots, speed, known, viscosity, film / known.composite_rq)
-    friction = known.friction.coefficient(rubbing)
-    rise, fraction = _heated(spots, rubbing, friction, known)
+    film, sheared = _line_film(spots, speed, lubrication, warm)
+    rubbing = _rubbing(spots, speed, lubrication, viscosity, film / lubrication.composite_rq)
+    friction = lubrication.friction.coefficient(rubbing)
+    rise, fraction = _flash_temperature(spots, rubbing, friction, lubrication)
     short = elliptic_film(
         spots.radius,
-        0.5 * rubbing.rolled,
+        0.5 * rubbing.sum_velocity,
         spots.ellipse_force,
         spots.half_length / spots.half_width,
         viscosity,
         coefficient,
-        known.reduced_modulus,
+        lubrication.reduced_modulus,
     )
     thin = _products(oil, warm + rise)
     micro = local_film(
         spots.radius,
-        rubbing.rolled,
+        rubbing.sum_velocity,
         spots.pressure,
         viscosity,
         coefficient,
         sliding_factor(thin, (viscosity, coefficient)),
-        known.reduced_modulus,
+        lubrication.reduced_modulus,
     )
     return Local(
         friction=friction,
@@ -191,24 +316,45 @@ def local_state(spots: Places, speed: float, known: Lubrication, warm: float | A
         sheared=sheared,
         short_film=sheared * short,
         film_ratio=rubbing.film_ratio,
-        micropitting=micro / known.mean_ra,
+        micropitting=micro / lubrication.mean_ra,
         rubbing=rubbing,
     )
 
 
-def rubbed(spots: Places, speed: float, known: Lubrication, warm: float | Array) -> tuple[Array, Array]:
-    """Friction coefficient and the pinion's part of the heat alone, as `local_state` has them."""
+def friction_and_heat_fraction(
+    spots: ContactPoints, speed: float, lubrication: Lubrication, warm: float | Array
+) -> tuple[Array, Array]:
+    """Compute friction coefficient and the pinion's part of the heat alone, as `local_state` does.
+
+    Parameters
+    ----------
+    spots : ContactPoints
+        Contact points (m,).
+    speed : float
+        Pinion speed, rad/s.
+    lubrication : Lubrication
+        How the flanks are lubricated.
+    warm : float or Array
+        Mean bulk temperature, C, a number or an array (..., 1) or (..., m).
+
+    Returns
+    -------
+    two (m,) or (..., m) arrays
+        Friction coefficient and fraction of the heat, dimensionless.
+    """
     ratio = np.full(spots.radius.shape, np.nan)
-    if known.friction.by_film:
-        ratio = _line_film(spots, speed, known, warm)[0] / known.composite_rq
-    rubbing = _rubbing(spots, speed, known, known.oil.viscosity(warm), ratio)
-    friction = known.friction.coefficient(rubbing)
-    return friction, _heated(spots, rubbing, friction, known)[1]
+    if lubrication.friction.by_film:
+        ratio = _line_film(spots, speed, lubrication, warm)[0] / lubrication.composite_rq
+    rubbing = _rubbing(spots, speed, lubrication, lubrication.oil.viscosity(warm), ratio)
+    friction = lubrication.friction.coefficient(rubbing)
+    return friction, _flash_temperature(spots, rubbing, friction, lubrication)[1]
 
 
-def _line_film(spots: Places, speed: float, known: Lubrication, warm: float | Array) -> tuple[Array, Array]:
+def _line_film(
+    spots: ContactPoints, speed: float, lubrication: Lubrication, warm: float | Array
+) -> tuple[Array, Array]:
     """Smallest film (m) of the line with shear heating, and the factor that it brings."""
-    oil, viscosity = known.oil, known.oil.viscosity(warm)
+    oil, viscosity = lubrication.oil, lubrication.oil.viscosity(warm)
     u1, u2 = speed * spots.u1, speed * spots.u2
     sheared = shear_heating(
         spots.pressure,
@@ -217,32 +363,36 @@ def _line_film(spots: Places, speed: float, known: Lubrication, warm: float | Ar
         viscosity,
         oil.thinning(warm),
         oil.conductivity_of(warm),
-        known.reduced_modulus,
+        lubrication.reduced_modulus,
     )
     coefficient = oil.pressure_coefficient_at(warm)
-    entrained = 0.5 * (u1 + u2)
-    wet = viscosity, coefficient, known.reduced_modulus
-    return sheared * line_film(spots.radius, entrained, spots.line_load, *wet), sheared
+    entrainment_speed = 0.5 * (u1 + u2)
+    wet = viscosity, coefficient, lubrication.reduced_modulus
+    return sheared * line_film(spots.radius, entrainment_speed, spots.line_load, *wet), sheared
 
 
-def _rubbing(spots: Places, speed: float, known: Lubrication, viscosity: Array, film_ratio: Array) -> Rubbing:
+def _rubbing(
+    spots: ContactPoints, speed: float, lubrication: Lubrication, viscosity: Array, film_ratio: Array
+) -> Rubbing:
     return Rubbing(
-        line_load=spots.carried,
+        line_load=spots.scaled_load,
         radius=spots.radius,
         pressure=spots.pressure,
         u1=speed * spots.u1,
         u2=speed * spots.u2,
         sliding=speed * spots.sliding,
-        pitch_speed=speed * known.pitch_radius,
-        oil_viscosity=float(known.oil.viscosity(known.oil_temperature)),
+        pitch_speed=speed * lubrication.pitch_radius,
+        oil_viscosity=float(lubrication.oil.viscosity(lubrication.oil_temperature)),
         bulk_viscosity=viscosity,
         film_ratio=film_ratio,
-        ra=known.mean_ra,
-        rq=known.composite_rq,
+        ra=lubrication.mean_ra,
+        rq=lubrication.composite_rq,
     )
 
 
-def _heated(spots: Places, rubbing: Rubbing, friction: Array, known: Lubrication) -> tuple[Array, Array]:
+def _flash_temperature(
+    spots: ContactPoints, rubbing: Rubbing, friction: Array, lubrication: Lubrication
+) -> tuple[Array, Array]:
     """Flash temperature (K) and the pinion's part of the heat."""
     return flash_at_any_speed(
         friction,
@@ -250,7 +400,7 @@ def _heated(spots: Places, rubbing: Rubbing, friction: Array, known: Lubrication
         rubbing.sliding,
         (rubbing.u1, rubbing.u2),
         spots.half_width,
-        known.flanks,
+        lubrication.flanks,
     )
 
 

@@ -1,4 +1,4 @@
-"""How fast the flanks slide and roll on each other, in the mesh frame of `facegear.geometry.design`.
+"""Sliding and rolling velocities of the flanks, in the mesh frame of `facegear.geometry.design`.
 
 The flanks' velocities are those of the unloaded angles; load moves a contact line by some 0.01 mm.
 """
@@ -17,30 +17,68 @@ from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.placement import AXIS, RigidMotion, pinion_angle, pinion_to_gear
 
 FILLET_SAMPLES = 4001
+"""Number of points of the fillet between which its normal is interpolated."""
 
 
 @dataclass(frozen=True, eq=False)
 class Spin:
-    """A body that turns about the unit vector `axis` (3,) through a point (3,) m at `speed` rad/s."""
+    """Rotation of a body about the unit vector `axis` (3,) through a point (3,) m at `speed` rad/s."""
 
     axis: Array
     through: Array
     speed: float
 
     def velocity(self, points: Array) -> Array:
-        """Of its points (..., 3) m, m/s."""
+        """Compute the velocity of points of the body.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            Points, m.
+
+        Returns
+        -------
+        (..., 3) array
+            Velocities, m/s.
+        """
         return self.speed * np.cross(self.axis, points - self.through)
 
     def torque(self, points: Array, forces: Array) -> float:
-        """Of forces (n, 3) N at points (n, 3) m about the axis, N m."""
+        """Compute the moment of forces about the axis.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points, m.
+        forces : (n, 3) array
+            Forces at the points, N.
+
+        Returns
+        -------
+        float
+            Moment, N m.
+        """
         return float((np.cross(points - self.through, forces) @ self.axis).sum())
 
 
 def slip(first: Spin, second: Spin, points: Array, normals: Array) -> tuple[Array, Array]:
-    """Velocity of the first body over the second at points with common normals, each (..., 3).
+    """Compute the velocity of the first body relative to the second.
 
-    The part in the tangent plane (..., 3), and the part along the normal (...), which belongs to teeth that
-    open or close; m/s.
+    Parameters
+    ----------
+    first : Spin
+        Rotation of the first body.
+    second : Spin
+        Rotation of the second body.
+    points : (..., 3) array
+        Points, m.
+    normals : (..., 3) array
+        Common unit normals at the points, dimensionless.
+
+    Returns
+    -------
+    (..., 3) array and (...) array
+        Part in the tangent plane, and part along the normal, which belongs to teeth that open or close; m/s.
     """
     relative = first.velocity(points) - second.velocity(points)
     along = np.einsum("...i,...i->...", relative, normals)
@@ -48,8 +86,21 @@ def slip(first: Spin, second: Spin, points: Array, normals: Array) -> tuple[Arra
 
 
 def spins(design: PairDesign, speed: float = 1.0) -> tuple[Spin, Spin]:
-    """Pinion and face gear at the pinion's speed (rad/s), the gear at the exact ratio, assembly errors in."""
-    stands = standing(design, 0.5 * 2 * pi / design.pinion.teeth, 0)
+    """Return the rotations of pinion and face gear, the gear at the exact ratio, with assembly errors.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Geometry of the pair.
+    speed : float
+        Pinion speed, rad/s.
+
+    Returns
+    -------
+    tuple[Spin, Spin]
+        Both rotations in the mesh frame.
+    """
+    stands = pinion_pose(design, 0.5 * 2 * pi / design.pinion.teeth, 0)
     ratio = design.pinion.teeth / design.face_gear.teeth
     return (
         Spin(stands.directions(AXIS["pinion"]), stands.shift, speed),
@@ -57,17 +108,44 @@ def spins(design: PairDesign, speed: float = 1.0) -> tuple[Spin, Spin]:
     )
 
 
-def standing(design: PairDesign, phi1: ArrayLike, tooth: ArrayLike) -> RigidMotion:
-    """From the pinion's body frame to the mesh frame, its tooth 0 standing as tooth `tooth` at phi1 (rad)."""
-    turned = np.asarray(phi1, float) + np.asarray(tooth, float) * 2 * pi / design.pinion.teeth
-    return pinion_to_gear(design, turned, np.zeros_like(turned), np.zeros_like(turned))
+def pinion_pose(design: PairDesign, phi1: ArrayLike, tooth: ArrayLike) -> RigidMotion:
+    """Return the motion from the pinion's body frame to the mesh frame.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Geometry of the pair.
+    phi1 : ArrayLike
+        Pinion angle, rad.
+    tooth : ArrayLike
+        Number of the tooth pair; tooth 0 of the body frame takes its place.
+
+    Returns
+    -------
+    RigidMotion
+        Motions in m.
+    """
+    rotation = np.asarray(phi1, float) + np.asarray(tooth, float) * 2 * pi / design.pinion.teeth
+    return pinion_to_gear(design, rotation, np.zeros_like(rotation), np.zeros_like(rotation))
 
 
 def surface_normals(design: PairDesign, points: Array) -> Array:
-    """Outward unit normals (n, 3) of points (n, 3) m on the pinion's right flank or fillet, body frame.
+    """Compute the outward normals on the pinion's right flank or fillet.
 
     A point of the involute lies on a tangent of the base circle, and so it does where a relief moved it along
     that tangent; the normal is the tangent.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Geometry of the pair.
+    points : (n, 3) array
+        Points in the body frame, m.
+
+    Returns
+    -------
+    (n, 3) array
+        Unit normals in the body frame, dimensionless.
     """
     x, z = points[..., 0], points[..., 2]
     radius, angle = np.hypot(x, z), np.arctan2(x, -z)
@@ -90,8 +168,8 @@ class LineKinematics:
 
     `sliding` the magnitude of the sliding velocity, `across` and `along` its parts across the line and along
     it (pinion over gear). `u1` and `u2` the rolling velocities of pinion and gear across the line,
-    `entrained` half the sum of both along the line, relative to a point of the line in a plane that stands.
-    nan where the line's slope is not known.
+    `line_entrainment` half the sum of both along the line, relative to a point of the line in a plane that
+    stands. nan where the line's slope is not known.
     """
 
     sliding: Array
@@ -99,17 +177,33 @@ class LineKinematics:
     along: Array
     u1: Array
     u2: Array
-    entrained: Array
+    line_entrainment: Array
 
 
 def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, tooth: Array) -> LineKinematics:
-    """Of the lines (p, n) of pairs `tooth` (p,) at positions (p,) of a pitch.
+    """Compute the velocities along contact lines.
 
-    On the pinion's flank t points across the profile towards its axis and e along that axis; the line is
-    l = cos(slope) e + sin(slope) t, and across it stands p = cos(slope) t - sin(slope) e.
+    On the pinion's flank t points across the profile towards its axis and e along that axis; the line is l =
+    cos(slope) e + sin(slope) t, and across it stands p = cos(slope) t - sin(slope) e.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Geometry of the pair.
+    lines : ContactLines
+        Contact lines (p, n).
+    position : (p,) array
+        Position of each line, in pitches.
+    tooth : (p,) array
+        Tooth pair of each line, index.
+
+    Returns
+    -------
+    LineKinematics
+        Velocities (p, n) for a pinion at 1 rad/s, m.
     """
     surface = flank_points(design, lines.roll, lines.y)
-    stands = standing(design, pinion_angle(design, position), tooth)
+    stands = pinion_pose(design, pinion_angle(design, position), tooth)
     points, normals = stands.points(surface.position), stands.directions(surface.normal)
     sliding, _ = slip(*spins(design), points, normals)
     nx, nz = surface.normal[..., 0], surface.normal[..., 2]
@@ -126,5 +220,5 @@ def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, to
         along=along,
         u1=u1,
         u2=u1 - across,
-        entrained=rho * sine - 0.5 * along,
+        line_entrainment=rho * sine - 0.5 * along,
     )

@@ -8,19 +8,19 @@ from scipy.interpolate import PchipInterpolator
 from facegear.arrays import Array, Arrays, Integers, Mask
 from facegear.geometry.design import PairDesign
 from facegear.geometry.placement import pinion_angle
-from facegear.lubrication.kinematics import slip, spins, standing, surface_normals
+from facegear.lubrication.kinematics import pinion_pose, slip, spins, surface_normals
 
 Numbers = float | Array
 
 
 @dataclass(frozen=True, eq=False)
 class HatSlip:
-    """Every loaded hat of every contact, all (m,) unless stated.
+    """Force and sliding velocity of every loaded hat of every contact, all (m,) unless stated.
 
     `torque` (N m on the pinion), `position` 0..1 of a pitch, `tooth` pair, `plane` of the lattice across the
     pinion's axis, `force` (N) along the normal. `point` (m, 3) m and `normal` (m, 3) in the mesh frame.
-    `velocity` (m, 3): sliding of the pinion over the gear at 1 rad/s, in m; `closing` (m,) m: the part of
-    the relative velocity along the normal.
+    `velocity` (m, 3): sliding of the pinion over the gear at 1 rad/s, in m; `normal_velocity` (m,) m: the
+    part of the relative velocity along the normal.
     """
 
     torque: Array
@@ -31,7 +31,7 @@ class HatSlip:
     point: Array
     normal: Array
     velocity: Array
-    closing: Array
+    normal_velocity: Array
 
     @property
     def sliding(self) -> Array:
@@ -40,19 +40,31 @@ class HatSlip:
 
 
 def hat_slip(design: PairDesign, arrays: Arrays) -> HatSlip:
-    """Of the forces in arrays as PRESSURE_ARRAYS (see `facegear.contact.columns`).
+    """Return the sliding velocities at the nodes that carry force.
 
     The forces carry the whole torque; the smoothed line loads carry 1 to 2 % less.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Geometry of the pair.
+    arrays : Arrays
+        Arrays PRESSURE_ARRAYS of `facegear.contact.columns`.
+
+    Returns
+    -------
+    HatSlip
+        Forces and velocities (m,).
     """
     node, tooth, position = arrays["node"], arrays["tooth"], arrays["position"]
     nodes = arrays["point_m"]
     normals = surface_normals(design, nodes)
     stages, of = np.unique(np.stack([position, tooth], axis=1), axis=0, return_inverse=True)
-    motions = standing(design, pinion_angle(design, stages[:, 0]), stages[:, 1])
+    motions = pinion_pose(design, pinion_angle(design, stages[:, 0]), stages[:, 1])
     matrix, shift = motions.matrix[of.ravel()], motions.shift[of.ravel()]
     point = np.einsum("mij,mj->mi", matrix, nodes[node]) + shift
     normal = np.einsum("mij,mj->mi", matrix, normals[node])
-    velocity, closing = slip(*spins(design), point, normal)
+    velocity, normal_velocity = slip(*spins(design), point, normal)
     return HatSlip(
         torque=arrays["torque_n_m"],
         position=position,
@@ -62,7 +74,7 @@ def hat_slip(design: PairDesign, arrays: Arrays) -> HatSlip:
         point=point,
         normal=normal,
         velocity=velocity,
-        closing=closing,
+        normal_velocity=normal_velocity,
     )
 
 
@@ -76,22 +88,33 @@ class LossFactors:
 
     @property
     def mean(self) -> Array:
-        """Over the positions of a pitch, which are spread evenly, (t,)."""
+        """Mean over the positions of a pitch, which are spread evenly, (t,)."""
         return self.at.mean(axis=1)
 
 
 def loss_factors(hats: HatSlip) -> LossFactors:
-    """Sum of `f |v| / (T w)` of every contact."""
+    """Compute the loss factors: the sum of `f |v| / (T w)` of every contact.
+
+    Parameters
+    ----------
+    hats : HatSlip
+        Forces and velocities of the contact.
+
+    Returns
+    -------
+    LossFactors
+        Loss factors (t, p) by torque and position.
+    """
     torques, row = np.unique(hats.torque, return_inverse=True)
     positions, column = np.unique(hats.position, return_inverse=True)
-    summed = np.zeros((torques.size, positions.size))
-    np.add.at(summed, (row, column), hats.force * hats.sliding)
-    return LossFactors(torques, positions, summed / torques[:, None])
+    sums = np.zeros((torques.size, positions.size))
+    np.add.at(sums, (row, column), hats.force * hats.sliding)
+    return LossFactors(torques, positions, sums / torques[:, None])
 
 
 @dataclass(frozen=True, eq=False)
 class OverTorque:
-    """A quantity known at t torques (N m), between them monotone in the logarithm of the torque.
+    """Quantity known at t torques (N m), between them monotone in the logarithm of the torque.
 
     `values` (t,), or (t, ...) of many quantities. Outside the torques each keeps the value of the nearest;
     `within` says where it is known.
@@ -101,13 +124,35 @@ class OverTorque:
     values: Array
 
     def at(self, torque: Numbers) -> Array:
-        """Values at torques of any shape, that shape first; a torque of 0 counts as the smallest."""
-        asked = np.clip(np.abs(np.asarray(torque, float)), self.torques[0], self.torques[-1])
+        """Interpolate the quantity.
+
+        Parameters
+        ----------
+        torque : Numbers
+            Torques of any shape, N m; a torque of 0 counts as the smallest.
+
+        Returns
+        -------
+        (torques..., ...) array
+            Values in their own unit, the shape of the torques first.
+        """
+        clipped_torque = np.clip(np.abs(np.asarray(torque, float)), self.torques[0], self.torques[-1])
         if self.torques.size == 1:
-            return np.broadcast_to(self.values[0], (*asked.shape, *self.values.shape[1:]))
-        return PchipInterpolator(np.log(self.torques), self.values)(np.log(asked))
+            return np.broadcast_to(self.values[0], (*clipped_torque.shape, *self.values.shape[1:]))
+        return PchipInterpolator(np.log(self.torques), self.values)(np.log(clipped_torque))
 
     def within(self, torque: Numbers) -> Mask:
-        """Whether torques of any shape lie between the smallest and the largest."""
-        asked = np.abs(np.asarray(torque, float))
-        return (asked >= self.torques[0] * (1 - 1e-12)) & (asked <= self.torques[-1] * (1 + 1e-12))
+        """Whether torques lie between the smallest and the largest.
+
+        Parameters
+        ----------
+        torque : Numbers
+            Torques of any shape, N m.
+
+        Returns
+        -------
+        (torques...) array of bool
+            True within.
+        """
+        size = np.abs(np.asarray(torque, float))
+        return (size >= self.torques[0] * (1 - 1e-12)) & (size <= self.torques[-1] * (1 + 1e-12))

@@ -15,7 +15,7 @@ from facegear.lubrication.scuffing import temperature_safety
 
 @dataclass(frozen=True, eq=False)
 class MachineState:
-    """The loss of a machine in one state: bin 0 is the nominal load, `hours` nan there.
+    """Loss of a machine in one state: bin 0 is the nominal load, `hours` nan there.
 
     `meshes` and `flanks` name the loaded flanks, `bodies` all bodies; `speed_rpm` of the pinions.
     """
@@ -32,13 +32,28 @@ class MachineState:
 
     @property
     def power(self) -> np.ndarray:
-        """That every mesh carries, W."""
+        """Power that every mesh carries, W."""
         return self.loads.torque * self.speed_rpm * pi / 30
 
 
-def mesh_loss_table(states: Sequence[MachineState], known: Lubrication, limits: Limits) -> pd.DataFrame:
-    """One row a state and loaded flank, columns as MESH_COLUMNS."""
-    allowed = limits.allowed_contact(known.oil, known.oil_temperature)
+def mesh_loss_table(states: Sequence[MachineState], lubrication: Lubrication, limits: Limits) -> pd.DataFrame:
+    """Tabulate loss, heat, temperature and film of every loaded flank.
+
+    Parameters
+    ----------
+    states : Sequence[MachineState]
+        States of the machine.
+    lubrication : Lubrication
+        How the flanks are lubricated.
+    limits : Limits
+        Limits of temperatures and films.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each state and loaded flank, columns MESH_COLUMNS.
+    """
+    allowed_contact = limits.allowed_contact(lubrication.oil, lubrication.oil_temperature)
     frames = []
     for state in states:
         losses = state.losses
@@ -60,8 +75,8 @@ def mesh_loss_table(states: Sequence[MachineState], known: Lubrication, limits: 
             "face_gear_bulk_c": losses.bulk[:, 1],
             "largest_flash_k": losses.flash,
             "contact_temperature_c": contact,
-            "scuffing_safety": temperature_safety(allowed, known.oil_temperature, contact),
-            "scuffing_margin_k": allowed - contact,
+            "scuffing_safety": temperature_safety(allowed_contact, lubrication.oil_temperature, contact),
+            "scuffing_margin_k": allowed_contact - contact,
             "smallest_film_ratio": losses.film_ratio,
             "smallest_micropitting_film_ratio": losses.micropitting,
             "micropitting_safety": [
@@ -73,31 +88,53 @@ def mesh_loss_table(states: Sequence[MachineState], known: Lubrication, limits: 
     return pd.concat(frames, ignore_index=True)[list(MESH_COLUMNS)]
 
 
-def body_heat_table(states: Sequence[MachineState], known: Lubrication) -> pd.DataFrame:
-    """One row a state and body: heat that friction brings, and the bulk temperature where it follows from it.
+def body_heat_table(states: Sequence[MachineState], lubrication: Lubrication) -> pd.DataFrame:
+    """Tabulate the heat that friction brings to every body, and its bulk temperature.
 
-    Columns as BODY_COLUMNS; nan where the bulk temperature is a rule's and differs from mesh to mesh.
+    Parameters
+    ----------
+    states : Sequence[MachineState]
+        States of the machine.
+    lubrication : Lubrication
+        How the flanks are lubricated.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each state and body, columns BODY_COLUMNS; nan where the bulk temperature is a rule's and
+        differs from mesh to mesh.
     """
     rows = [
-        (state.bin, state.speed_rpm, name, heat, _bulk(known, heat, body < state.loads.pinions))
+        (state.bin, state.speed_rpm, name, heat, _bulk(lubrication, heat, body < state.loads.pinions))
         for state in states
         for body, (name, heat) in enumerate(zip(state.bodies, state.losses.heat.tolist(), strict=True))
     ]
     return pd.DataFrame(rows, columns=list(BODY_COLUMNS))
 
 
-def _bulk(known: Lubrication, heat: float, pinion: bool) -> float:
-    match known.bulk:
+def _bulk(lubrication: Lubrication, heat: float, pinion: bool) -> float:
+    match lubrication.bulk:
         case GivenBulk(temperature):
             return temperature
         case Cooling(of_pinion, of_gear):
-            return known.oil_temperature + heat / (of_pinion if pinion else of_gear)
+            return lubrication.oil_temperature + heat / (of_pinion if pinion else of_gear)
         case BorrowedBulk():
             return np.nan
 
 
 def machine_loss_table(states: Sequence[MachineState]) -> pd.DataFrame:
-    """One row a state, and with a duty cycle a last one of all its bins, columns as MACHINE_COLUMNS."""
+    """Tabulate power and loss of the machine.
+
+    Parameters
+    ----------
+    states : Sequence[MachineState]
+        States of the machine.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each state, and with a duty cycle a last one of all its bins, columns MACHINE_COLUMNS.
+    """
     rows = [_row(state) for state in states]
     bins = [row for row, state in zip(rows, states, strict=True) if state.bin > 0]
     if bins:

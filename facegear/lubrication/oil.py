@@ -13,8 +13,9 @@ from facegear.arrays import Array
 from facegear.errors import FacegearError
 
 ZERO = 273.15
+"""Temperature 0 C in K."""
 SHIFT = 0.7
-"""Of ASTM D341, mm2/s."""
+"""Shift of the kinematic viscosity in ASTM D341, mm2/s."""
 
 DENSITY_SLOPE = 0.7
 """kg/m3 that the density falls by in a degree (ISO/TR 15144-1)."""
@@ -31,7 +32,20 @@ class PowerOfViscosity:
     exponent: float
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """Coefficient, 1/Pa, of a kinematic (m2/s) and a dynamic viscosity (Pa s)."""
+        """Compute the pressure coefficient.
+
+        Parameters
+        ----------
+        kinematic : (...) array
+            Kinematic viscosity, m2/s.
+        dynamic : (...) array
+            Dynamic viscosity, Pa s.
+
+        Returns
+        -------
+        (...) array
+            Coefficient, 1/Pa.
+        """
         return 1e-9 * self.scale * (1e6 * kinematic) ** self.exponent
 
 
@@ -40,7 +54,20 @@ class PolyolEster:
     """Pressure coefficient of MIL-L-23699 as a public rolling bearing code has it."""
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """Coefficient, 1/Pa, of a kinematic (m2/s) and a dynamic viscosity (Pa s)."""
+        """Compute the pressure coefficient.
+
+        Parameters
+        ----------
+        kinematic : (...) array
+            Kinematic viscosity, m2/s.
+        dynamic : (...) array
+            Dynamic viscosity, Pa s.
+
+        Returns
+        -------
+        (...) array
+            Coefficient, 1/Pa.
+        """
         return np.exp(1.15607 * np.log(dynamic) - 17.496) / dynamic
 
 
@@ -51,17 +78,30 @@ class FixedCoefficient:
     value: float
 
     def at(self, kinematic: Array, dynamic: Array) -> Array:
-        """The same value for every viscosity."""
+        """Return the pressure coefficient, which is the same for every viscosity.
+
+        Parameters
+        ----------
+        kinematic : (...) array
+            Kinematic viscosity, m2/s.
+        dynamic : (...) array
+            Dynamic viscosity, Pa s.
+
+        Returns
+        -------
+        (...) array
+            Coefficient, 1/Pa.
+        """
         return np.full_like(kinematic, self.value)
 
 
 @dataclass(frozen=True)
 class Oil:
-    """An oil by kinematic `viscosities` (m2/s) at two `temperatures` (C), and its density (kg/m3) at 15 C.
+    """Oil by kinematic `viscosities` (m2/s) at two `temperatures` (C), and its density (kg/m3) at 15 C.
 
-    `conductivity` (W/(m K)) at `conductivity_at` (C), falling by `conductivity_slope` a degree.
-    `flash_point` (C). `lubricant_factor` X_L of Schlenk's friction. Raises FacegearError unless the viscosity
-    falls with temperature.
+    `conductivity` (W/(m K)) at `conductivity_at` (C), falling by `conductivity_slope` a degree. `flash_point`
+    (C). `lubricant_factor` X_L of Schlenk's friction. Raises FacegearError unless the viscosity falls with
+    temperature.
     """
 
     name: str
@@ -82,43 +122,114 @@ class Oil:
 
     @property
     def slope(self) -> float:
-        """B of log10 log10(nu + 0.7) = A - B log10 T."""
+        """Slope B of log10 log10(nu + 0.7) = A - B log10 T."""
         return (_double_log(self.viscosities[0]) - _double_log(self.viscosities[1])) / (
             log10(self.temperatures[1] + ZERO) - log10(self.temperatures[0] + ZERO)
         )
 
     @property
     def intercept(self) -> float:
-        """A of the same."""
+        """Intercept A of log10 log10(nu + 0.7) = A - B log10 T."""
         return _double_log(self.viscosities[0]) + self.slope * log10(self.temperatures[0] + ZERO)
 
     def kinematic_viscosity(self, temperature: ArrayLike) -> Array:
-        """nu (m2/s) at a temperature (C): ASTM D341."""
+        """Compute the kinematic viscosity nu by ASTM D341.
+
+        Parameters
+        ----------
+        temperature : ArrayLike
+            Temperature of any shape, C.
+
+        Returns
+        -------
+        (...) array
+            Viscosity, m2/s.
+        """
         kelvin = np.asarray(temperature, float) + ZERO
         return 1e-6 * (10.0**10.0 ** (self.intercept - self.slope * np.log10(kelvin)) - SHIFT)
 
     def density_at(self, temperature: ArrayLike) -> Array:
-        """Density, kg/m3."""
+        """Compute the density.
+
+        Parameters
+        ----------
+        temperature : ArrayLike
+            Temperature of any shape, C.
+
+        Returns
+        -------
+        (...) array
+            Density, kg/m3.
+        """
         return self.density - DENSITY_SLOPE * (np.asarray(temperature, float) - REFERENCE)
 
     def viscosity(self, temperature: ArrayLike) -> Array:
-        """Dynamic viscosity, Pa s."""
+        """Compute the dynamic viscosity.
+
+        Parameters
+        ----------
+        temperature : ArrayLike
+            Temperature of any shape, C.
+
+        Returns
+        -------
+        (...) array
+            Viscosity, Pa s.
+        """
         return self.kinematic_viscosity(temperature) * self.density_at(temperature)
 
     def thinning(self, temperature: ArrayLike) -> Array:
-        """beta = -d ln nu / dT, 1/K."""
-        shifted = 1e6 * self.kinematic_viscosity(temperature) + SHIFT
+        """Compute the relative fall of the viscosity with temperature, beta = -d ln nu / dT.
+
+        Parameters
+        ----------
+        temperature : ArrayLike
+            Temperature of any shape, C.
+
+        Returns
+        -------
+        (...) array
+            beta, 1/K.
+        """
+        shifted_viscosity = 1e6 * self.kinematic_viscosity(temperature) + SHIFT
         kelvin = np.asarray(temperature, float) + ZERO
-        return self.slope * shifted * np.log(shifted) / ((shifted - SHIFT) * kelvin)
+        return (
+            self.slope
+            * shifted_viscosity
+            * np.log(shifted_viscosity)
+            / ((shifted_viscosity - SHIFT) * kelvin)
+        )
 
     def pressure_coefficient_at(self, temperature: ArrayLike) -> Array:
-        """alpha of Barus's law, 1/Pa."""
+        """Compute the pressure coefficient alpha of Barus's law.
+
+        Parameters
+        ----------
+        temperature : ArrayLike
+            Temperature of any shape, C.
+
+        Returns
+        -------
+        (...) array
+            alpha, 1/Pa.
+        """
         return self.pressure_coefficient.at(
             self.kinematic_viscosity(temperature), self.viscosity(temperature)
         )
 
     def conductivity_of(self, temperature: ArrayLike) -> Array:
-        """Thermal conductivity, W/(m K)."""
+        """Compute the thermal conductivity.
+
+        Parameters
+        ----------
+        temperature : ArrayLike
+            Temperature of any shape, C.
+
+        Returns
+        -------
+        (...) array
+            Conductivity, W/(m K).
+        """
         above = np.asarray(temperature, float) - self.conductivity_at
         return self.conductivity - self.conductivity_slope * above
 

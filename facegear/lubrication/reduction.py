@@ -1,9 +1,9 @@
-"""The loaded contact reduced to the few places that decide its loss, its heat and its film.
+"""Reduction of the loaded contact to the few points that decide its loss, its heat and its film.
 
-The loss is a sum over thousands of places. Over any range of oil, roughness, temperature and speed it lies in
-a space of few dimensions, so a few places with weights that are not negative have the same sum (empirical
-cubature). The largest flash temperature and the smallest film lie at a few places too, wherever they move
-over that range. At these places everything is evaluated by the same functions as at all others.
+The loss is a sum over thousands of points. Over any range of oil, roughness, temperature and speed it lies in
+a space of few dimensions, so a few points with weights that are not negative have the same sum (empirical
+cubature). The largest flash temperature and the smallest film lie at a few points too, wherever they move
+over that range. At these points everything is evaluated by the same functions as at all others.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,101 +15,162 @@ from scipy.optimize import nnls
 
 from facegear.arrays import Array, Integers
 from facegear.contact.pattern import passage
-from facegear.lubrication.heat import Local, local_state, mean_flash, rubbed, starting_bulk
+from facegear.lubrication.contact_points import ContactPoints, LoadedContact, concatenate, select
+from facegear.lubrication.heat import (
+    Local,
+    friction_and_heat_fraction,
+    local_state,
+    mean_flash,
+    starting_bulk,
+)
 from facegear.lubrication.machine_loss import LossCurves, MeshCurves, settled_bulk
-from facegear.lubrication.places import LoadedContact, Places, joined, taken
 from facegear.lubrication.request import BorrowedBulk, Lubrication
 
 SINGULAR = 1e-10
 """Singular values of the losses over the conditions below this part of the largest are rounding."""
 CONTENDERS = 3
-"""Places kept for each extreme at each condition: between conditions the extreme may lie at a neighbour."""
+"""Number of points kept for each extreme at each condition: between conditions it may lie at a neighbour."""
 
 
 @dataclass(frozen=True, eq=False)
 class Condition:
-    """A state that a reduced contact must be right at: the pinion's speed (rad/s), lubrication, bulk C."""
+    """State that a reduced contact must be right at: the pinion's speed (rad/s), lubrication, bulk C."""
 
     speed: float
-    known: Lubrication
+    lubrication: Lubrication
     bulk: float
 
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Places (m,) of t torques, torque by torque; `parts` (t): which places each torque has."""
+    """Points (m,) of t torques, torque by torque; `parts` (t): which points each torque has."""
 
-    places: Places
+    points: ContactPoints
     parts: tuple[slice, ...]
 
     @classmethod
-    def of(cls, by_torque: Sequence[Places]) -> "Group":
-        """From the places of each torque."""
-        ends = np.cumsum([0, *(places.plane.size for places in by_torque)]).tolist()
-        return cls(joined(by_torque), tuple(slice(*bounds) for bounds in pairwise(ends)))
+    def of(cls, by_torque: Sequence[ContactPoints]) -> "Group":
+        """Build the group from the points of each torque.
 
-    def gathered(self, how: Callable[..., Array], values: Array, nothing: float) -> Array:
-        """Values (n, m) gathered to (n, t); `nothing` where a torque has no place."""
-        return np.stack([how(values[:, part], axis=1, initial=nothing) for part in self.parts], axis=1)
+        Parameters
+        ----------
+        by_torque : Sequence[ContactPoints]
+            Points of each torque.
+
+        Returns
+        -------
+        Group
+            The group.
+        """
+        ends = np.cumsum([0, *(points.plane.size for points in by_torque)]).tolist()
+        return cls(concatenate(by_torque), tuple(slice(*bounds) for bounds in pairwise(ends)))
+
+    def reduce_by_torque(self, how: Callable[..., Array], values: Array, empty_value: float) -> Array:
+        """Reduce values at the points to one value for each torque.
+
+        Parameters
+        ----------
+        how : callable
+            NumPy reduction with arguments `axis` and `initial`, such as np.sum; any unit, from (n, k) to
+            (n,).
+        values : (n, m) array
+            Values at the points, any unit.
+        empty_value : float
+            Value where a torque has no point, in the unit of the values.
+
+        Returns
+        -------
+        (n, t) array
+            Reduced values in the same unit.
+        """
+        return np.stack([how(values[:, part], axis=1, initial=empty_value) for part in self.parts], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class FewPlaces:
-    """Contacts at t rising torques (N m) by a few places each.
+    """Contacts at t rising torques (N m) by a few points each.
 
-    A place of `losing` with friction mu loses `speed mu weight`, `weights` (m,) in N m. Among the places of
-    `extreme` are the hottest and those of the thinnest film; no edge is near.
+    A point of `loss_points` with friction mu loses `speed mu weight`, `weights` (m,) in N m. Among the points
+    of `extreme` are the hottest and those of the thinnest film; no edge is near.
     """
 
     torques: Array
-    losing: Group
+    loss_points: Group
     weights: Array
     extreme: Group
 
 
-def reduced(contacts: Sequence[LoadedContact], conditions: Sequence[Condition]) -> FewPlaces:
-    """Few places of contacts at rising torques, for any state within the range of the conditions."""
-    losing, weights, extreme = zip(*(_few(contact, conditions) for contact in contacts), strict=True)
+def reduce_contacts(contacts: Sequence[LoadedContact], conditions: Sequence[Condition]) -> FewPlaces:
+    """Choose few points of contacts that give loss and extremes for any state within the range of the
+    conditions.
+
+    Parameters
+    ----------
+    contacts : Sequence[LoadedContact]
+        Contacts at rising torques.
+    conditions : Sequence[Condition]
+        States that the points must be right at.
+
+    Returns
+    -------
+    FewPlaces
+        The points with their weights.
+    """
+    loss_points, weights, extreme = zip(*(_few(contact, conditions) for contact in contacts), strict=True)
     return FewPlaces(
         torques=np.array([contact.torque for contact in contacts]),
-        losing=Group.of(losing),
+        loss_points=Group.of(loss_points),
         weights=np.concatenate(weights),
         extreme=Group.of(extreme),
     )
 
 
-def _few(contact: LoadedContact, conditions: Sequence[Condition]) -> tuple[Places, Array, Places]:
-    """Places that lose, with their weights, and extreme ones."""
-    spots, whole = contact.places, contact.weights
+def _few(
+    contact: LoadedContact, conditions: Sequence[Condition]
+) -> tuple[ContactPoints, Array, ContactPoints]:
+    """Return the points that carry the loss, with their weights, and the extreme points."""
+    spots, whole = contact.points, contact.weights
     states = [
-        local_state(spots, condition.speed, condition.known, condition.bulk) for condition in conditions
+        local_state(spots, condition.speed, condition.lubrication, condition.bulk) for condition in conditions
     ]
     losses = [state.friction * whole for state in states]
     heat = [loss * state.heat_fraction for loss, state in zip(losses, states, strict=True)]
     factors = cubature(np.array([*losses, *heat]))
-    losing = np.flatnonzero(factors)
-    borrowed = any(isinstance(condition.known.bulk, BorrowedBulk) for condition in conditions)
-    extreme = np.unique(np.concatenate([_extremes(spots, state, borrowed) for state in states]))
-    return taken(spots, losing), (factors * whole)[losing], taken(spots, extreme)
+    loss_points = np.flatnonzero(factors)
+    is_borrowed = any(isinstance(condition.lubrication.bulk, BorrowedBulk) for condition in conditions)
+    extreme = np.unique(np.concatenate([_extremes(spots, state, is_borrowed) for state in states]))
+    return select(spots, loss_points), (factors * whole)[loss_points], select(spots, extreme)
 
 
 def cubature(rows: Array) -> Array:
-    """Factors (m,), none negative and most 0, with which every row (r, m) has the sum that it has with 1.
+    """Compute sparse non-negative weights that preserve every row sum (cubature).
 
     Rows of sum 0 are left out.
+
+    Parameters
+    ----------
+    rows : (r, m) array
+        Rows, any unit.
+
+    Returns
+    -------
+    (m,) array
+        Weights, most of them 0, dimensionless.
     """
     sums = rows.sum(axis=1)
-    scaled = rows[sums > 0.0] / sums[sums > 0.0, None]
-    if scaled.size == 0:
+    scaled_rows = rows[sums > 0.0] / sums[sums > 0.0, None]
+    if scaled_rows.size == 0:
         return np.zeros(rows.shape[1])
-    _, sizes, directions = np.linalg.svd(scaled, full_matrices=False)
+    _, sizes, directions = np.linalg.svd(scaled_rows, full_matrices=False)
     basis = directions[sizes > SINGULAR * sizes[0]]
     factors, _ = nnls(basis, basis.sum(axis=1))
     return factors
 
 
-def _extremes(spots: Places, state: Local, borrowed: bool) -> Integers:
-    """Places of the largest flash and the smallest films; with `borrowed` the hottest of each line too."""
+def _extremes(spots: ContactPoints, state: Local, is_borrowed: bool) -> Integers:
+    """Find the points of the largest flash and the smallest films; with `is_borrowed` the hottest of each
+    line too.
+    """
     on = np.flatnonzero(spots.inside)
     if on.size == 0:
         return on
@@ -117,7 +178,7 @@ def _extremes(spots: Places, state: Local, borrowed: bool) -> Integers:
         on[np.argsort(values[on], kind="stable")[:CONTENDERS]]
         for values in (-state.flash, state.film_ratio, state.micropitting)
     ]
-    if borrowed:
+    if is_borrowed:
         stage = passage(spots.position, spots.tooth)[on]
         hottest_first = on[np.lexsort((-state.flash[on], stage))]
         contenders.append(hottest_first[np.unique(np.sort(stage), return_index=True)[1]])
@@ -126,69 +187,123 @@ def _extremes(spots: Places, state: Local, borrowed: bool) -> Integers:
 
 @dataclass(frozen=True, eq=False)
 class ReducedPair:
-    """A tooth pair by few places of its contact, and how it is lubricated; a `Pair` of machine_loss."""
+    """Tooth pair by few points of its contact, and how it is lubricated; a `Pair` of machine_loss."""
 
     few: FewPlaces
-    known: Lubrication
+    lubrication: Lubrication
 
     @property
     def torques(self) -> Array:
-        """Of the contacts, N m."""
+        """Torques of the contacts, N m."""
         return self.few.torques
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """As of Pair."""
-        return LossCurves(self.torques, *self._lost(speed, self._at_torques(bulk)))
+        """Compute the loss of meshes.
+
+        Parameters
+        ----------
+        speed : float
+            Pinion speed, rad/s.
+        bulk : (n, 2) array
+            Bulk temperatures of pinion and gear of each mesh, C.
+
+        Returns
+        -------
+        LossCurves
+            Loss of the meshes (n, t).
+        """
+        return LossCurves(self.torques, *self._loss_fractions(speed, self._at_torques(bulk)))
 
     def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """As of Pair."""
+        """Compute loss, temperature and film of meshes.
+
+        Parameters
+        ----------
+        speed : float
+            Pinion speed, rad/s.
+        bulk : (n, 2) array
+            Bulk temperatures of pinion and gear of each mesh, C.
+
+        Returns
+        -------
+        MeshCurves
+            Loss, temperature and film of the meshes (n, t).
+        """
         return self._curves(speed, self._at_torques(bulk))
 
-    def own(self, speed: float) -> tuple[MeshCurves, Array]:
-        """As of Pair. Raises TooHot and NotConverged as `facegear.lubrication.heat.running` does."""
-        known, few = self.known, self.few
-        bulk = np.tile(starting_bulk(known), (self.torques.size, 1))
-        if isinstance(known.bulk, BorrowedBulk):
-            factor, places = 0.47 * known.bulk.supply_factor, few.extreme.places
+    def single_mesh_curves(self, speed: float) -> tuple[MeshCurves, Array]:
+        """Compute one mesh with the bulk temperatures that the section gives it at each torque.
+
+        Parameters
+        ----------
+        speed : float
+            Pinion speed, rad/s.
+
+        Returns
+        -------
+        MeshCurves and (t, 2) array
+            Loss, temperature and film (1, t), and bulk temperatures of pinion and gear, C.
+
+        Raises
+        ------
+        TooHot
+            If a body passes the oil's flash point.
+        NotConverged
+            If bulk temperatures do not settle.
+        """
+        lubrication, few = self.lubrication, self.few
+        bulk = np.tile(starting_bulk(lubrication), (self.torques.size, 1))
+        if isinstance(lubrication.bulk, BorrowedBulk):
+            factor, points = 0.47 * lubrication.bulk.supply_factor, few.extreme.points
 
             def step(before: Array) -> Array:
-                flash = local_state(places, speed, known, _spread(few.extreme, before.mean(axis=1))).flash
-                means = [mean_flash(taken(places, part), flash[part]) for part in few.extreme.parts]
-                return np.repeat(known.oil_temperature + factor * np.array(means), 2).reshape(-1, 2)
+                flash = local_state(
+                    points, speed, lubrication, _spread(few.extreme, before.mean(axis=1))
+                ).flash
+                means = [mean_flash(select(points, part), flash[part]) for part in few.extreme.parts]
+                return np.repeat(lubrication.oil_temperature + factor * np.array(means), 2).reshape(-1, 2)
 
-            bulk = settled_bulk(step, known, self.torques, speed)
+            bulk = settled_bulk(step, lubrication, self.torques, speed)
         return self._curves(speed, bulk.mean(axis=1)[None]), bulk
 
     def _at_torques(self, bulk: Array) -> Array:
         """Mean bulk temperatures (n, t) C, the same at every torque."""
         return np.repeat(bulk.mean(axis=1, keepdims=True), self.torques.size, axis=1)
 
-    def _lost(self, speed: float, warm: Array) -> tuple[Array, Array]:
-        """Part of the power that is lost, and of that what heats the pinion (n, t), at mean bulk (n, t) C."""
-        few, group = self.few, self.few.losing
-        friction, fraction = rubbed(group.places, speed, self.known, _spread(group, warm))
+    def _loss_fractions(self, speed: float, warm: Array) -> tuple[Array, Array]:
+        """Return the part of the power that is lost, and the pinion's part of its heat (n, t), at mean bulk
+        (n, t) C.
+        """
+        few, group = self.few, self.few.loss_points
+        friction, fraction = friction_and_heat_fraction(
+            group.points, speed, self.lubrication, _spread(group, warm)
+        )
         loss = np.broadcast_to(friction * few.weights, (warm.shape[0], few.weights.size))
-        lost, to_pinion = (group.gathered(np.sum, part, 0.0) for part in (loss, loss * fraction))
-        parted = np.where(lost > 0.0, to_pinion / np.where(lost > 0.0, lost, 1.0), 0.5)
-        return lost / few.torques, parted
+        lost_power, to_pinion = (
+            group.reduce_by_torque(np.sum, part, 0.0) for part in (loss, loss * fraction)
+        )
+        pinion_fraction = np.where(
+            lost_power > 0.0, to_pinion / np.where(lost_power > 0.0, lost_power, 1.0), 0.5
+        )
+        return lost_power / few.torques, pinion_fraction
 
     def _curves(self, speed: float, warm: Array) -> MeshCurves:
-        """Of n meshes with mean bulk temperatures (n, t) C at the torques."""
+        """Compute the curves of n meshes with mean bulk temperatures (n, t) C at the torques."""
         group = self.few.extreme
-        state = local_state(group.places, speed, self.known, _spread(group, warm))
-        shape = warm.shape[0], group.places.plane.size
+        state = local_state(group.points, speed, self.lubrication, _spread(group, warm))
+        shape = warm.shape[0], group.points.plane.size
         flash, film, micro = (
             np.broadcast_to(values, shape) for values in (state.flash, state.film_ratio, state.micropitting)
         )
         return MeshCurves(
             self.torques,
-            *self._lost(speed, warm),
-            flash=group.gathered(np.max, flash, 0.0),
-            film_ratio=group.gathered(np.min, film, np.inf),
-            micropitting=group.gathered(np.min, micro, np.inf),
+            *self._loss_fractions(speed, warm),
+            flash=group.reduce_by_torque(np.max, flash, 0.0),
+            film_ratio=group.reduce_by_torque(np.min, film, np.inf),
+            micropitting=group.reduce_by_torque(np.min, micro, np.inf),
         )
 
 
 def _spread(group: Group, values: Array) -> Array:
-    """Values (..., t) of torques at the places (..., m) of a group."""
+    """Repeat values (..., t) of torques at the points (..., m) of a group."""
     return np.repeat(values, [part.stop - part.start for part in group.parts], axis=-1)

@@ -1,4 +1,4 @@
-"""What the flanks run with, and what they are allowed: the request of the friction chain, SI units."""
+"""Request of the friction chain: lubrication of the flanks and their limits, in SI units."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from facegear.lubrication.scuffing import allowed_flash_temperature, allowed_int
 
 
 @dataclass(frozen=True)
-class Heated:
+class FlankMaterial:
     """Material of a flank: conductivity W/(m K), density kg/m3, heat capacity J/(kg K)."""
 
     conductivity: float
@@ -19,7 +19,7 @@ class Heated:
 
     @property
     def diffusivity(self) -> float:
-        """m2/s."""
+        """Thermal diffusivity, m2/s."""
         return self.conductivity / (self.density * self.heat_capacity)
 
     @property
@@ -28,8 +28,8 @@ class Heated:
         return float(np.sqrt(self.conductivity * self.density * self.heat_capacity))
 
 
-STEEL = Heated(45.0, 7800.0, 440.0)
-"""As in ISO/TR 15144-1."""
+STEEL = FlankMaterial(45.0, 7800.0, 440.0)
+"""Steel of ISO/TR 15144-1."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class BorrowedBulk:
 
 @dataclass(frozen=True, eq=False)
 class Lubrication:
-    """What the flanks run with.
+    """Lubrication of the flanks.
 
     `oil_temperature` (C) as supplied; `ra` and `rq` (m) of pinion and gear; `reduced_modulus` E_r = 2 E*
     (Pa); `pitch_radius` (m) of the pinion.
@@ -71,7 +71,7 @@ class Lubrication:
     ra: tuple[float, float]
     rq: tuple[float, float]
     bulk: GivenBulk | Cooling | BorrowedBulk
-    flanks: tuple[Heated, Heated]
+    flanks: tuple[FlankMaterial, FlankMaterial]
     reduced_modulus: float
     pitch_radius: float
 
@@ -88,7 +88,7 @@ class Lubrication:
 
 @dataclass(frozen=True)
 class Limits:
-    """What is allowed; None where it is not known.
+    """Limits of temperature and film; None where one is not known.
 
     `contact_temperature` (C) of tests, else it follows from `fzg_stage` with the steel's `structure_factor`
     and the oil's `lubricant_factor`. `contact_temperature_source` says in words where it is from.
@@ -103,7 +103,20 @@ class Limits:
     film_ratio: float | None
 
     def allowed_contact(self, oil: Oil, oil_temperature: float) -> float:
-        """Contact temperature (C); nan where nothing says it."""
+        """Return the allowed contact temperature.
+
+        Parameters
+        ----------
+        oil : Oil
+            The oil.
+        oil_temperature : float
+            Temperature of the oil as supplied, C.
+
+        Returns
+        -------
+        float
+            Temperature, C; nan where nothing gives it.
+        """
         if self.contact_temperature is not None:
             return self.contact_temperature
         if self.fzg_stage is None:
@@ -112,7 +125,18 @@ class Limits:
         return allowed_flash_temperature(self.fzg_stage, self.structure_factor, factor)
 
     def allowed_integral(self, oil: Oil) -> float:
-        """Integral temperature (C); nan without a load stage."""
+        """Return the allowed integral temperature.
+
+        Parameters
+        ----------
+        oil : Oil
+            The oil.
+
+        Returns
+        -------
+        float
+            Temperature, C; nan without a load stage.
+        """
         if self.fzg_stage is None:
             return np.nan
         return allowed_integral_temperature(
@@ -120,5 +144,16 @@ class Limits:
         )
 
     def micropitting_safety(self, ratio: float) -> float:
-        """Of a specific film; nan where nothing is allowed."""
+        """Compute the safety of a specific film against micropitting.
+
+        Parameters
+        ----------
+        ratio : float
+            Specific film, a ratio.
+
+        Returns
+        -------
+        float
+            Safety, a ratio; nan where no film is allowed.
+        """
         return ratio / self.film_ratio if self.film_ratio is not None else np.nan

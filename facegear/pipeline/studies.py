@@ -38,13 +38,13 @@ def numbered_points(case: Case) -> list[tuple[str, str, str, str, str, float]]:
     """Study, point, label of the number with its unit, label on the other axis, key and number of every point
     of the studies over numbers.
     """
-    from facegear.config.cases import numbered
+    from facegear.config.cases import find_numeric_axis
     from facegear.config.studies import Study
     from facegear.report.units import unit_of
 
     listed = []
     for study in (Study.of_config(study) for study in case.values["studies"]):
-        if (axis := numbered(study)) is not None:
+        if (axis := find_numeric_axis(study)) is not None:
             unit = next(filter(None, map(unit_of, reversed(axis.key.split(".")))), "")
             label = f"{axis.label} ({unit})" if unit and not axis.label.endswith(")") else axis.label
             listed += [

@@ -1,4 +1,4 @@
-"""What a tolerance may be: distributions by their quantile functions."""
+"""Distributions of tolerances by their quantile functions."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -34,7 +34,18 @@ class Distribution:
     values: tuple[float, ...] = ()
 
     def quantile(self, probability: Array) -> Array:
-        """Values (same shape) at probabilities in (0, 1)."""
+        """Return the quantiles of the distribution.
+
+        Parameters
+        ----------
+        probability : (...) array
+            Probabilities in (0, 1), dimensionless.
+
+        Returns
+        -------
+        (...) array
+            Value at each probability, in the unit of the distribution.
+        """
         if self.shape is Shape.CHOICE:
             index = np.floor(probability * len(self.values)).astype(int)
             return np.asarray(self.values)[np.minimum(index, len(self.values) - 1)]
@@ -43,16 +54,16 @@ class Distribution:
             return low + (high - low) * probability
         if self.spread == 0.0:
             return np.full(np.shape(probability), self.centre)
-        frozen = self._frozen
-        low, high = (frozen.cdf(limit) for limit in self._limits)
-        return np.asarray(frozen.ppf(low + (high - low) * probability), dtype=float)
+        distribution = self._scipy_distribution
+        low, high = (distribution.cdf(limit) for limit in self._limits)
+        return np.asarray(distribution.ppf(low + (high - low) * probability), dtype=float)
 
     @property
     def _limits(self) -> tuple[float, float]:
         return self.limits if self.limits is not None else (-np.inf, np.inf)
 
     @property
-    def _frozen(self) -> "scipy.stats.rv_frozen":
+    def _scipy_distribution(self) -> "scipy.stats.rv_frozen":
         if self.shape is Shape.RAYLEIGH:
             return scipy.stats.rayleigh(scale=self.spread)
         return scipy.stats.norm(self.centre, self.spread)

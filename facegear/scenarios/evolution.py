@@ -16,8 +16,12 @@ from facegear.errors import FacegearError
 from facegear.io import journal
 
 Evaluate = Callable[[tuple[float, ...]], Mapping[str, float]]
-"""What is wanted of a design, by name, given the values of its variables. Raises FacegearError if none."""
+"""Function that returns the goals of a design by name, given the values of its variables.
+
+Raises FacegearError for a design without results.
+"""
 GENERATION, ERROR = "generation", "error"
+"""Columns of the generation's number and of the text of a design's error."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +35,33 @@ class Variable:
     logarithmic: bool = False
 
     def snapped(self, part: Array) -> Array:
-        """Parts 0 to 1 of the range (same shape), moved to the nearest that is allowed."""
+        """Move parts of the range to the nearest allowed values.
+
+        Parameters
+        ----------
+        part : (...) array
+            Parts of the range, fractions from 0 to 1.
+
+        Returns
+        -------
+        (...) array
+            Allowed parts, fractions from 0 to 1.
+        """
         return part if self.steps is None else np.round(part * (self.steps - 1)) / (self.steps - 1)
 
     def value(self, part: float) -> float:
-        """The number at a part of the range."""
+        """Return the number at a part of the range.
+
+        Parameters
+        ----------
+        part : float
+            Part of the range, a fraction from 0 to 1.
+
+        Returns
+        -------
+        float
+            The number, in the unit of the variable.
+        """
         if self.logarithmic:
             return float(self.low * (self.high / self.low) ** part)
         return float(self.low + (self.high - self.low) * part)
@@ -55,15 +81,37 @@ class Task:
 
     @property
     def goals(self) -> tuple[str, ...]:
-        """All that is asked of a design."""
+        """Names of objectives and limited quantities."""
         return (*self.objectives, *(name for name, _ in self.limits))
 
     def sign(self, name: str) -> float:
-        """Takes a goal's value to something that is to be small."""
+        """Return the factor that makes a goal one that is to be small.
+
+        Parameters
+        ----------
+        name : str
+            Name of the goal.
+
+        Returns
+        -------
+        float
+            Factor -1 for a goal that is to be large, else 1.
+        """
         return -1.0 if name in self.large else 1.0
 
     def costs(self, designs: pd.DataFrame) -> Array:
-        """(designs, objectives): objectives of designs, all to be small."""
+        """Return the objectives of designs with the sign that makes all of them small ones.
+
+        Parameters
+        ----------
+        designs : pd.DataFrame
+            Table with a column for each objective.
+
+        Returns
+        -------
+        (designs, objectives) array
+            Costs in the units of the objectives.
+        """
         signs = [self.sign(name) for name in self.objectives]
         return designs[list(self.objectives)].to_numpy(float) * signs
 
@@ -85,62 +133,126 @@ def evolve(
     identity: str,
     on_progress: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Every design tried, in order. Columns: generation, the variables, the goals, error.
+    """Search for designs by NSGA-II (Deb et al. 2002), and keep every design as soon as its results are
+    there.
 
-    `partial` keeps every design as soon as it is known; under the same `identity` a killed evolution is
-    replayed from it and goes on. A design without results is a row with its error and breaks all limits. It
-    ends before its last generation where it finds no design that is new.
+    Under the same identity a killed evolution is replayed from the journal and goes on. A design without
+    results is a row with its error and breaks all limits. The evolution ends before its last generation where
+    it finds no design that is new.
+
+    Parameters
+    ----------
+    task : Task
+        Variables, objectives and limits.
+    evaluate : Evaluate
+        Function of a design's values that returns its goals.
+    effort : Effort
+        Size of a generation, number of generations, and seed.
+    partial : str or Path
+        Journal of the designs.
+    identity : str
+        Text that must be the same for the journal to count.
+    on_progress : Callable[[], None]
+        Called after each design.
+
+    Returns
+    -------
+    pd.DataFrame
+        Every design tried, in order; columns generation, the variables, the goals and error.
     """
-    known = {tuple(row["design"]): row for row in journal.read(partial, identity)}
+    results_by_design = {tuple(row["design"]): row for row in journal.read(partial, identity)}
     rows: list[tuple[Any, ...]] = []
     algorithm = _algorithm(task, effort)
     with journal.appending(partial, identity) as append:
         while algorithm.has_next():
-            asked = algorithm.ask()
-            if asked is None:
+            offspring = algorithm.ask()
+            if offspring is None:
                 break  # of designs on few steps, no new one is left
-            evaluated = []
-            for parts in asked.get("X"):
+            results = []
+            for parts in offspring.get("X"):
                 design = tuple(
                     variable.value(part) for variable, part in zip(task.variables, parts, strict=True)
                 )
-                if design not in known:
-                    known[design] = _row(evaluate, design, task.goals)
-                    append(known[design])
+                if design not in results_by_design:
+                    results_by_design[design] = _row(evaluate, design, task.goals)
+                    append(results_by_design[design])
                 on_progress()
-                evaluated.append(known[design])
-                values = evaluated[-1]["values"] or [np.nan] * len(task.goals)
-                rows.append((algorithm.n_gen, *design, *values, evaluated[-1][ERROR]))
-            _tell(algorithm, asked, evaluated, task)
+                results.append(results_by_design[design])
+                values = results[-1]["values"] or [np.nan] * len(task.goals)
+                rows.append((algorithm.n_gen, *design, *values, results[-1][ERROR]))
+            _tell(algorithm, offspring, results, task)
     names = [variable.name for variable in task.variables]
     return pd.DataFrame(rows, columns=[GENERATION, *names, *task.goals, ERROR])
 
 
 def feasible(designs: pd.DataFrame, task: Task) -> Mask:
-    """Which designs have results and hold every limit."""
-    held = np.array(designs[ERROR] == "")
+    """Find the designs that have results and hold every limit.
+
+    Parameters
+    ----------
+    designs : pd.DataFrame
+        Table of `evolve`.
+    task : Task
+        Variables, objectives and limits.
+
+    Returns
+    -------
+    (designs,) array of bool
+        True for a feasible design.
+    """
+    is_feasible = np.array(designs[ERROR] == "")
     for name, limit in task.limits:
-        held &= task.sign(name) * (designs[name].to_numpy() - limit) <= 0.0
-    return held
+        is_feasible &= task.sign(name) * (designs[name].to_numpy() - limit) <= 0.0
+    return is_feasible
 
 
 def front(designs: pd.DataFrame, task: Task) -> pd.DataFrame:
-    """The feasible designs that no other beats in every objective, each once, by the first objective."""
+    """Find the Pareto front: the feasible designs that no other beats in every objective.
+
+    Parameters
+    ----------
+    designs : pd.DataFrame
+        Table of `evolve`.
+    task : Task
+        Variables, objectives and limits.
+
+    Returns
+    -------
+    pd.DataFrame
+        Rows of the front, each design once, sorted by the first objective.
+    """
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting  # of the extra `search`
 
     names = [variable.name for variable in task.variables]
-    held = designs[feasible(designs, task)].drop_duplicates(names)
-    if held.empty:
-        return held
-    best = NonDominatedSorting().do(task.costs(held), only_non_dominated_front=True)
-    return held.iloc[np.sort(best)].sort_values(list(task.objectives), kind="stable").reset_index(drop=True)
+    candidates = designs[feasible(designs, task)].drop_duplicates(names)
+    if candidates.empty:
+        return candidates
+    best = NonDominatedSorting().do(task.costs(candidates), only_non_dominated_front=True)
+    return (
+        candidates.iloc[np.sort(best)]
+        .sort_values(list(task.objectives), kind="stable")
+        .reset_index(drop=True)
+    )
 
 
 def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFrame:
-    """Share of the box between the best and the worst of all islands' front that each island has covered.
+    """Compute the share of the objectives' box that the front of each island covers, generation by
+    generation.
 
-    Of all its designs up to each generation; a tenth is added to the box, so that its corners count.
-    Columns: seed, generation, hypervolume. Empty where no design is feasible.
+    The box lies between the best and the worst values of the common front of all islands. A tenth is added to
+    it, so that its corners count. Each share takes all designs of an island up to the generation.
+
+    Parameters
+    ----------
+    islands : Mapping[int, pd.DataFrame]
+        Table of `evolve` by seed.
+    task : Task
+        Variables, objectives and limits.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns seed, generation and hypervolume; empty where no design is feasible.
     """
     from pymoo.indicators.hv import HV  # a library of the extra `search`
 
@@ -152,9 +264,9 @@ def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFram
     box = HV(ref_point=np.full(size, 1.1))
     for seed, designs in islands.items() if len(whole) else ():
         for generation in sorted(designs[GENERATION].unique()):
-            held = front(designs[designs[GENERATION] <= generation], task)
-            parts = (task.costs(held) - ideal) / span
-            rows.append((seed, generation, float(box(parts)) / 1.1**size if len(held) else 0.0))
+            front_designs = front(designs[designs[GENERATION] <= generation], task)
+            parts = (task.costs(front_designs) - ideal) / span
+            rows.append((seed, generation, float(box(parts)) / 1.1**size if len(front_designs) else 0.0))
     return pd.DataFrame(rows, columns=["seed", GENERATION, "hypervolume"])
 
 
@@ -165,8 +277,10 @@ def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) ->
     except FacegearError as error:
         return {"design": design, "values": None, ERROR: str(error).splitlines()[0]}
     if not np.isfinite(objectives).all():
-        missing = next(name for name, value in zip(goals, objectives, strict=True) if not np.isfinite(value))
-        return {"design": design, "values": None, ERROR: f"{missing} is not defined for every sample"}
+        undefined_goal = next(
+            name for name, value in zip(goals, objectives, strict=True) if not np.isfinite(value)
+        )
+        return {"design": design, "values": None, ERROR: f"{undefined_goal} is not defined for every sample"}
     return {"design": design, "values": objectives, ERROR: ""}
 
 
@@ -188,7 +302,7 @@ def _algorithm(task: Task, effort: Effort) -> Any:
     return algorithm
 
 
-def _tell(algorithm: Any, asked: Any, rows: list[dict[str, Any]], task: Task) -> None:
+def _tell(algorithm: Any, offspring: Any, rows: list[dict[str, Any]], task: Task) -> None:
     """Give the algorithm the objectives and by how much limits are broken, 1e9 for what has no results."""
     from pymoo.core.evaluator import Evaluator  # as above
     from pymoo.problems.static import StaticProblem
@@ -196,14 +310,14 @@ def _tell(algorithm: Any, asked: Any, rows: list[dict[str, Any]], task: Task) ->
     size = len(task.objectives)
     signs = np.array([task.sign(name) for name in task.goals])
     limits = np.array([limit for _, limit in task.limits])
-    nothing = ([1e9] * size, [1e9] * (len(limits) + 1))
+    penalty = ([1e9] * size, [1e9] * (len(limits) + 1))
     objectives = [
         (
             signs[:size] * row["values"][:size],
             np.append(signs[size:] * (np.array(row["values"][size:]) - limits), 0.0),
         )
         if row["values"]
-        else nothing
+        else penalty
         for row in rows
     ]
     static = StaticProblem(
@@ -211,5 +325,5 @@ def _tell(algorithm: Any, asked: Any, rows: list[dict[str, Any]], task: Task) ->
         F=np.array([row[0] for row in objectives]),
         G=np.array([row[1] for row in objectives]),
     )
-    Evaluator().eval(static, asked)
-    algorithm.tell(infills=asked)
+    Evaluator().eval(static, offspring)
+    algorithm.tell(infills=offspring)

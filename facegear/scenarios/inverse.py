@@ -29,24 +29,46 @@ class Loosest:
     trials: pd.DataFrame
 
 
-def loosest(sampled: Callable[[float], Array], at_most: float, level: float, max_factor: float) -> Loosest:
-    """The largest scale up to `max_factor` at which the percentile `level` (0 to 1) does not exceed a limit.
+def loosest(
+    sample_results: Callable[[float], Array], at_most: float, level: float, max_factor: float
+) -> Loosest:
+    """Find the largest scale of all deviations at which a percentile does not exceed a limit, by bisection.
 
-    `sampled` gives the results of the same samples at a scale of their deviations, nan where one has none,
-    which counts as above every limit. The percentile is taken to rise with the scale. Raises FacegearError
-    if the limit is exceeded by the machine without any deviation.
+    The percentile is taken to rise with the scale.
+
+    Parameters
+    ----------
+    sample_results : callable
+        Function from a scale to the results (samples,) of the same samples, nan where one has none, which
+        counts as above every limit; scale dimensionless.
+    at_most : float
+        Limit, in the unit of the results.
+    level : float
+        Level of the percentile, a fraction from 0 to 1.
+    max_factor : float
+        Largest scale to try, dimensionless factor.
+
+    Returns
+    -------
+    Loosest
+        The scale, its interval, the percentile there, and all trials.
+
+    Raises
+    ------
+    FacegearError
+        If the limit is exceeded by the machine without any deviation.
     """
-    tried: dict[float, tuple[Estimate, int]] = {}
+    results_by_scale: dict[float, tuple[Estimate, int]] = {}
 
     def holds(scale: float) -> bool:
-        values = sampled(scale)
-        failed = np.isnan(values)
-        tried[scale] = percentile(np.where(failed, np.inf, values), level), int(failed.sum())
-        return bool(tried[scale][0].value <= at_most)  # inf and nan do not hold
+        values = sample_results(scale)
+        is_failed = np.isnan(values)
+        results_by_scale[scale] = percentile(np.where(is_failed, np.inf, values), level), int(is_failed.sum())
+        return bool(results_by_scale[scale][0].value <= at_most)  # inf and nan do not hold
 
     if not holds(0.0):
-        allowed = f"already {tried[0.0][0].value:.6g} without any deviation"
-        raise FacegearError(f"at_most = {at_most:g}: {allowed}")
+        requirement = f"already {results_by_scale[0.0][0].value:.6g} without any deviation"
+        raise FacegearError(f"at_most = {at_most:g}: {requirement}")
     low, high = 0.0, max_factor
     if holds(max_factor):
         low = max_factor
@@ -54,11 +76,11 @@ def loosest(sampled: Callable[[float], Array], at_most: float, level: float, max
         middle = 0.5 * (low + high)
         low, high = (middle, high) if holds(middle) else (low, middle)
     rows = [
-        (scale, answer.value, answer.low, answer.high, failed)
-        for scale, (answer, failed) in sorted(tried.items())
+        (scale, answer.value, answer.low, answer.high, failures)
+        for scale, (answer, failures) in sorted(results_by_scale.items())
     ]
     trials = pd.DataFrame(rows, columns=["scale", "value", "low", "high", "failed"])
-    return Loosest(low, _interval(trials, at_most), tried[low][0], trials)
+    return Loosest(low, _interval(trials, at_most), results_by_scale[low][0], trials)
 
 
 def _interval(trials: pd.DataFrame, at_most: float) -> tuple[float, float]:

@@ -52,16 +52,50 @@ class Population:
 
 
 def samples(population: Population, start: int, count: int) -> Array:
-    """Values (count, causes) of the samples numbered `start` and following."""
+    """Return the values of consecutive samples.
+
+    Parameters
+    ----------
+    population : Population
+        The causes.
+    start : int
+        Number of the first sample.
+    count : int
+        Number of samples.
+
+    Returns
+    -------
+    (count, causes) array
+        Values of the causes, in the unit of each cause.
+    """
     probability = _sobol(len(population.causes), population.seed, start, count)
     return _values(population.causes, _correlated(probability, population.factor))
 
 
 def index_samples(population: Population, start: int, count: int) -> Array:
-    """Values (count, causes) of the samples of Saltelli's design for Sobol indices.
+    """Return the values of consecutive samples of Saltelli's design for Sobol indices.
 
-    Sample s belongs to block s // (d + 2); within its block come the point A, the point B, and A with each
-    single cause taken from B. Sobol indices ask for independent causes. Raises ValueError if they are not.
+    Sample s belongs to block s // (d + 2) with d causes. Within its block come the point A, the point B, and
+    A with each single cause taken from B.
+
+    Parameters
+    ----------
+    population : Population
+        The causes; they must be independent.
+    start : int
+        Number of the first sample.
+    count : int
+        Number of samples.
+
+    Returns
+    -------
+    (count, causes) array
+        Values of the causes, in the unit of each cause.
+
+    Raises
+    ------
+    ValueError
+        If the causes are correlated.
     """
     if population.factor is not None:
         raise ValueError("Sobol indices ask for independent causes")
@@ -78,12 +112,25 @@ def index_samples(population: Population, start: int, count: int) -> Array:
 
 
 def changes(population: Population, values: Sequence[float]) -> dict[str, float]:
-    """Dotted config key -> what is added to its nominal value, for one sample's values (causes,)."""
-    added: dict[str, float] = {}
+    """Return the changes of config keys in one sample.
+
+    Parameters
+    ----------
+    population : Population
+        The causes.
+    values : Sequence[float]
+        Values (causes,) of the sample, in the unit of each cause.
+
+    Returns
+    -------
+    dict[str, float]
+        Increment of the nominal value by dotted config key, in the unit of the key.
+    """
+    increments: dict[str, float] = {}
     for cause, value in zip(population.causes, values, strict=True):
         for key, gain in cause.gains:
-            added[key] = added.get(key, 0.0) + gain * float(value)
-    return added
+            increments[key] = increments.get(key, 0.0) + gain * float(value)
+    return increments
 
 
 def _sobol(dimensions: int, seed: int, start: int, count: int) -> Array:
@@ -102,11 +149,11 @@ def _correlated(probability: Array, factor: Array | None) -> Array:
     if factor is None:
         return probability
     scores = scipy.special.ndtri(probability)
-    mixed = np.zeros_like(scores)
+    correlated_scores = np.zeros_like(scores)
     for row in range(len(factor)):
         for column in range(row + 1):
-            mixed[:, row] += factor[row, column] * scores[:, column]
-    return np.clip(scipy.special.ndtr(mixed), SMALLEST, 1.0 - SMALLEST)
+            correlated_scores[:, row] += factor[row, column] * scores[:, column]
+    return np.clip(scipy.special.ndtr(correlated_scores), SMALLEST, 1.0 - SMALLEST)
 
 
 def _values(causes: tuple[Cause, ...], probability: Array) -> Array:

@@ -1,4 +1,4 @@
-"""What many samples say: percentiles, fractions and Sobol indices, each with its confidence interval."""
+"""Statistics of many samples: percentiles, fractions and Sobol indices, each with its confidence interval."""
 
 from dataclasses import dataclass
 
@@ -21,24 +21,51 @@ class Estimate:
 
 
 def percentile(values: Array, probability: float, confidence: float = 0.95) -> Estimate:
-    """Percentile of a sample, with the interval between order statistics that needs no distribution.
+    """Estimate a percentile, with the distribution-free interval between order statistics.
 
     The interval is that of independent samples; those of a scrambled Sobol sequence lie closer together, so
     it is on the safe side. An end that the sample is too small to bound is infinite.
+
+    Parameters
+    ----------
+    values : (samples,) array
+        Sample, any unit.
+    probability : float
+        Level of the percentile, a fraction from 0 to 1.
+    confidence : float
+        Confidence of the interval, a fraction.
+
+    Returns
+    -------
+    Estimate
+        Percentile and interval in the unit of the values.
     """
-    ordered = np.sort(values)
-    count, tail = ordered.size, 0.5 * (1.0 - confidence)
+    sorted_values = np.sort(values)
+    count, tail = sorted_values.size, 0.5 * (1.0 - confidence)
     binomial = scipy.stats.binom(count, probability)
     low, high = int(binomial.ppf(tail)), int(binomial.ppf(1.0 - tail)) + 1
     return Estimate(
-        float(np.quantile(ordered, probability)),
-        float(ordered[low - 1]) if low > 0 else -np.inf,
-        float(ordered[high - 1]) if high <= count else np.inf,
+        float(np.quantile(sorted_values, probability)),
+        float(sorted_values[low - 1]) if low > 0 else -np.inf,
+        float(sorted_values[high - 1]) if high <= count else np.inf,
     )
 
 
 def fraction_of(hits: Mask, confidence: float = 0.95) -> Estimate:
-    """Share of samples for which something holds, with its interval (Wilson 1927)."""
+    """Estimate the share of samples for which something holds, with its interval (Wilson 1927).
+
+    Parameters
+    ----------
+    hits : (samples,) array of bool
+        True where it holds.
+    confidence : float
+        Confidence of the interval, a fraction.
+
+    Returns
+    -------
+    Estimate
+        Share and interval, fractions.
+    """
     count, counts = hits.size, int(hits.sum())
     part, z = counts / count, float(scipy.special.ndtri(0.5 + 0.5 * confidence))
     whole = 2.0 * (count + z**2)
@@ -50,39 +77,64 @@ def fraction_of(hits: Mask, confidence: float = 0.95) -> Estimate:
 
 @dataclass(frozen=True)
 class SobolIndices:
-    """First-order and total index of each cause; `blocks` of the design were used, `failed` held a NaN."""
+    """First-order and total index of each cause; `blocks` of the design were used, `failed_blocks` held a
+    NaN.
+    """
 
     first: tuple[Estimate, ...]
     total: tuple[Estimate, ...]
     blocks: int
-    failed: int
+    failed_blocks: int
 
 
 def sobol_indices(
     values: Array, causes: int, confidence: float = 0.95, seed: int = 0, resamples: int = RESAMPLES
 ) -> SobolIndices:
-    """Sobol indices of one output from the results (samples,) of Saltelli's design (Saltelli et al. 2010), in
-    its order.
+    """Estimate the Sobol indices of one output from the results of Saltelli's design (Saltelli et al. 2010).
 
     Blocks that hold a failed sample (NaN) are left out and counted. The first of the others are used, as many
     as the largest power of two: SciPy's estimator asks for that. Intervals are bootstrapped over blocks.
-    Raises ValueError where no block is whole.
+
+    Parameters
+    ----------
+    values : (samples,) array
+        Results in the order of the design, any unit.
+    causes : int
+        Number of causes.
+    confidence : float
+        Confidence of the intervals, a fraction.
+    seed : int
+        Seed of the bootstrap.
+    resamples : int
+        Number of resamples of the bootstrap.
+
+    Returns
+    -------
+    SobolIndices
+        First-order and total indices with their intervals, dimensionless.
+
+    Raises
+    ------
+    ValueError
+        If no block is whole.
     """
     blocks = values[: values.size // (causes + 2) * (causes + 2)].reshape(-1, causes + 2)
     whole = np.isfinite(blocks).all(axis=1)
     if not whole.any():
         raise ValueError("no block of the design is whole")
-    kept = blocks[whole][: 2 ** int(np.log2(whole.sum()))]
-    indices = _indices(kept)
+    used_blocks = blocks[whole][: 2 ** int(np.log2(whole.sum()))]
+    indices = _indices(used_blocks)
     draw = np.random.default_rng(seed)
-    resampled = [_indices(kept[draw.integers(0, len(kept), len(kept))]) for _ in range(resamples)]
+    resampled = [
+        _indices(used_blocks[draw.integers(0, len(used_blocks), len(used_blocks))]) for _ in range(resamples)
+    ]
     tail = 0.5 * (1.0 - confidence)
     low, high = np.nanquantile(resampled, [tail, 1.0 - tail], axis=0)
     first, total = (
         tuple(Estimate(*map(float, row)) for row in zip(*parts, strict=True))
         for parts in zip(indices, low, high, strict=True)
     )
-    return SobolIndices(first, total, blocks=len(kept), failed=int((~whole).sum()))
+    return SobolIndices(first, total, blocks=len(used_blocks), failed_blocks=int((~whole).sum()))
 
 
 def _indices(blocks: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Tables of what many samples say of each quantity."""
+"""Tables that summarise many samples of each quantity."""
 
 from collections.abc import Collection, Mapping, Sequence
 
@@ -10,6 +10,9 @@ from facegear.scenarios.chunks import ERROR, SAMPLE
 from facegear.scenarios.statistics import Estimate, fraction_of, percentile, sobol_indices
 
 PERCENTILES, LOW_PERCENTILES = (0.5, 0.95, 0.99), (0.5, 0.05, 0.01)
+"""Levels (fractions) of the percentiles of quantities that are better small, and of those that are better
+large.
+"""
 INDEX_COLUMNS = (
     "quantity",
     "cause",
@@ -22,28 +25,57 @@ INDEX_COLUMNS = (
     "blocks",
     "blocks_failed",
 )
+"""Columns of `index_table`."""
 
 
 def quantities_of(samples: pd.DataFrame, causes: Sequence[str]) -> list[str]:
-    """Columns of a table of samples that hold what was found."""
+    """Return the columns of a table of samples that hold results.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table of samples.
+    causes : Sequence[str]
+        Names of the causes.
+
+    Returns
+    -------
+    list[str]
+        Names of the columns.
+    """
     return [name for name in samples.columns if name not in (SAMPLE, *causes, ERROR)]
 
 
 def percentile_table(
     samples: pd.DataFrame, causes: Sequence[str], confidence: float, better_large: Collection[str] = ()
 ) -> pd.DataFrame:
-    """One row a quantity and percentile: value, and the interval that holds it; empty ends are unbounded.
+    """Tabulate percentiles of every quantity with their confidence intervals.
 
-    Of quantities that are `better_large` the small percentiles. Samples that failed are left out; `samples`
-    counts the others.
+    Samples that failed are left out; column `samples` counts the others.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table of samples.
+    causes : Sequence[str]
+        Names of the causes.
+    confidence : float
+        Confidence of the intervals, a fraction.
+    better_large : Collection[str]
+        Quantities that are better large; their low percentiles are tabulated.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each quantity and percentile; empty ends of the interval are unbounded.
     """
     rows = []
     for name in quantities_of(samples, causes):
         values = samples[name].to_numpy(float)
         values = values[np.isfinite(values)]
-        asked = LOW_PERCENTILES if name in better_large else PERCENTILES
-        for probability in asked if values.size else ():
-            estimate = _bounded(percentile(values, probability, confidence))
+        probabilities = LOW_PERCENTILES if name in better_large else PERCENTILES
+        for probability in probabilities if values.size else ():
+            estimate = _nan_if_unbounded(percentile(values, probability, confidence))
             rows.append((name, 100.0 * probability, *estimate, values.size))
     table = pd.DataFrame(rows, columns=["quantity", "percentile", "value", "low", "high", "samples"])
     numbers = dict.fromkeys(("percentile", "value", "low", "high"), float)
@@ -51,14 +83,27 @@ def percentile_table(
 
 
 def fraction_table(samples: pd.DataFrame, events: dict[str, str], confidence: float) -> pd.DataFrame:
-    """Fraction of the samples that failed, and of those in which a fraction of time or loss is above zero.
+    """Tabulate the fraction of samples that failed, and of those in which a fraction of time or loss is above
+    zero.
 
-    `events`: column -> what it means in words. Columns: what, fraction, low, high, samples.
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table of samples.
+    events : dict[str, str]
+        Name of the event in words by column.
+    confidence : float
+        Confidence of the intervals, a fraction.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns what, fraction, low, high and samples.
     """
-    failed = samples[ERROR].to_numpy() != ""
-    rows = [("cannot be built or computed", failed)]
+    is_failed = samples[ERROR].to_numpy() != ""
+    rows = [("cannot be built or computed", is_failed)]
     rows += [
-        (label, samples.loc[~failed, name].to_numpy(float) > 0.0)
+        (label, samples.loc[~is_failed, name].to_numpy(float) > 0.0)
         for name, label in events.items()
         if name in samples
     ]
@@ -69,14 +114,26 @@ def fraction_table(samples: pd.DataFrame, events: dict[str, str], confidence: fl
     )
 
 
-def sampling_table(samples: pd.DataFrame, missed: Mapping[str, str]) -> pd.DataFrame:
-    """What samples miss that take a part of the hunting cycle, from those computed over the whole of it too.
+def sampling_table(samples: pd.DataFrame, deviation_columns: Mapping[str, str]) -> pd.DataFrame:
+    """Tabulate the error of samples that take a part of the hunting cycle only.
 
-    `missed`: quantity -> column that holds it, nan in the other samples. Columns: quantity, samples,
-    median_missed, largest_missed (sizes); no row for a quantity that was not computed twice.
+    The error comes from those samples that are also computed over the whole cycle.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table of samples.
+    deviation_columns : Mapping[str, str]
+        Column with the error of each quantity, nan in the other samples.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns quantity, samples, median_missed and largest_missed (sizes); no row for a quantity that was
+        not computed twice.
     """
     rows = []
-    for name, column in missed.items():
+    for name, column in deviation_columns.items():
         sizes = samples[column].dropna().abs() if column in samples else pd.Series(dtype=float)
         if not sizes.empty:
             rows.append((name, len(sizes), sizes.median(), sizes.max()))
@@ -84,22 +141,50 @@ def sampling_table(samples: pd.DataFrame, missed: Mapping[str, str]) -> pd.DataF
 
 
 def importance_table(samples: pd.DataFrame, causes: Sequence[str]) -> pd.DataFrame:
-    """Rank correlation (Spearman) of every quantity with every cause; empty where one never changes."""
+    """Tabulate the rank correlation (Spearman) of every quantity with every cause.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table of samples.
+    causes : Sequence[str]
+        Names of the causes.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns quantity, cause and rank_correlation; empty where one never changes.
+    """
     whole = samples[samples[ERROR] == ""]
     rows = []
     for name in quantities_of(samples, causes):
         values = whole[name].to_numpy(float)
-        known = np.isfinite(values)
+        is_finite = np.isfinite(values)
         for cause in causes:
-            given = whole[cause].to_numpy(float)[known]
-            changes = known.sum() > 2 and np.ptp(values[known]) > 0.0 and np.ptp(given) > 0.0
-            rank = scipy.stats.spearmanr(given, values[known]).statistic if changes else np.nan
+            cause_values = whole[cause].to_numpy(float)[is_finite]
+            changes = is_finite.sum() > 2 and np.ptp(values[is_finite]) > 0.0 and np.ptp(cause_values) > 0.0
+            rank = scipy.stats.spearmanr(cause_values, values[is_finite]).statistic if changes else np.nan
             rows.append((name, cause, rank))
     return pd.DataFrame(rows, columns=["quantity", "cause", "rank_correlation"])
 
 
 def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float) -> pd.DataFrame:
-    """Sobol indices of every quantity that changes, from the results of Saltelli's design."""
+    """Tabulate the Sobol indices of every quantity that changes.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Results of Saltelli's design.
+    causes : Sequence[str]
+        Names of the causes.
+    confidence : float
+        Confidence of the intervals, a fraction.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns INDEX_COLUMNS.
+    """
     rows = []
     for name in quantities_of(samples, causes) if len(samples) else ():
         values = samples[name].to_numpy(float)
@@ -108,10 +193,10 @@ def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float)
         indices = sobol_indices(values, len(causes), confidence)
         for cause, first, total in zip(causes, indices.first, indices.total, strict=True):
             ends = (first.value, first.low, first.high, total.value, total.low, total.high)
-            rows.append((name, cause, *ends, indices.blocks, indices.failed))
+            rows.append((name, cause, *ends, indices.blocks, indices.failed_blocks))
     return pd.DataFrame(rows, columns=list(INDEX_COLUMNS))
 
 
-def _bounded(estimate: Estimate) -> tuple[float, float, float]:
+def _nan_if_unbounded(estimate: Estimate) -> tuple[float, float, float]:
     low, high = (end if np.isfinite(end) else np.nan for end in (estimate.low, estimate.high))
     return estimate.value, low, high

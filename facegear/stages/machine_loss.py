@@ -50,8 +50,8 @@ def machine_loss(
     loaded = loaded_pair(ltca, pressure, section, tooth_pair)
     states = list(_states(loaded, replace(inputs, friction=None), duty_loads, strength, speed_rpm))
     content = {
-        "meshes": mesh_loss_table(states, loaded.known, limits_of(section)),
-        "bodies": body_heat_table(states, loaded.known),
+        "meshes": mesh_loss_table(states, loaded.lubrication, limits_of(section)),
+        "bodies": body_heat_table(states, loaded.lubrication),
         "machine": machine_loss_table(states),
     }
     if inputs.friction is not None and response is not None:

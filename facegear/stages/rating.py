@@ -12,9 +12,9 @@ from facegear.errors import ConfigError
 from facegear.geometry.analysis import section_contact_ratio
 from facegear.stages.outcome import Outcome
 from facegear.strength.flank_contacts import flank_contacts
-from facegear.strength.met_flanks import met_by, worst_pressure, worst_root
-from facegear.strength.posed_contacts import duty_stands, posed_of
-from facegear.strength.rating import Rated, rate
+from facegear.strength.paired_flanks import met_by, worst_pressure, worst_root
+from facegear.strength.posed_contacts import duty_contact_poses, posed_of
+from facegear.strength.rating import FailureRating, rate
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
 from facegear.strength.scuffed_flanks import with_scuffing
 
@@ -47,8 +47,8 @@ def rating(
     request, bins = rating_request(strength, design, duty_spectrum), duty_bins(strength)
     contacts = flank_contacts(stress, by_flank)
     at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
-    stands = None if duty_poses is None else duty_stands(duty_poses)
-    ratings: list[Rated] = []
+    stands = None if duty_poses is None else duty_contact_poses(duty_poses)
+    ratings: list[FailureRating] = []
     tables: dict[str, list[pd.DataFrame]] = {}
     for duty in request.duty:
         of_loads = None
@@ -71,10 +71,11 @@ def rating(
     content = {name: pd.concat(parts, ignore_index=True) for name, parts in tables.items()}
     if duty_spectrum is not None and mesh_losses is not None:
         content["safety"] = with_scuffing(content["safety"], duty_spectrum, mesh_losses)
-    worst = min(ratings, key=lambda rated: rated.safety / rated.required)
+    worst = min(ratings, key=lambda rated: rated.safety / rated.required_safety)
     where = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
     text = f"{where}, {worst.failure} ({worst.method})"
     return Outcome(
         content,
-        f"nearest to its limit: {text}, safety {worst.safety:.2f} where {worst.required:g} is required",
+        f"nearest to its limit: {text}, safety {worst.safety:.2f} "
+        f"where {worst.required_safety:g} is required",
     )

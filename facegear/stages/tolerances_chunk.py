@@ -7,7 +7,7 @@ from facegear.config.tolerances import Design
 from facegear.number_format import count_noun
 from facegear.scenarios.sampling import index_samples, samples
 from facegear.stages.outcome import Outcome
-from facegear.variants.sampled import CHECKED, SampledMachine
+from facegear.variants.sampled_machine import CHECKED_SAMPLES, SampledMachine
 
 
 def tolerances_chunk(
@@ -22,8 +22,8 @@ def tolerances_chunk(
 
     A sample that cannot be built or computed is a row with its error. `partial` is a file that keeps finished
     samples, so that a killed chunk goes on after its last one; it counts only for the same config and `code`.
-    The columns MISSED say of the first CHECKED samples what the mesh cycles taken miss, SIMPLIFIED what the
-    few places of the contact that friction is taken at; empty else.
+    The columns MISSED hold, for the first CHECKED_SAMPLES samples, what the mesh cycles taken miss, and
+    SIMPLIFIED what the few points miss that friction is taken at; they are empty else.
     `given`: fields of SampledMachine.
     """
     return chunk_of(SampledMachine.of_stage(**given), design, first, last, partial, code)
@@ -42,8 +42,8 @@ def chunk_of(
     values = draw(machine.causes, first, last - first + 1)
 
     def evaluate(number: int) -> dict[str, float]:
-        return machine.judged(
-            machine.sample(values[number - first]), design == "samples" and number < CHECKED
+        return machine.judge_sample(
+            machine.sample(values[number - first]), design == "samples" and number < CHECKED_SAMPLES
         )
 
     label = f"{design} {first} to {last}"

@@ -15,7 +15,7 @@ from facegear.scenarios.sampling import samples
 from facegear.scenarios.summary import fraction_table, percentile_table, sampling_table
 from facegear.stages.outcome import Outcome
 from facegear.stages.tolerances import CHECKS, EVENTS
-from facegear.variants.sampled import CHECKED, SampledMachine
+from facegear.variants.sampled_machine import CHECKED_SAMPLES, SampledMachine
 
 COLUMNS = (
     *("torque_factor", "speed_rpm", "quantity", "percentile"),
@@ -26,7 +26,7 @@ COLUMNS = (
 def tolerances_map(partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:
     """`load_map` (table): percentiles of every quantity at every torque and speed, COLUMNS; `load_fractions`
     (table): fraction of the machines that fail, open or change their flank there; `load_sampling` (table):
-    what the mesh cycles taken miss there, from CHECKED samples at all loads together or one at each.
+    what the mesh cycles taken miss there, from CHECKED_SAMPLES samples at all loads together or one at each.
 
     The same machines at every load, so that differences between loads are no accident of the samples. The
     mesh stiffness stays that of mesh_stiffness.torque_n_m. `partial`, `code` and `given` as of
@@ -36,7 +36,7 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
     section = machine.section
     asked = section.load_map or LoadMap()
     values, loads = samples(machine.causes, 0, asked.samples), asked.loads(machine.speed_rpm)
-    count, checked = asked.samples * len(loads), max(CHECKED // len(loads), 1)
+    count, checked = asked.samples * len(loads), max(CHECKED_SAMPLES // len(loads), 1)
 
     def at_load(values: Mapping[str, Any], factor: float, speed: float) -> dict[str, Any]:
         off = values["dynamics"]["speed_rpm"] - machine.speed_rpm  # what a cause adds to it
@@ -48,7 +48,7 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
     def evaluate(number: int) -> dict[str, float]:
         load, row = divmod(number, asked.samples)
         loaded = at_load(machine.sample(values[row]), *loads[load])
-        return machine.judged(loaded, row < checked, judges[load])
+        return machine.judge_sample(loaded, row < checked, judges[load])
 
     frame = machine.run(evaluate, range(count), "tolerances over torque and speed", partial, code)
     tables: list[pd.DataFrame] = []

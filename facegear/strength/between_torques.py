@@ -1,4 +1,4 @@
-"""Values solved at some torques, taken to others: power laws of the torque between those solved."""
+"""Interpolate values between solved torques, by power laws of the torque."""
 
 from dataclasses import dataclass
 
@@ -9,13 +9,13 @@ from facegear.arrays import Array, Integers
 SMALLEST, LARGEST = 1.0 / 3.0, 1.0
 """Exponents that a stress can have: pressure of a point contact, and a linear one."""
 FALLS = 0.1
-"""What the exponent is less below the torques solved: it falls with the load, by 0.05 from 800 to 450 N m on
-the paper's pair, so that stress at small torques would be taken for less than it is."""
+"""Decrease of the exponent below the solved torques, dimensionless: it falls with the load, by 0.05 from 800
+to 450 N m on the paper's pair, so that stress at small torques would be underestimated."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """How values at the torques `torques` (t,), N m, rising, go on to others.
+    """Rule by which values at the torques `torques` (t,), N m, rising, continue to others.
 
     `exponents` (t + 1,): below the first torque, between each two neighbours, beyond the last.
     """
@@ -24,10 +24,21 @@ class Scale:
     exponents: Array
 
     def parts(self, torque: Array) -> tuple[Integers, Array, Array]:
-        """Rows i (n,), and factors (n,) of rows i and i + 1 whose sum is the value at torques (n,).
+        """Return the rows and factors that interpolate values.
 
-        In proportion to a power of the torque from both rows, weighted by the logarithm of the torque: exact
-        where values have that exponent. Below the first torque and beyond the last the second factor is 0.
+        Values go in proportion to a power of the torque from both rows, weighted by the logarithm of the
+        torque: exact where values have that exponent.
+
+        Parameters
+        ----------
+        torque : (n,) array
+            Torques, N m.
+
+        Returns
+        -------
+        (n,) array of int, (n,) array, (n,) array
+            Rows i, and dimensionless factors of rows i and i + 1 whose sum is the value. Below the first
+            torque and beyond the last the second factor is 0.
         """
         count = self.torques.size
         row = np.searchsorted(self.torques, torque, side="right")
@@ -39,20 +50,59 @@ class Scale:
         return low, (1.0 - part) * (torque / first) ** power, part * (torque / last) ** power
 
     def at(self, values: Array, torque: float) -> Array:
-        """Values (t, ...) at a torque, (...)."""
-        (row,), (own,), (above,) = self.parts(np.array([torque]))
-        return np.asarray(own * values[row] + (above * values[row + 1] if above > 0.0 else 0.0))
+        """Interpolate values at a torque.
 
-    def solved(self, torque: float) -> bool:
-        """Whether a torque lies within those solved, or is none."""
+        Parameters
+        ----------
+        values : (t, ...) array
+            Values at the solved torques, in any unit.
+        torque : float
+            Torque, N m.
+
+        Returns
+        -------
+        (...) array
+            Values at that torque, in their unit.
+        """
+        (row,), (below,), (above,) = self.parts(np.array([torque]))
+        return np.asarray(below * values[row] + (above * values[row + 1] if above > 0.0 else 0.0))
+
+    def is_solved(self, torque: float) -> bool:
+        """Whether a torque lies within those solved, or is 0.
+
+        Parameters
+        ----------
+        torque : float
+            Torque, N m.
+
+        Returns
+        -------
+        bool
+            True from the first to the last solved torque, and for 0.
+        """
         return bool(torque == 0.0 or self.torques[0] <= torque <= self.torques[-1])
 
 
 def scale(torques: Array, largest: Array, lone: float, beyond: float) -> Scale:
-    """Exponents from the `largest` values (t,) at the torques (t,), between SMALLEST and LARGEST.
+    """Derive the exponents from largest values, between SMALLEST and LARGEST.
 
-    `beyond` that above the last torque. Below the first it is FALLS less than that of the first two, and
-    `lone` where one torque alone was solved.
+    Below the first torque the exponent is FALLS less than that of the first two torques.
+
+    Parameters
+    ----------
+    torques : (t,) array
+        Solved torques, rising, N m.
+    largest : (t,) array
+        Largest value at each torque, in any unit.
+    lone : float
+        Exponent below the first torque where one torque alone was solved, dimensionless.
+    beyond : float
+        Exponent above the last torque, dimensionless.
+
+    Returns
+    -------
+    Scale
+        The rule of interpolation.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         exponents = np.diff(np.log(largest)) / np.diff(np.log(torques))

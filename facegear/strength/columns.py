@@ -61,9 +61,9 @@ SAFETY_COLUMNS = (
     "within_torques_solved",
 )
 SCUFFED_COLUMNS = ("scuffing_safety", "scuffing_margin_k", "smallest_film_ratio", "micropitting_safety")
-"""What the table of safety has more where section lubrication is given, of the running machine's loads."""
+"""Further columns of the table of safety where section lubrication is given (the running machine)."""
 RATED_FLANK = ("body", "gear", "flank", "failure", "method")
-"""What a row of a rating is about."""
+"""Columns that name the subject of a row of a rating."""
 RATING_COLUMNS = (
     *RATED_FLANK,
     "stress_mpa",
@@ -106,9 +106,11 @@ DUTY_LOAD_COLUMNS = (
     "motion",
     "settled",
 )
-"""Of the table of loads in every bin of the duty cycle, a row for each flank of a mesh that carries any."""
+"""Columns of the table of loads in every bin of the duty cycle, a row for each flank of a mesh that carries
+any."""
 DUTY_SPECTRUM_COLUMNS = ("bin", "body", "gear", "flank", "mesh", "fraction", "force_n")
-"""Of the table of forces that the hardest loaded tooth of a body meets in its passages through a mesh."""
+"""Columns of the table of forces that the hardest loaded tooth of a body meets in its passages through a
+mesh."""
 
 RATING_FINITE = tuple(
     name
@@ -163,7 +165,7 @@ STRESS_OVER_SPEED_COLUMNS = (
     "within_torques_solved",
     "worst",
 )
-"""Of the table of stress over speed, a row for each motion known at a speed."""
+"""Columns of the table of stress over speed, a row for each motion known at a speed."""
 STRESS_OVER_SPEED_FINITE = tuple(
     name for name in STRESS_OVER_SPEED_COLUMNS if name not in ("pressure_mpa", "dynamic_factor")
 )

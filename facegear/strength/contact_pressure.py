@@ -29,48 +29,117 @@ class ContactPressure:
     fillet_share: Array
 
     @property
-    def known(self) -> bool:
+    def is_known(self) -> bool:
         """Whether a pressure away from edges is known at any torque."""
         return bool(np.isfinite(self.pressure).any())
 
     def at(self, torque: float) -> float:
-        """Pressure (Pa), nan where none is known.
+        """Interpolate the pressure at a torque.
 
-        A power of the torque between those solved and below them; beyond its root, as of line contact.
+        A power of the torque between those solved and below them; beyond them its root, as in line contact.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        float
+            Pressure away from edges, Pa; nan where none is known.
         """
-        if not self.known:
+        if not self.is_known:
             return np.nan
         on = np.isfinite(self.pressure)
         growth = scale(self.torques[on], self.pressure[on], SMALLEST, 0.5)
         return float(growth.at(self.pressure[on], torque))
 
     def within(self, torque: Array) -> Mask:
-        """Whether torques (n,) lie within those solved."""
+        """Whether torques lie within those solved.
+
+        Parameters
+        ----------
+        torque : (n,) array
+            Torques on the pinion, N m.
+
+        Returns
+        -------
+        (n,) array of bool
+            True from the first to the last solved torque.
+        """
         return (torque >= self.torques[0]) & (torque <= self.torques[-1])
 
     def error_at(self, torque: float) -> float:
-        """Error (Pa) of `at`: the relative one is linear between the torques solved."""
+        """Interpolate the error of the pressure at a torque.
+
+        The relative error is linear between the torques solved.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        float
+            Error of `at`, Pa.
+        """
         on = np.isfinite(self.pressure)
         relative = self.error[on] / self.pressure[on]
         return self.at(torque) * float(np.interp(torque, self.torques[on], relative))
 
     def edge_at(self, torque: float) -> tuple[float, float]:
-        """Line load (N/m) on tip edges and the length (m) of them that carries any.
+        """Interpolate the load on tip edges at a torque.
 
         The load goes as a power of the torque between those solved and below them, and in proportion beyond;
         the length is linear between them and constant beyond.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        float, float
+            Line load on tip edges, N/m, and the length of them that carries any, m.
         """
         growth = scale(self.torques, self.edge_load, 0.5, 1.0)
         length = np.interp(torque, np.append(0.0, self.torques), np.append(0.0, self.edge_length))
         return float(growth.at(self.edge_load, torque)), float(length)
 
     def fillet_at(self, torque: Array) -> Array:
-        """Share of torques (n,) that fillets carry: linear between those solved, constant outside them."""
+        """Interpolate the share of the torque that fillets carry.
+
+        Linear between the torques solved, constant outside them.
+
+        Parameters
+        ----------
+        torque : (n,) array
+            Torques on the pinion, N m.
+
+        Returns
+        -------
+        (n,) array
+            Share of each torque, 0 to 1.
+        """
         return np.interp(torque, self.torques, self.fillet_share)
 
 
 def contact_pressure(by_torque: "pd.DataFrame") -> ContactPressure:
-    """From the table by torque of stage contact."""
+    """Read the contact pressure from the table by torque of stage contact.
+
+    Parameters
+    ----------
+    by_torque : DataFrame
+        Columns torque_n_m, pressure_mpa, pressure_error_mpa, tip_line_load_n_per_mm, tip_length_mm and
+        fillet_share; rows by rising torque.
+
+    Returns
+    -------
+    ContactPressure
+        The same values in SI units.
+    """
     scales = {
         "torque_n_m": 1.0,
         "pressure_mpa": 1e6,

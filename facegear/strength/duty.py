@@ -61,7 +61,24 @@ class FlankDuty:
 
 
 def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool) -> FlankDuty:
-    """Every load of the duty cycle on the teeth of one gear, `turns` times a turn of the pinion."""
+    """Return the loads of the teeth of one gear where the duty cycle gives one torque a bin.
+
+    Parameters
+    ----------
+    gear : str
+        `pinion` or `face_gear`.
+    duty : Sequence[DutyBin]
+        Bins of the duty cycle.
+    turns : float
+        Loads of a tooth for one turn of the pinion, dimensionless number.
+    both_ways : bool
+        Whether both flanks carry every load.
+
+    Returns
+    -------
+    FlankDuty
+        Flank `each` where both flanks carry every load, else flank `drive`.
+    """
     torque = np.array([load.torque for load in duty])
     return FlankDuty(
         body=gear,
@@ -77,20 +94,34 @@ def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool
 def machine_duty(
     spectrum: "pd.DataFrame", duty: Sequence[DutyBin], ratio: float, arm: float
 ) -> tuple[FlankDuty, ...]:
-    """The flanks that carry load in a machine, each with the loads of its own meshes.
+    """Return the loads of every flank that carries load in a machine, each from its own meshes.
 
-    spectrum: columns as DUTY_SPECTRUM_COLUMNS; ratio: turns of a face gear for one of a pinion; arm: torque
-    (N m) on the pinion of a mesh force of 1 N, with the application factor. A tooth meets every mesh of its
-    body once a turn.
+    A tooth meets every mesh of its body once a turn.
+
+    Parameters
+    ----------
+    spectrum : DataFrame
+        Columns as DUTY_SPECTRUM_COLUMNS.
+    duty : Sequence[DutyBin]
+        Bins of the duty cycle.
+    ratio : float
+        Turns of a face gear for one of a pinion, dimensionless.
+    arm : float
+        Torque on the pinion of a mesh force of 1 N, with the application factor, m.
+
+    Returns
+    -------
+    tuple[FlankDuty, ...]
+        Loads of each flank, pinions first.
     """
     turns = {"pinion": 1.0, "face_gear": ratio}
     passes = np.array([entry.speed * entry.time for entry in duty])
     max_force = spectrum.groupby(["body", "flank", "bin"])["force_n"].max()
     flanks = []
     for (body, gear, flank), rows in spectrum.groupby(["body", "gear", "flank"], sort=False):
-        other = "back" if flank == "drive" else "drive"
+        other_flank = "back" if flank == "drive" else "drive"
         bins = rows["bin"].to_numpy() - 1
-        opposite = [max_force.get((body, other, number + 1), 0.0) for number in range(len(duty))]
+        opposite = [max_force.get((body, other_flank, number + 1), 0.0) for number in range(len(duty))]
         flanks.append(
             FlankDuty(
                 body=str(body),

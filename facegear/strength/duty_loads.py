@@ -1,4 +1,4 @@
-"""Mesh forces of a machine in one bin of its duty cycle, and what its flanks and teeth meet of them."""
+"""Mesh forces of a machine in one bin of its duty cycle, and the loads of its flanks and teeth."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -26,11 +26,24 @@ POSITIONS = 64
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """Forces (cycles, positions, 2 meshes) on the flanks of a motion, drive flanks first, N.
+    """Mesh forces of a motion over its cycles.
 
-    even_shares (meshes,): nominal even share of each mesh, N.
-    largest (cycles, flanks): largest force of each cycle, located between the positions, N.
-    turning: the cycles are those of the hunting cycle, each with its own teeth.
+    Attributes
+    ----------
+    layout
+        Layout of the machine.
+    even_shares : (meshes,)
+        Nominal even share of each mesh, N.
+    forces : (cycles, positions, 2 meshes)
+        Forces on the flanks, drive flanks first, N.
+    largest : (cycles, flanks)
+        Largest force of each cycle, located between the positions, N.
+    turning
+        Whether the cycles are those of the hunting cycle, each with its own teeth.
+    motion
+        Label of the motion.
+    is_settled
+        Whether the motion is steady; of a followed motion, whether its start is forgotten.
     """
 
     layout: Layout
@@ -39,35 +52,66 @@ class History:
     largest: Array
     turning: bool
     motion: str
-    settled: bool
+    is_settled: bool
 
 
-def history_of(machine: Machine, speed_rpm: float, known: Settings) -> History:
-    """A machine whose runouts turn is followed through its hunting cycle, any other to its steady state.
+def history_of(machine: Machine, speed_rpm: float, settings: Settings) -> History:
+    """Compute the mesh forces of a machine at a speed.
 
-    Raises NotConverged naming the speed.
+    A machine whose runouts turn is followed through its hunting cycle, any other to its steady state.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine under the torque of the bin.
+    speed_rpm : float
+        Speed of the pinion, rpm.
+    settings : Settings
+        Settings of the integration.
+
+    Returns
+    -------
+    History
+        Forces of all flanks.
+
+    Raises
+    ------
+    NotConverged
+        Naming the speed.
     """
     model, cycles, even = build_model(machine), hunting_length(machine), even_shares(machine)
     layout, flanks = machine.layout, 2 * len(machine.layout.meshes)
     if layout.kinematics.flanks_apart and cycles > 1:
-        run = follow(model, speed_rpm, 0, cycles, POSITIONS, known)
-        kept = run.memory <= FORGOTTEN
+        run = follow(model, speed_rpm, 0, cycles, POSITIONS, settings)
+        is_independent = run.memory <= FORGOTTEN
         forces = run.flank_forces.reshape(-1, POSITIONS, flanks)
-        motion = "followed" if kept else "depends on its past"
-        return History(layout, even, forces, located_by_cycle(forces, False), True, motion, kept)
-    response = simulate(model, speed_rpm, known)
-    both = np.concatenate([np.maximum(response.forces, 0.0), np.maximum(-response.forces, 0.0)], axis=1)
-    forces = both.reshape(response.periods, response.per_period, flanks)
+        motion = "followed" if is_independent else "depends on its past"
+        return History(layout, even, forces, located_by_cycle(forces, False), True, motion, is_independent)
+    response = simulate(model, speed_rpm, settings)
+    flank_forces = np.concatenate(
+        [np.maximum(response.forces, 0.0), np.maximum(-response.forces, 0.0)], axis=1
+    )
+    forces = flank_forces.reshape(response.periods, response.per_period, flanks)
     largest = located_by_cycle(forces, response.motion is Motion.PERIODIC)
-    settled = response.motion is not Motion.NOT_SETTLED
-    return History(layout, even, forces, largest, False, response.label, settled)
+    is_settled = response.motion is not Motion.NOT_SETTLED
+    return History(layout, even, forces, largest, False, response.label, is_settled)
 
 
 def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
-    """Rows of DUTY_LOAD_COLUMNS after the bin's load: every flank of a mesh that carries any.
+    """Yield the rows of DUTY_LOAD_COLUMNS after the bin's load: every flank of a mesh that carries any.
 
     K_gamma is the largest mean of a mesh cycle over the mesh's nominal even share, K_v the largest force over
     that mean.
+
+    Parameters
+    ----------
+    history : History
+        Forces of the machine in the bin.
+
+    Yields
+    ------
+    tuple
+        Values of the columns from `mesh` on.
     """
     layout, largest = history.layout, history.largest.max(axis=0)
     means = history.forces.mean(axis=1)
@@ -78,26 +122,37 @@ def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
             *(layout.mesh_names[mesh], FLANKS[side]),
             *(float(means[:, flank].mean()), float(largest[flank])),
             *(max_force / history.even_shares[mesh], float(largest[flank]) / max_force),
-            *(history.motion, history.settled),
+            *(history.motion, history.is_settled),
         )
 
 
 def spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
-    """Body, gear, flank, mesh, fraction and force of every class of passages."""
+    """Yield body, gear, flank, mesh, fraction and force of every class of passages.
+
+    Parameters
+    ----------
+    history : History
+        Forces of the machine in the bin.
+
+    Yields
+    ------
+    tuple
+        Values of DUTY_SPECTRUM_COLUMNS after `bin`.
+    """
     layout, passages = history.layout, passage_forces(history.largest)
     pinions, floor = len(layout.pinions), NO_LOAD * passages.max()
     if history.turning:  # on to where the same two teeth meet again
         passages = np.tile(passages, (lcm(layout.pinion_teeth, layout.gear_teeth) // len(passages), 1))
     cycles = np.arange(len(passages), dtype=float)
-    met = np.array([teeth_in_mesh(layout, mesh, cycles) for mesh in range(len(layout.meshes))])
+    tooth_positions = np.array([teeth_in_mesh(layout, mesh, cycles) for mesh in range(len(layout.meshes))])
     for body, name in enumerate(layout.body_names):
         gear, teeth = ("pinion", layout.pinion_teeth) if body < pinions else ("face_gear", layout.gear_teeth)
-        own = [mesh for mesh, (i, g) in enumerate(layout.meshes) if body in (i, pinions + g)]
-        numbers = np.floor(met[own, int(gear == "face_gear")]).T.astype(np.int64) % teeth
+        meshes = [mesh for mesh, (i, g) in enumerate(layout.meshes) if body in (i, pinions + g)]
+        numbers = np.floor(tooth_positions[meshes, int(gear == "face_gear")]).T.astype(np.int64) % teeth
         for side, flank in enumerate(FLANKS):
-            mine = passages[:, [side * len(layout.meshes) + mesh for mesh in own]]
+            mine = passages[:, [side * len(layout.meshes) + mesh for mesh in meshes]]
             forces = hardest_tooth(mine, numbers) if history.turning else list(mine.T)
-            for mesh, force in zip(own, forces, strict=True):
+            for mesh, force in zip(meshes, forces, strict=True):
                 for fraction, level in classes(force):
                     if level > floor:
                         yield name, gear, flank, layout.mesh_names[mesh], fraction, level

@@ -41,14 +41,21 @@ def coarser_roots(
 
     Parameters
     ----------
-    design
+    design : PairDesign
         The pair that is in contact.
-    materials
-        Of each body.
-    sizes, plan
-        Of the mesh and the contact analysis that `roots` are from.
-    roots
+    materials : Mapping[Body, Material]
+        Material of each body.
+    sizes : MeshSizes
+        Mesh sizes that `roots` are from.
+    plan : ContactPlan
+        Contact analysis that `roots` are from.
+    roots : Mapping[Body, RootStress]
         Root stress of each body.
+
+    Returns
+    -------
+    dict[Body, RootStress]
+        Root stress of each body by the coarser mesh.
 
     Raises
     ------
@@ -60,29 +67,40 @@ def coarser_roots(
         body: gear_flank(design, body, wide, materials[body], plan, section=False) for body in BODIES
     }
     torques = sorted({float(ends) for root in roots.values() for ends in root.torques[[0, -1]]})
-    positions = sorted({place for root in roots.values() for place in _worst_positions(root)})
+    positions = sorted({position for root in roots.values() for position in _worst_positions(root)})
     model = contact_model(design, flanks["pinion"], flanks["face_gear"])
     results = loaded_contact(model, positions, torques, plan.options)
     loads = load_arrays([results], np.zeros((2, 2), dtype=np.int64))
     return {body: passing(body, flank, loads) for body, flank in flanks.items()}
 
 
-def face_error(own: RootStress, coarser: RootStress) -> float:
+def face_error(root: RootStress, coarser: RootStress) -> float:
     """Estimate the relative error of the largest tension by Richardson's rule.
 
     The difference at the places where stress is near its largest counts, not that of the largest values:
-    these lie at gauges, which stand elsewhere on another mesh, and may be alike by chance. nan where the face
-    has too few elements for planes twice as far apart.
+    these lie at gauges, which stand elsewhere on another mesh, and may agree by chance.
+
+    Parameters
+    ----------
+    root : RootStress
+        Root stress by the mesh whose error is estimated.
+    coarser : RootStress
+        Root stress with twice the distance of planes along the face.
+
+    Returns
+    -------
+    float
+        Error, relative; nan where the face has too few elements for planes twice as far apart.
     """
-    if coarser.along.size >= own.along.size:
+    if coarser.along.size >= root.along.size:
         return float("nan")
-    within = np.isin(_positions(own), _positions(coarser))
+    within = np.isin(_positions(root), _positions(coarser))
     largest = 0.0
     for row, torque in enumerate(coarser.torques):
-        at = int(np.argmin(np.abs(own.torques - torque)))
-        fine = _along_face(own.stress[at, within])
-        coarse = np.interp(own.along, coarser.along, _along_face(coarser.stress[row]))
-        inside = (own.along >= coarser.along[0]) & (own.along <= coarser.along[-1])
+        at = int(np.argmin(np.abs(root.torques - torque)))
+        fine = _along_face(root.stress[at, within])
+        coarse = np.interp(root.along, coarser.along, _along_face(coarser.stress[row]))
+        inside = (root.along >= coarser.along[0]) & (root.along <= coarser.along[-1])
         near = (fine >= NEAR * fine.max()) & inside
         largest = max(largest, float(np.abs(coarse - fine).max(where=near, initial=0.0) / fine.max()))
     return SAFETY * largest / (2.0**ORDER - 1.0)
@@ -101,4 +119,4 @@ def _positions(root: RootStress) -> Array:
 def _worst_positions(root: RootStress) -> set[float]:
     """Positions in the pitch where tension is largest at the smallest and at the largest torque."""
     worst = {int(root.stress[row, :, 0].max(axis=(1, 2)).argmax()) for row in (0, -1)}
-    return {float(_positions(root)[place]) for place in worst}
+    return {float(_positions(root)[index]) for index in worst}

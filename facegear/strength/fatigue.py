@@ -11,23 +11,48 @@ LIMIT_RELIABILITY = 0.99
 """Reliability for which the limits of the standard hold: one failure in a hundred."""
 
 
-def damage(stress: Array, cycles: Array, allowed: float, life: Life) -> Array:
-    """Damage of each bin of a duty cycle, same shape: cycles over those allowed at its stress.
+def damage(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> Array:
+    """Compute the damage of each bin of a duty cycle: cycles over those allowed at its stress.
 
-    stress (Pa) and cycles by bin; allowed: stress (Pa) that may be repeated for ever before life factors.
-    Infinite where a stress is above static strength.
+    Parameters
+    ----------
+    stress : (bins,) array
+        Stress, Pa.
+    cycles : (bins,) array
+        Number of cycles.
+    allowed_stress : float
+        Stress that may be repeated for ever before life factors, Pa.
+    life : Life
+        Life factors of the material.
+
+    Returns
+    -------
+    (bins,) array
+        Damage, dimensionless; infinite where a stress is above static strength.
     """
-    permitted = life.allowed_cycles(stress / allowed)
+    permitted = life.allowed_cycles(stress / allowed_stress)
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(cycles > 0.0, cycles / permitted, 0.0)
     return np.asarray(shares, dtype=float)
 
 
 def reliability(total: float, shape: float | None) -> float:
-    """Share of the gears that survive Miner's sum `total`, by a Weibull distribution of lives from 0.
+    """Compute the share of the gears that survive, by a Weibull distribution of lives from 0.
 
-    Sum 1 is the life that LIMIT_RELIABILITY of them reach. nan without a shape, and for a sum of 0: below
-    every limit more than LIMIT_RELIABILITY survive, but the distribution of lives does not say how many.
+    Sum 1 is the life that LIMIT_RELIABILITY of the gears reach. Below every limit more than LIMIT_RELIABILITY
+    survive, but the distribution of lives does not say how many.
+
+    Parameters
+    ----------
+    total : float
+        Miner's sum, dimensionless.
+    shape : float or None
+        Shape of the Weibull distribution, dimensionless; None where it is not known.
+
+    Returns
+    -------
+    float
+        Share, 0 to 1; nan without a shape, and for a sum of 0.
     """
     if shape is None or total == 0.0:
         return nan

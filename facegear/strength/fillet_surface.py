@@ -10,13 +10,24 @@ from facegear.strength.columns import FILLETS
 def stress_surface(
     arrays: Arrays,
 ) -> tuple[Array, dict[str, Integers], dict[str, Array]]:
-    """Points (n, 3) m in their body frames, cells, and fields (n,) from ROOT_STRESS_ARRAYS.
+    """Return the fillets as a surface with fields of stress.
 
-    Largest and smallest stress (Pa) over the passage at each torque; `body` 0 pinion, 1 face gear; `fillet` 0
-    below the loaded flank, 1 below the other.
+    Fields are the largest and smallest stress (Pa) over the passage at each torque; `body` 0 pinion, 1 face
+    gear; `fillet` 0 below the loaded flank, 1 below the other.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        ROOT_STRESS_ARRAYS.
+
+    Returns
+    -------
+    (n, 3) array, dict, dict
+        Points in their body frames, m; cells, (cells, 4) indices of points under `quad`; fields (n,) by name,
+        Pa or dimensionless.
     """
     points, cells, start = [], [], 0
-    gathered: dict[str, list[Array]] = {}
+    parts_by_name: dict[str, list[Array]] = {}
     for number, body in enumerate(BODIES):
         position, stress = arrays[f"{body}_position_m"], arrays[f"{body}_stress_pa"]
         down, along = position.shape[1:3]
@@ -31,6 +42,6 @@ def stress_surface(
             fields[f"largest_pa_at_{torque:g}_n_m"] = stress[row].max(axis=0).ravel()
             fields[f"smallest_pa_at_{torque:g}_n_m"] = stress[row].min(axis=0).ravel()
         for name, values in fields.items():
-            gathered.setdefault(name, []).append(values)
-    joined = {name: np.concatenate(parts) for name, parts in gathered.items()}
-    return np.concatenate(points), {"quad": np.concatenate(cells)}, joined
+            parts_by_name.setdefault(name, []).append(values)
+    fields_by_name = {name: np.concatenate(parts) for name, parts in parts_by_name.items()}
+    return np.concatenate(points), {"quad": np.concatenate(cells)}, fields_by_name

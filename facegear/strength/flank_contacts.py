@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class FlankContact:
-    """What a contact does to its teeth at any torque of the pinion.
+    """Effects of a contact on its teeth at any torque of the pinion.
 
     Attributes
     ----------
@@ -44,15 +44,38 @@ class FlankContact:
         """Largest tension of each body at torques and places in the mesh cycle."""
         return {body: TensionHistory(root) for body, root in self.roots.items()}
 
-    def solved(self, torque: float) -> bool:
-        """Whether a torque (N m) lies within those of the contact analysis."""
-        return next(iter(self.roots.values())).scale.solved(torque)
+    def is_solved(self, torque: float) -> bool:
+        """Whether a torque lies within those of the contact analysis.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        bool
+            True from the first to the last solved torque, and for 0.
+        """
+        return next(iter(self.roots.values())).scale.is_solved(torque)
 
 
 def flank_contacts(stress: Arrays, by_flank: "pd.DataFrame") -> dict[tuple[str, str], FlankContact]:
-    """By gear and flank, from ROOT_STRESS_ARRAYS and the contact's table by flank.
+    """Return the contact of each gear's drive and back flank.
 
     Contacts with the same assembly errors are the same object.
+
+    Parameters
+    ----------
+    stress : Arrays
+        ROOT_STRESS_ARRAYS.
+    by_flank : DataFrame
+        The contact's table by flank.
+
+    Returns
+    -------
+    dict[tuple[str, str], FlankContact]
+        Contacts by gear (upper, lower) and flank (drive, back).
     """
     tables = dict(iter(by_flank.sort_values("torque_n_m").groupby(["gear", "flank"])))
     by_variant: dict[int, FlankContact] = {}
@@ -72,14 +95,39 @@ def flank_contacts(stress: Arrays, by_flank: "pd.DataFrame") -> dict[tuple[str, 
 def contacts_of(
     mesh: str, contacts: Mapping[tuple[str, str], FlankContact], gears: Sequence[str]
 ) -> dict[str, FlankContact]:
-    """Contacts by flank of a mesh, named `pinion/gear`, of a machine with these `gears`.
+    """Return the contacts of a mesh by flank.
 
     A gear alone is the upper one, whatever the machine calls it.
+
+    Parameters
+    ----------
+    mesh : str
+        Name of the mesh, `pinion/gear`.
+    contacts : Mapping[tuple[str, str], FlankContact]
+        Contacts by gear and flank.
+    gears : Sequence[str]
+        Gears of the machine.
+
+    Returns
+    -------
+    dict[str, FlankContact]
+        Contacts by flank.
     """
     gear = gears[0] if len(gears) == 1 else mesh.rsplit("/", 1)[1]
     return {flank: contacts[gear, flank] for flank in FLANKS}
 
 
-def largest_pressure(loaded: Iterable[tuple[FlankContact, float]]) -> float:
-    """Largest pressure (Pa) of contacts at torques (N m), of those whose edges do not carry all; else nan."""
-    return float(np.fmax.reduce([contact.pressure.at(torque) for contact, torque in loaded]))
+def largest_pressure(loads: Iterable[tuple[FlankContact, float]]) -> float:
+    """Return the largest pressure of contacts whose edges do not carry all load.
+
+    Parameters
+    ----------
+    loads : Iterable[tuple[FlankContact, float]]
+        Contacts, each with its torque on the pinion, N m.
+
+    Returns
+    -------
+    float
+        Pressure, Pa; nan where the edges of all contacts carry all load.
+    """
+    return float(np.fmax.reduce([contact.pressure.at(torque) for contact, torque in loads]))

@@ -18,18 +18,38 @@ class Life:
     factors: tuple[float, ...]
 
     def factor(self, cycles: Array | float) -> Array:
-        """Life factor at numbers of cycles, same shape."""
+        """Return the life factor at numbers of cycles.
+
+        Parameters
+        ----------
+        cycles : (...) array or float
+            Number of cycles.
+
+        Returns
+        -------
+        (...) array
+            Life factor, dimensionless, in the shape of `cycles`.
+        """
         at = np.log(np.maximum(np.asarray(cycles, dtype=float), self.cycles[0]))
         return np.exp(np.interp(at, np.log(self.cycles), np.log(self.factors)))
 
     def allowed_cycles(self, factor: Array | float) -> Array:
-        """Cycles that a stress of `factor` times the limit may be repeated, same shape.
+        """Return how often a stress may be repeated.
 
-        0 above static strength; infinite at or below the factor of the last point.
+        Parameters
+        ----------
+        factor : (...) array or float
+            Stress over the limit, dimensionless.
+
+        Returns
+        -------
+        (...) array
+            Number of cycles, in the shape of `factor`: 0 above static strength, infinite at or below the
+            factor of the last point.
         """
         level = np.asarray(factor, dtype=float)
-        falling = np.log(self.factors[::-1])
-        cycles = np.exp(np.interp(np.log(np.maximum(level, 1e-300)), falling, np.log(self.cycles[::-1])))
+        log_factors = np.log(self.factors[::-1])
+        cycles = np.exp(np.interp(np.log(np.maximum(level, 1e-300)), log_factors, np.log(self.cycles[::-1])))
         return np.where(level > self.factors[0], 0.0, np.where(level <= self.factors[-1], np.inf, cycles))
 
 

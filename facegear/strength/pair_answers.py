@@ -1,4 +1,4 @@
-"""What a tooth pair in contact answers for at any load: transmission error, pressure, root stress."""
+"""Transmission error, pressure and root stress of a tooth pair in contact at any load."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

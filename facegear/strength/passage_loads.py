@@ -13,31 +13,63 @@ STEEP = 10.0
 
 
 def passage_forces(largest: Array) -> Array:
-    """Largest force in every mesh cycle and the one after it, (cycles, flanks).
+    """Return the largest force in every mesh cycle and the one after it.
 
-    largest (cycles, flanks): largest force of each mesh cycle, N, not negative. A tooth is in mesh for about
-    two mesh cycles; the last one is followed by the first.
+    A tooth is in mesh for about two mesh cycles; the last one is followed by the first.
+
+    Parameters
+    ----------
+    largest : (cycles, flanks) array
+        Largest force of each mesh cycle, N, not negative.
+
+    Returns
+    -------
+    (cycles, flanks) array
+        Largest force of each passage, N.
     """
     return np.maximum(largest, np.roll(largest, -1, axis=0))
 
 
-def hardest_tooth(passages: Array, met: Integers) -> list[Array]:
-    """Forces (n,) that the hardest loaded tooth of a body meets in each of its meshes.
+def hardest_tooth(passages: Array, tooth_numbers: Integers) -> list[Array]:
+    """Return the forces that the hardest loaded tooth of a body meets in each of its meshes.
 
-    passages (cycles, meshes) on one flank, N; met (cycles, meshes): the tooth that is in mesh. The sum of
-    the forces to the power STEEP decides.
+    The sum of the forces to the power STEEP decides which tooth that is.
+
+    Parameters
+    ----------
+    passages : (cycles, meshes) array
+        Forces on one flank, N.
+    tooth_numbers : (cycles, meshes) array of int
+        Index of the tooth that is in mesh.
+
+    Returns
+    -------
+    list of (n,) array
+        Forces in each mesh, N.
     """
     scale = passages.max()
-    harm = np.bincount(met.ravel(), weights=(passages / scale if scale > 0.0 else passages).ravel() ** STEEP)
+    harm = np.bincount(
+        tooth_numbers.ravel(), weights=(passages / scale if scale > 0.0 else passages).ravel() ** STEEP
+    )
     worst = int(np.argmax(harm))
-    return [column[teeth == worst] for column, teeth in zip(passages.T, met.T, strict=True)]
+    return [column[teeth == worst] for column, teeth in zip(passages.T, tooth_numbers.T, strict=True)]
 
 
 def classes(forces: Array) -> Iterator[tuple[float, float]]:
-    """(share, force) of the passages (n,) of one flank, from the largest to the smallest force.
+    """Sort the passages of one flank into classes, from the largest to the smallest force.
 
     Each class has the largest force of its passages, so that its damage is never less than theirs.
+
+    Parameters
+    ----------
+    forces : (n,) array
+        Force of each passage, N.
+
+    Yields
+    ------
+    float, float
+        Share of the passages, 0 to 1, and force, N.
     """
-    ordered = np.sort(forces)[::-1]
-    for part in np.array_split(ordered, min(CLASSES, np.unique(ordered).size)):
-        yield part.size / ordered.size, float(part[0])
+    sorted_forces = np.sort(forces)[::-1]
+    for part in np.array_split(sorted_forces, min(CLASSES, np.unique(sorted_forces).size)):
+        yield part.size / sorted_forces.size, float(part[0])

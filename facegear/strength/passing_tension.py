@@ -21,7 +21,7 @@ from facegear.strength.between_torques import scale
 from facegear.strength.root_stress import LONE, down_the_fillet
 
 FIRST = 16
-"""Places whose stress is superposed first, those with the largest bounds."""
+"""Number of places whose stress is superposed first, those with the largest bounds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +31,11 @@ class PassingTension:
     Attributes
     ----------
     body
-        pinion or face_gear.
+        `pinion` or `face_gear`.
     flank_nodes
-        Nodes of the contact surface, before refinement, that belong to the flank.
+        Number of nodes of the contact surface, before refinement, that belong to the flank.
     readings : (2 d + 1, 2, a, b, c)
-        As in `FlankCompliance`, by fillet, gauges down it and along the face.
+        Readings of `FlankCompliance`, by fillet, gauges down it and along the face.
     bounds : (2, 2 d + 1, c, 2 b)
         Largest stress (Pa) in a plane of a fillet by a unit force on a node, and by one that pulls.
     """
@@ -47,7 +47,25 @@ class PassingTension:
 
     @classmethod
     def of_flank(cls, body: str, flank: GearFlank) -> "PassingTension":
-        """Of a flank with gauges. Raises InvalidInput where its fillets carry none."""
+        """Prepare the readings and bounds of a flank with gauges.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+        flank : GearFlank
+            The flank.
+
+        Returns
+        -------
+        PassingTension
+            Readings and their bounds.
+
+        Raises
+        ------
+        InvalidInput
+            Where the fillets carry no gauges.
+        """
         if flank.gauges is None:
             raise InvalidInput("gauges on the fillets", False, "true, for root stress")
         readings = flank.compliance.readings
@@ -56,9 +74,19 @@ class PassingTension:
         return cls(body, flank.side.flank_rows * flank.side.shape[1], readings, bounds)
 
     def under(self, loads: Arrays) -> Callable[[float], float]:
-        """Largest stress (Pa) on either fillet over the passage and the face, at a torque (N m).
+        """Return the largest stress on either fillet over the passage and the face, as a function of torque.
 
-        `loads`: LOAD_ARRAYS of one variant. What presses on the body's own fillet is left out.
+        Forces on the body's own fillet are left out.
+
+        Parameters
+        ----------
+        loads : Arrays
+            LOAD_ARRAYS of one variant.
+
+        Returns
+        -------
+        Callable[[float], float]
+            Stress (Pa) at a torque (N m).
         """
         by_tooth = loads_by_tooth(loads, self.body, self.flank_nodes)
         torques, count = np.unique(loads["torque_n_m"]), np.unique(loads["position"]).size
@@ -73,7 +101,7 @@ class PassingTension:
             first = int(np.clip(np.searchsorted(torques, torque) - 1, 0, max(torques.size - 2, 0)))
             near = range(first, min(first + 2, torques.size))
             ends = [force(row) for row in near]
-            bounds = [_bounded(end, teeth, self.bounds) for end in ends]
+            bounds = [_stress_bounds(end, teeth, self.bounds) for end in ends]
             stress = np.array(
                 [
                     self._largest(end, teeth, bound, splined=False)
@@ -81,27 +109,27 @@ class PassingTension:
                 ]
             )
             growth = scale(torques[list(near)], stress, LONE, 1.0)
-            (row,), (own,), (above,) = growth.parts(np.array([torque]))
-            there = own * ends[row] + (above * ends[row + 1] if above > 0.0 else 0.0 * ends[row])
+            (row,), (below,), (above,) = growth.parts(np.array([torque]))
+            force_at_torque = below * ends[row] + (above * ends[row + 1] if above > 0.0 else 0.0 * ends[row])
             # neither factor is negative: bounds add up as forces do
-            bound = own * bounds[row] + (above * bounds[row + 1] if above > 0.0 else 0.0)
-            return self._largest(there, teeth, bound, splined=True)
+            bound = below * bounds[row] + (above * bounds[row + 1] if above > 0.0 else 0.0)
+            return self._largest(force_at_torque, teeth, bound, splined=True)
 
         return largest
 
     def _largest(self, force: sp.csr_matrix, teeth: Integers, bounds: Array, splined: bool) -> float:
-        """Of the gauges, or of the splines through them, by forces (teeth positions, c) N.
+        """Largest stress of the gauges, or of the splines through them, by forces (teeth positions, c) N.
 
-        bounds: no stress is larger, by tooth, position and plane as `_bounded` has them.
+        No stress is larger than `bounds`, by tooth, position and plane as `_stress_bounds` returns them.
         """
         left, largest = bounds.ravel().copy(), -np.inf
         while (above := np.flatnonzero(left > largest)).size:
             if above.size > FIRST:
                 above = above[np.argpartition(-left[above], FIRST)[:FIRST]]
-            places = np.stack(np.unravel_index(above, bounds.shape), axis=1)
-            stress = np.empty((len(places), self.readings.shape[2]))
+            indices = np.stack(np.unravel_index(above, bounds.shape), axis=1)
+            stress = np.empty((len(indices), self.readings.shape[2]))
             forces = force.indptr, force.indices, force.data, teeth
-            strength.superpose(*forces, self.readings, places, stress)
+            strength.superpose(*forces, self.readings, indices, stress)
             if splined:
                 stress = down_the_fillet(stress[:, :, None])[..., 0]
             largest, left[above] = max(largest, float(stress.max())), -np.inf
@@ -116,7 +144,7 @@ def _bounds(stress: Array) -> Array:
     return np.ascontiguousarray(largest.reshape(-1, largest.shape[-1]).T)
 
 
-def _bounded(force: sp.csr_matrix, teeth: Integers, bounds: Array) -> Array:
+def _stress_bounds(force: sp.csr_matrix, teeth: Integers, bounds: Array) -> Array:
     """Bounds (t, positions, 2 b) of the stress of all teeth from the one before the first of the loaded
     `teeth` to the one after the last, by forces (teeth positions, c) N.
     """

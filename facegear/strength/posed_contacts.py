@@ -1,7 +1,7 @@
-"""Root stress and pressure of every mesh of a machine whose teeth stand where its own forces put them.
+"""Root stress and pressure of every mesh of a machine in the loaded position of its bodies.
 
-The flank that carries at rest has contact solved at its pose. The other flank, and every flank under another
-load of the machine, has that contact times what the response surface over pose says of the change.
+The flank that carries load at rest has contact solved at its pose. The other flank, and every flank under
+another load of the machine, has that contact times the ratio that the response surface over pose gives.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -25,29 +25,48 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PRESSURE = "pressure_pa"
+"""Name of the pressure, Pa, on the response surface."""
 ROOTS: dict[str, str] = {body: f"{body}_root_pa" for body in BODIES}
+"""Names of the root stress of each body, Pa, on the response surface."""
 STRESSES = (PRESSURE, *ROOTS.values())
 """Quantities of the surface that are stresses."""
 
 Factor = Callable[[Array], Array]
-"""Of a stress at torques (n,) N m on the pinion."""
+"""Function that returns the factor of a stress at torques (n,) N m on the pinion."""
 
 
 @dataclass(frozen=True)
-class Stand:
-    """Where the unloaded contact of a flank stands along the pinion (m), and its error of the shaft angle
-    (rad).
+class ContactPose:
+    """Pose of the unloaded contact of a flank.
+
+    `path`: position along the pinion, m. `angle`: error of the shaft angle, rad.
     """
 
     path: float
     angle: float
 
 
-def change(surface: PoseSurface, quantity: str, start: Stand, end: Stand) -> Factor:
-    """By how much a quantity is more at one stand than at another.
+def stress_ratio(surface: PoseSurface, quantity: str, start: ContactPose, end: ContactPose) -> Factor:
+    """Return the ratio of a quantity at one contact pose to that at another.
 
-    Torques beyond the surface's count as its last, paths beyond its nodes as the nearest. nan where the
-    surface does not know the quantity, as of pressure where edges carry all.
+    Torques beyond the surface's count as its last, paths beyond its nodes as the nearest.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Response surface over pose.
+    quantity : str
+        Name of the quantity: PRESSURE or one of ROOTS.
+    start : ContactPose
+        Pose of the denominator.
+    end : ContactPose
+        Pose of the numerator.
+
+    Returns
+    -------
+    Factor
+        Ratio at torques (n,) N m on the pinion; nan where the surface does not know the quantity, for example
+        pressure where edges carry all.
     """
     if quantity not in surface.values:
         return lambda torque: np.full(torque.shape, np.nan)
@@ -65,22 +84,50 @@ def change(surface: PoseSurface, quantity: str, start: Stand, end: Stand) -> Fac
     return lambda torque: np.asarray(np.exp(over(np.log(np.clip(torque, torques[0], torques[-1])))))
 
 
-def changed(contact: FlankContact, factors: Mapping[str, Factor]) -> FlankContact:
-    """A contact whose stresses are more by factors of the torque, by STRESSES."""
+def scale_contact(contact: FlankContact, factors: Mapping[str, Factor]) -> FlankContact:
+    """Return a contact whose stresses are multiplied by factors of the torque.
+
+    Parameters
+    ----------
+    contact : FlankContact
+        The contact.
+    factors : Mapping[str, Factor]
+        Factor of each of STRESSES.
+
+    Returns
+    -------
+    FlankContact
+        The scaled contact.
+    """
     pressure = contact.pressure
     by_torque = factors[PRESSURE](pressure.torques)
-    scaled = replace(pressure, pressure=pressure.pressure * by_torque, error=pressure.error * by_torque)
+    scaled_pressure = replace(
+        pressure, pressure=pressure.pressure * by_torque, error=pressure.error * by_torque
+    )
     roots = {
         body: replace(
             root, stress=root.stress * factors[ROOTS[body]](root.torques)[:, None, None, None, None]
         )
         for body, root in contact.roots.items()
     }
-    return FlankContact(roots, scaled)
+    return FlankContact(roots, scaled_pressure)
 
 
 def root_arrays_of(number: int, roots: Mapping[str, RootStress]) -> dict[str, AnyArray]:
-    """Root stress of one contact, to be stored beside others."""
+    """Return the root stress of one contact as arrays that are stored beside those of others.
+
+    Parameters
+    ----------
+    number : int
+        Number of the contact, from 0.
+    roots : Mapping[str, RootStress]
+        Root stress of each body.
+
+    Returns
+    -------
+    dict[str, array]
+        Arrays by name, in SI units, with the shapes (...) of `RootStress`.
+    """
     arrays: dict[str, AnyArray] = {f"contact{number}_torque_n_m": roots[BODIES[0]].torques}
     for body, root in roots.items():
         arrays[f"contact{number}_{body}_passage"] = root.passage
@@ -94,7 +141,20 @@ def root_arrays_of(number: int, roots: Mapping[str, RootStress]) -> dict[str, An
 
 
 def solved_contacts(arrays: Arrays, by_torque: "pd.DataFrame") -> list[FlankContact]:
-    """Contacts by number, from what `root_arrays_of` gives and their tables by torque."""
+    """Restore the contacts from the arrays of `root_arrays_of` and their tables by torque.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays of all contacts.
+    by_torque : DataFrame
+        Table by torque of stage contact with a column `contact`.
+
+    Returns
+    -------
+    list[FlankContact]
+        Contacts by number.
+    """
     tables = dict(iter(by_torque.drop_duplicates(["contact", "torque_n_m"]).groupby("contact")))
     contacts = []
     for number in range(len(tables)):
@@ -120,72 +180,129 @@ class PosedContacts:
     Attributes
     ----------
     contacts
-        By mesh, then by flank.
-    stands
-        Where they stand, by mesh and flank.
-    carrying
-        The flank of each mesh that carries at rest, `drive` where none does.
+        Contacts by mesh, then by flank.
+    contact_poses
+        Pose of each contact, by mesh and flank.
+    loaded_flanks
+        Flank of each mesh that carries load at rest, `drive` where none does.
     torque
-        What each mesh carries at rest, N m on the pinion.
+        Load of each mesh at rest, N m on the pinion.
     surface
-        What another stand changes.
+        Response surface that tells how another pose changes the stress.
     """
 
     contacts: Mapping[str, Mapping[str, FlankContact]]
-    stands: Mapping[tuple[str, str], Stand]
-    carrying: Mapping[str, str]
+    contact_poses: Mapping[tuple[str, str], ContactPose]
+    loaded_flanks: Mapping[str, str]
     torque: Mapping[str, float]
     surface: PoseSurface
 
     def met_by(self, duty: FlankDuty) -> list[tuple[str, str]]:
-        """Mesh and flank of the contacts of a rated flank.
+        """Return the mesh and flank of the contacts of a rated flank.
 
-        Of a duty cycle that names no meshes the one that carries most on this flank, or most where none does.
+        If the duty cycle names no meshes, it is the mesh that carries most on this flank, or most where none
+        does.
+
+        Parameters
+        ----------
+        duty : FlankDuty
+            Loads of the rated flank.
+
+        Returns
+        -------
+        list[tuple[str, str]]
+            Mesh and flank of each contact.
         """
         flanks = FLANKS if duty.flank == "each" else (duty.flank,)
         meshes = list(dict.fromkeys(duty.meshes))
         if not meshes:
-            on = [mesh for mesh, flank in self.carrying.items() if flank in flanks] or list(self.contacts)
+            on = [mesh for mesh, flank in self.loaded_flanks.items() if flank in flanks] or list(
+                self.contacts
+            )
             meshes = [max(on, key=self.torque.__getitem__)]
         return [(mesh, flank) for mesh in meshes for flank in flanks]
 
-    def stresses(self, duty: FlankDuty, stands: Mapping[tuple[int, str, str], Stand]) -> LoadStresses:
-        """Of every load of a rated flank, where the load of its bin puts its teeth; the worst of its meshes.
+    def stresses(
+        self, duty: FlankDuty, contact_poses: Mapping[tuple[int, str, str], ContactPose]
+    ) -> LoadStresses:
+        """Compute the stresses of every load of a rated flank in the loaded position of its bin.
 
-        stands: by bin from 0, mesh and flank.
+        Where several meshes load the flank, the largest stress counts.
+
+        Parameters
+        ----------
+        duty : FlankDuty
+            Loads of the rated flank.
+        contact_poses : Mapping[tuple[int, str, str], ContactPose]
+            Poses by bin from 0, mesh and flank.
+
+        Returns
+        -------
+        LoadStresses
+            Largest tension and pressure of each load.
         """
         tension, pressure = np.zeros(duty.torque.size), np.full(duty.torque.size, np.nan)
-        named = np.array(duty.meshes)
+        mesh_names = np.array(duty.meshes)
         for number in np.unique(duty.bins):
             for mesh, flank in self.met_by(duty):
-                here = np.flatnonzero((duty.bins == number) & ((named == mesh) if named.size else True))
-                torque, contact = duty.torque[here], self.contacts[mesh][flank]
-                ends = self.stands[mesh, flank], stands[int(number), mesh, flank]
-                tense = np.array([contact.tension[duty.gear](value) for value in torque])
-                tense = tense * change(self.surface, ROOTS[duty.gear], *ends)(torque)
-                pressed = np.array([contact.pressure.at(value) for value in torque])
-                pressed = pressed * change(self.surface, PRESSURE, *ends)(torque)
-                tension[here] = np.maximum(tension[here], tense)
-                pressure[here] = np.fmax(pressure[here], pressed)
+                rows = np.flatnonzero(
+                    (duty.bins == number) & ((mesh_names == mesh) if mesh_names.size else True)
+                )
+                torque, contact = duty.torque[rows], self.contacts[mesh][flank]
+                ends = self.contact_poses[mesh, flank], contact_poses[int(number), mesh, flank]
+                tensions = np.array([contact.tension[duty.gear](value) for value in torque])
+                tensions = tensions * stress_ratio(self.surface, ROOTS[duty.gear], *ends)(torque)
+                pressures = np.array([contact.pressure.at(value) for value in torque])
+                pressures = pressures * stress_ratio(self.surface, PRESSURE, *ends)(torque)
+                tension[rows] = np.maximum(tension[rows], tensions)
+                pressure[rows] = np.fmax(pressure[rows], pressures)
         return LoadStresses(tension, pressure)
 
 
 def mesh_contacts(
     meshes: Iterable[str],
-    assembled: Mapping[tuple[str, str], FlankContact],
+    assembled_contacts: Mapping[tuple[str, str], FlankContact],
     gears: Sequence[str],
-    posed: PosedContacts | None,
+    loaded_contacts: PosedContacts | None,
 ) -> dict[str, Mapping[str, FlankContact]]:
-    """Contacts of meshes by flank: where the machine's own forces put them, or as `assembled`."""
-    if posed is not None:
-        return {mesh: posed.contacts[mesh] for mesh in meshes}
-    return {mesh: contacts_of(mesh, assembled, gears) for mesh in meshes}
+    """Return the contacts of meshes by flank, in the loaded position of the bodies if it is known.
+
+    Parameters
+    ----------
+    meshes : Iterable[str]
+        Names of the meshes.
+    assembled_contacts : Mapping[tuple[str, str], FlankContact]
+        Contacts as assembled, by gear and flank.
+    gears : Sequence[str]
+        Gears of the machine.
+    loaded_contacts : PosedContacts or None
+        Contacts in the loaded position; None for those as assembled.
+
+    Returns
+    -------
+    dict[str, Mapping[str, FlankContact]]
+        Contacts by mesh and flank.
+    """
+    if loaded_contacts is not None:
+        return {mesh: loaded_contacts.contacts[mesh] for mesh in meshes}
+    return {mesh: contacts_of(mesh, assembled_contacts, gears) for mesh in meshes}
 
 
-def duty_stands(table: "pd.DataFrame") -> dict[tuple[int, str, str], Stand]:
-    """By bin from 0, mesh and flank, from the table of stage duty_poses."""
+def duty_contact_poses(table: "pd.DataFrame") -> dict[tuple[int, str, str], ContactPose]:
+    """Read the contact poses of the bins of a duty cycle.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of stage duty_poses.
+
+    Returns
+    -------
+    dict[tuple[int, str, str], ContactPose]
+        Poses by bin from 0, mesh and flank.
+    """
     return {
-        (row.bin - 1, row.mesh, row.flank): Stand(
+        (row.bin - 1, row.mesh, row.flank): ContactPose(
             1e-3 * row.unloaded_path_mm, float(np.radians(row.shaft_angle_error_deg))
         )
         for row in table.itertuples()
@@ -193,35 +310,84 @@ def duty_stands(table: "pd.DataFrame") -> dict[tuple[int, str, str], Stand]:
 
 
 def posed_of(
-    assembled: Mapping[tuple[str, str], FlankContact],
+    assembled_contacts: Mapping[tuple[str, str], FlankContact],
     gears: Sequence[str],
     arrays: Arrays | None,
     by_torque: "pd.DataFrame | None",
     poses: Arrays | None,
 ) -> PosedContacts | None:
-    """`posed_contacts` where all of it is given, `poses` as arrays of stage pose_surface."""
+    """Return `posed_contacts` if all of its inputs are given.
+
+    Parameters
+    ----------
+    assembled_contacts : Mapping[tuple[str, str], FlankContact]
+        Contacts as assembled, by gear and flank.
+    gears : Sequence[str]
+        Gears of the machine.
+    arrays, by_torque : Arrays or None
+        Parts of stage posed_stress.
+    poses : Arrays or None
+        Arrays of stage pose_surface.
+
+    Returns
+    -------
+    PosedContacts or None
+        Contacts in the loaded position; None where an input is None.
+    """
     if arrays is None or by_torque is None or poses is None:
         return None
-    return posed_contacts(arrays, by_torque, PoseSurface.of_arrays(poses), assembled, gears)
+    return posed_contacts(arrays, by_torque, PoseSurface.of_arrays(poses), assembled_contacts, gears)
 
 
 def posed_contacts(
     arrays: Arrays,
     by_torque: "pd.DataFrame",
     surface: PoseSurface,
-    assembled: Mapping[tuple[str, str], FlankContact],
+    assembled_contacts: Mapping[tuple[str, str], FlankContact],
     gears: Sequence[str],
 ) -> PosedContacts:
-    """From the parts of stage posed_stress; `assembled`: contacts by gear and flank of the `gears`."""
-    solved, contacts, stands, carrying, torque = solved_contacts(arrays, by_torque), {}, {}, {}, {}
+    """Assemble the contacts in the loaded position from the parts of stage posed_stress.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays of stage posed_stress.
+    by_torque : DataFrame
+        Table by torque of stage posed_stress.
+    surface : PoseSurface
+        Response surface over pose.
+    assembled_contacts : Mapping[tuple[str, str], FlankContact]
+        Contacts as assembled, by gear and flank.
+    gears : Sequence[str]
+        Gears of the machine.
+
+    Returns
+    -------
+    PosedContacts
+        Contacts of all meshes.
+    """
+    contacts_by_number, contacts, contact_poses, loaded_flanks, torque = (
+        solved_contacts(arrays, by_torque),
+        {},
+        {},
+        {},
+        {},
+    )
     for row, name in enumerate(map(str, arrays["mesh"])):
-        own = FLANKS[int(arrays["carrying"][row])]
-        (other,) = set(FLANKS) - {own}
+        loaded_flank = FLANKS[int(arrays["carrying"][row])]
+        (other_flank,) = set(FLANKS) - {loaded_flank}
         for column, flank in enumerate(FLANKS):
-            stands[name, flank] = Stand(float(arrays["path_m"][row, column]), float(arrays["angle_rad"][row]))
-        rest = Stand(float(arrays["path_at_rest_m"][row]), float(arrays["angle_at_rest_rad"][row]))
-        factors = {name_: change(surface, name_, rest, stands[name, other]) for name_ in STRESSES}
-        at_rest = contacts_of(name, assembled, gears)[other]
-        contacts[name] = {own: solved[int(arrays["contact"][row])], other: changed(at_rest, factors)}
-        carrying[name], torque[name] = own, float(arrays["mesh_torque_n_m"][row])
-    return PosedContacts(contacts, stands, carrying, torque, surface)
+            contact_poses[name, flank] = ContactPose(
+                float(arrays["path_m"][row, column]), float(arrays["angle_rad"][row])
+            )
+        rest = ContactPose(float(arrays["path_at_rest_m"][row]), float(arrays["angle_at_rest_rad"][row]))
+        factors = {
+            name_: stress_ratio(surface, name_, rest, contact_poses[name, other_flank]) for name_ in STRESSES
+        }
+        at_rest = contacts_of(name, assembled_contacts, gears)[other_flank]
+        contacts[name] = {
+            loaded_flank: contacts_by_number[int(arrays["contact"][row])],
+            other_flank: scale_contact(at_rest, factors),
+        }
+        loaded_flanks[name], torque[name] = loaded_flank, float(arrays["mesh_torque_n_m"][row])
+    return PosedContacts(contacts, contact_poses, loaded_flanks, torque, surface)

@@ -32,8 +32,9 @@ from facegear.strength.spur import SpurGear
 Stress = Callable[[float], float]
 """Stress (Pa) at a torque (N m) on the pinion."""
 HALVINGS = 60
+"""Number of bisections of the safety, whose bracket 1e-4 to 1e4 they narrow to rounding error."""
 EDGE = 1e3
-"""Line load (N/m) on tip edges that counts as none."""
+"""Line load on tip edges, N/m, below which it is neglected."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,18 @@ class RatedBody:
     root_roughness: float
 
     def limits(self) -> tuple[PittingLimits, BendingLimits]:
-        """Raises FacegearError naming what the card lacks."""
+        """Return the limits of pitting and bending.
+
+        Returns
+        -------
+        tuple[PittingLimits, BendingLimits]
+            Limits of pitting and of bending.
+
+        Raises
+        ------
+        FacegearError
+            Naming the card if it lacks either.
+        """
         if self.card.pitting is None or self.card.bending is None:
             raise FacegearError(f"card {self.card.name!r} lacks limits of pitting or bending")
         return self.card.pitting, self.card.bending
@@ -52,9 +64,18 @@ class RatedBody:
 
 @dataclass(frozen=True)
 class RatingRequest:
-    """What a rating is asked for; bodies `pinion` and `face_gear`, and the flanks of all gears in `duty`.
+    """Inputs of a rating.
 
-    time (s) of the whole duty cycle.
+    Attributes
+    ----------
+    bodies
+        Bodies `pinion` and `face_gear`.
+    duty
+        Loads of the flanks of all gears.
+    time
+        Time of the whole duty cycle, s.
+    min_bending, min_pitting
+        Required safeties, dimensionless.
     """
 
     bodies: Mapping[str, RatedBody]
@@ -65,8 +86,8 @@ class RatingRequest:
 
 
 @dataclass(frozen=True, eq=False)
-class Rated:
-    """One way in which the teeth of a gear may fail on one flank.
+class FailureRating:
+    """Rating of one flank of a gear against one failure, by one method.
 
     Attributes
     ----------
@@ -75,26 +96,27 @@ class Rated:
     failure, method
         Pitting or bending, and how its stress was computed.
     stress : (n,)
-        Pa.
-    allowed
+        Stress of each load, Pa.
+    allowed_stress
         Stress that may be repeated for ever before life factors, Pa.
     limit
-        Gives those factors.
+        Life factors of the material.
     damage : (n,)
-        Of the loads.
+        Damage of each load.
     safety
-        By how much all stresses may rise until Miner's sum is 1.
-    required
+        Factor on all stresses at which Miner's sum is 1.
+    required_safety
         Minimum safety.
     life
-        Of the duty cycle, s.
+        Life under the duty cycle, s.
     reliability
-        At the end of the duty cycle: nan where the card has no Weibull shape (`has_shape`), or where no load
-        does damage.
+        Reliability at the end of the duty cycle: nan where the card has no Weibull shape (`has_shape`), or
+        where
+        no load does damage.
     has_shape
-        Whether the card has one.
+        Whether the card has a Weibull shape.
     edge_load
-        On tip edges under the largest load, N/m.
+        Load on tip edges under the largest load, N/m.
     fillet_share
         The largest share of the torque that fillets carry under any load.
     """
@@ -103,11 +125,11 @@ class Rated:
     failure: str
     method: str
     stress: Array
-    allowed: float
+    allowed_stress: float
     limit: Life
     damage: Array
     safety: float
-    required: float
+    required_safety: float
     life: float
     reliability: float
     has_shape: bool
@@ -117,7 +139,7 @@ class Rated:
     @property
     def verdict(self) -> str:
         """green: as safe as required; red: less safe. `caveats` never change it."""
-        return "green" if self.safety >= self.required else "red"
+        return "green" if self.safety >= self.required_safety else "red"
 
     @property
     def reason(self) -> str:
@@ -128,7 +150,7 @@ class Rated:
         if not isfinite(harm):
             return "the first load breaks the tooth"
         if harm <= 1.0:
-            return f"safety {self.safety:.2f}, {self.required:g} required"
+            return f"safety {self.safety:.2f}, {self.required_safety:g} required"
         hours = self.life / 3600.0
         return f"damage {harm:.3g} in {format_number(harm * hours)} h, life {format_number(hours)} h"
 
@@ -139,8 +161,8 @@ class Rated:
         if self.failure == "pitting" and self.edge_load >= EDGE:
             caveats.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
         if self.fillet_share >= FILLET_CONTACT:
-            carried = f"fillets carry up to {100 * self.fillet_share:.2g} % of the torque"
-            caveats.append(f"{carried}, kept out of pressure and root stress")
+            share = f"fillets carry up to {100 * self.fillet_share:.2g} % of the torque"
+            caveats.append(f"{share}, kept out of pressure and root stress")
         return tuple(caveats)
 
 
@@ -159,81 +181,123 @@ def rate(
     pressure: ContactPressure,
     request: RatingRequest,
     of_loads: LoadStresses | None = None,
-) -> list[Rated]:
-    """Bending and pitting of every loaded flank, by the contact analysis and by the cylindrical standard.
+) -> list[FailureRating]:
+    """Rate bending and pitting of every loaded flank.
 
-    `contact_ratio` that of the section of the pitch point; `roots` the root stress of both bodies. The
-    standard alone judges pitting where no `pressure` away from edges is known. of_loads: of the only flank
-    that is asked for, where its teeth do not stand alike under all loads.
+    Each is rated by the contact analysis and by the cylindrical standard. The standard alone judges pitting
+    where no `pressure` away from edges is known.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    contact_ratio : float
+        Contact ratio of the section of the pitch point, dimensionless.
+    roots : Mapping[str, RootStress]
+        Root stress of both bodies.
+    pressure : ContactPressure
+        Pressure on the flanks.
+    request : RatingRequest
+        Bodies, duty cycle and required safeties.
+    of_loads : LoadStresses or None
+        Stresses of the only flank of the request, if its contact pose differs between loads.
+
+    Returns
+    -------
+    list[FailureRating]
+        One for each flank, failure and method.
     """
     ratings = []
     form = pinion_form(design, contact_ratio)
     pitting = hertz_stress(design, contact_ratio, request)
     tension = {gear: largest_tension(root) for gear, root in roots.items()}
     for duty in request.duty:
-        known = of_loads or LoadStresses(_each(tension[duty.gear], duty), _each(pressure.at, duty))
+        stresses = of_loads or LoadStresses(
+            _stress_by_load(tension[duty.gear], duty), _stress_by_load(pressure.at, duty)
+        )
         pitting_limits, bending_limits = request.bodies[duty.gear].limits()
         notch = form.notch_parameter if duty.gear == "pinion" else None
         ratio = reversal(roots[duty.gear], duty)
-        allowed = permissible_bending(design, request.bodies[duty.gear], notch, ratio)
-        ways = {"finite elements": known.tension}
+        allowed_stress = permissible_bending(design, request.bodies[duty.gear], notch, ratio)
+        ways = {"finite elements": stresses.tension}
         if duty.gear == "pinion":
-            ways["ISO 6336-3"] = _each(standard_bending(design, form), duty)
+            ways["ISO 6336-3"] = _stress_by_load(standard_bending(design, form), duty)
         for method, stress in ways.items():
             ratings.append(
-                _rated(request, duty, "bending", method, stress, allowed, bending_limits, pressure)
+                _rate_failure(
+                    request, duty, "bending", method, stress, allowed_stress, bending_limits, pressure
+                )
             )
-        ways = {"contact analysis": known.pressure} if pressure.known else {}
-        allowed = pitting_limits.limit
-        for method, stress in (ways | {"ISO 6336-2": _each(pitting[duty.gear], duty)}).items():
+        ways = {"contact analysis": stresses.pressure} if pressure.is_known else {}
+        allowed_stress = pitting_limits.limit
+        for method, stress in (ways | {"ISO 6336-2": _stress_by_load(pitting[duty.gear], duty)}).items():
             ratings.append(
-                _rated(request, duty, "pitting", method, stress, allowed, pitting_limits, pressure)
+                _rate_failure(
+                    request, duty, "pitting", method, stress, allowed_stress, pitting_limits, pressure
+                )
             )
     return ratings
 
 
-def _each(stress: Stress, duty: FlankDuty) -> Array:
-    """At every load, (n,)."""
+def _stress_by_load(stress: Stress, duty: FlankDuty) -> Array:
+    """Stress (n,) Pa at every load."""
     return np.array([stress(torque) for torque in duty.torque])
 
 
-def _rated(
+def _rate_failure(
     request: RatingRequest,
     duty: FlankDuty,
     failure: str,
     method: str,
     by_load: Array,
-    allowed: float,
+    allowed_stress: float,
     limits: PittingLimits | BendingLimits,
     pressure: ContactPressure,
-) -> Rated:
-    harm = damage(by_load, duty.cycles, allowed, limits.life)
+) -> FailureRating:
+    harm = damage(by_load, duty.cycles, allowed_stress, limits.life)
     total = float(harm.sum())
-    loaded = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]
-    return Rated(
+    loads = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]
+    return FailureRating(
         duty=duty,
         failure=failure,
         method=method,
         stress=by_load,
-        allowed=allowed,
+        allowed_stress=allowed_stress,
         limit=limits.life,
         damage=harm,
-        safety=safety(by_load, duty.cycles, allowed, limits.life),
-        required=request.min_bending if failure == "bending" else request.min_pitting,
+        safety=safety(by_load, duty.cycles, allowed_stress, limits.life),
+        required_safety=request.min_bending if failure == "bending" else request.min_pitting,
         life=request.time / total if total > 0.0 else np.inf,
         reliability=reliability(total, limits.weibull_shape),
         has_shape=limits.weibull_shape is not None,
         edge_load=pressure.edge_at(duty.largest)[0],
-        fillet_share=float(pressure.fillet_at(loaded).max(initial=0.0)),
+        fillet_share=float(pressure.fillet_at(loads).max(initial=0.0)),
     )
 
 
-def safety(stress: Array, cycles: Array, allowed: float, life: Life) -> float:
-    """Factor on all stresses (n,) at which Miner's sum over the bins reaches 1."""
+def safety(stress: Array, cycles: Array, allowed_stress: float, life: Life) -> float:
+    """Solve for the factor on all stresses at which Miner's sum over the bins reaches 1.
+
+    Parameters
+    ----------
+    stress : (n,) array
+        Stress, Pa.
+    cycles : (n,) array
+        Number of cycles.
+    allowed_stress : float
+        Stress that may be repeated for ever before life factors, Pa.
+    life : Life
+        Life factors of the material.
+
+    Returns
+    -------
+    float
+        Safety factor, within 1e-4 to 1e4.
+    """
     low, high = 1e-4, 1e4
     for _ in range(HALVINGS):
         middle = sqrt(low * high)
-        if damage(middle * stress, cycles, allowed, life).sum() > 1.0:
+        if damage(middle * stress, cycles, allowed_stress, life).sum() > 1.0:
             high = middle
         else:
             low = middle
@@ -241,27 +305,64 @@ def safety(stress: Array, cycles: Array, allowed: float, life: Life) -> float:
 
 
 def reversal(root: RootStress, duty: FlankDuty) -> float:
-    """Smallest over largest stress of a turn at the place of the largest, in the bin of the largest load.
+    """Return the stress ratio of a turn at the place of the largest stress, in the bin of the largest load.
 
     Compression comes from the loads of the other flank; where it has none stress is taken to rise from 0.
+
+    Parameters
+    ----------
+    root : RootStress
+        Root stress of the rated gear.
+    duty : FlankDuty
+        Loads of the rated flank.
+
+    Returns
+    -------
+    float
+        Smallest over largest stress, dimensionless.
     """
     worst = int(np.argmax(np.where(duty.cycles > 0.0, duty.torque, 0.0)))
-    other = duty.opposite[duty.bins[worst]]
-    if other == 0.0:
+    opposite_torque = duty.opposite[duty.bins[worst]]
+    if opposite_torque == 0.0:
         return 0.0
-    tension, pressed = (down_the_fillet(root.at_torque(torque)) for torque in (duty.torque[worst], other))
+    tension, compression = (
+        down_the_fillet(root.at_torque(torque)) for torque in (duty.torque[worst], opposite_torque)
+    )
     high = tension[:, 0].max(axis=0)
     down, along = np.unravel_index(np.argmax(high), high.shape)
-    return float(min(tension[:, 0, down, along].min(), pressed[:, 1, down, along].min()) / high[down, along])
+    return float(
+        min(tension[:, 0, down, along].min(), compression[:, 1, down, along].min()) / high[down, along]
+    )
 
 
 def permissible_bending(
     design: PairDesign, body: RatedBody, notch_parameter: float | None, ratio: float
 ) -> float:
-    """Root stress (Pa) that may be repeated for ever, before life factors.
+    """Return the root stress that may be repeated for ever, before life factors.
 
     sigma_F lim Y_ST Y_delta rel T Y_R rel T Y_X Y_M. Without a notch parameter (the face gear, for which the
-    standard has none) Y_delta rel T is 1. `ratio` of smallest to largest stress; Y_M takes Y_S = 2.
+    standard has none) Y_delta rel T is 1. Y_M takes Y_S = 2.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    body : RatedBody
+        Limits and roughness of the body.
+    notch_parameter : float or None
+        Notch parameter q_s, dimensionless; None for the face gear.
+    ratio : float
+        Smallest over largest stress of a turn, dimensionless.
+
+    Returns
+    -------
+    float
+        Stress, Pa.
+
+    Raises
+    ------
+    FacegearError
+        Naming the value that the card lacks.
     """
     _, limits = body.limits()
     notch = 1.0
@@ -280,7 +381,22 @@ def permissible_bending(
 
 
 def pinion_form(design: PairDesign, contact_ratio: float) -> RootForm:
-    """Root section of the pinion for a load at the outer point of single contact with the gear as a rack."""
+    """Return the root section of the pinion for a load at the outer point of single contact.
+
+    The gear is taken as a rack.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    contact_ratio : float
+        Contact ratio, dimensionless.
+
+    Returns
+    -------
+    RootForm
+        Root section after ISO 6336-3.
+    """
     part, m = design.pinion, design.module
     spur = SpurGear(
         teeth=part.teeth,
@@ -297,15 +413,47 @@ def pinion_form(design: PairDesign, contact_ratio: float) -> RootForm:
 
 
 def standard_bending(design: PairDesign, form: RootForm) -> Stress:
-    """F_t Y_F Y_S / (b m) with the whole load on one tooth, evenly along the narrower face."""
+    """Return F_t Y_F Y_S / (b m) with the whole load on one tooth, evenly along the narrower face.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    form : RootForm
+        Root section of the pinion.
+
+    Returns
+    -------
+    Stress
+        Stress (Pa) at a torque (N m) on the pinion.
+    """
     scale = form.form_factor * form.stress_correction / (_width(design) * design.module)
     return lambda torque: torque / design.pinion_pitch_radius * scale
 
 
 def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingRequest) -> dict[str, Stress]:
-    """Contact stress of the standard on each body, the gear's flank taken as a rack's.
+    """Return the contact stress of the standard on each body, the gear's flank taken as a rack's.
 
     The pinion is judged at its inner point of single contact where that is worse than the pitch point.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    contact_ratio : float
+        Contact ratio, dimensionless.
+    request : RatingRequest
+        Gives the materials of both bodies.
+
+    Returns
+    -------
+    dict[str, Stress]
+        Stress (Pa) at a torque (N m) on the pinion, by body.
+
+    Raises
+    ------
+    FacegearError
+        If the inner point of single contact lies below the base circle.
     """
     cards = [request.bodies[name].card for name in BODIES]
     first, second = ((card.young_modulus, card.poisson_ratio) for card in cards)

@@ -9,29 +9,43 @@ import pandas as pd
 from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_COLUMNS, RATING_COLUMNS, SAFETY_COLUMNS
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import DutyBin
-from facegear.strength.rating import Rated
+from facegear.strength.rating import FailureRating
 from facegear.strength.root_stress import RootStress
 
 POINTS = 61
-"""Of a curve of allowed stress."""
+"""Number of points of a curve of allowed stress."""
 WORST_FIRST = ("red", "green")
+"""Verdicts from the worst to the best."""
 
 
-def safety_table(ratings: Sequence[Rated], pressure: ContactPressure) -> pd.DataFrame:
-    """One row a flank, columns as SAFETY_COLUMNS: each way to fail beside the others, and the first to come.
+def safety_table(ratings: Sequence[FailureRating], pressure: ContactPressure) -> pd.DataFrame:
+    """Tabulate the safeties of each flank and the first failure to come, one row a flank.
 
-    Reliability is the product of those of both failures, each by its worst method. `pressure` tells of the
-    tip edges under the largest torque of any cycle.
+    Reliability is the product of those of both failures, each by its worst method.
+
+    Parameters
+    ----------
+    ratings : Sequence[FailureRating]
+        Ratings of all flanks, those of one flank in sequence.
+    pressure : ContactPressure
+        Gives the load on tip edges under the largest torque of any cycle.
+
+    Returns
+    -------
+    DataFrame
+        Columns as SAFETY_COLUMNS, without reliability where no card has a Weibull shape.
     """
     rows = []
     for (body, flank), group in groupby(ratings, key=lambda rating: (rating.duty.body, rating.duty.flank)):
         ways = list(group)
         safety = {(rating.failure, rating.method): rating.safety for rating in ways}
-        nearest = min(ways, key=lambda rating: rating.safety / rating.required)
-        known = [
-            np.nanmin(some)
+        nearest = min(ways, key=lambda rating: rating.safety / rating.required_safety)
+        reliabilities = [
+            np.nanmin(by_method)
             for failure in ("bending", "pitting")
-            if np.isfinite(some := [rating.reliability for rating in ways if rating.failure == failure]).any()
+            if np.isfinite(
+                by_method := [rating.reliability for rating in ways if rating.failure == failure]
+            ).any()
         ]
         edge_load, edge_length = pressure.edge_at(ways[0].duty.largest)
         rows.append(
@@ -42,7 +56,7 @@ def safety_table(ratings: Sequence[Rated], pressure: ContactPressure) -> pd.Data
                 *(safety.get(("pitting", "contact analysis"), np.nan), safety["pitting", "ISO 6336-2"]),
                 *(1e-3 * edge_load, 1e3 * edge_length),
                 min(rating.life for rating in ways) / 3600.0,
-                float(np.prod(known)) if known else np.nan,
+                float(np.prod(reliabilities)) if reliabilities else np.nan,
                 f"{nearest.failure} ({nearest.method})",
                 "; ".join(
                     f"{rating.failure}: {rating.reason}" for rating in _worst_ways(ways) if rating.reason
@@ -51,10 +65,10 @@ def safety_table(ratings: Sequence[Rated], pressure: ContactPressure) -> pd.Data
                 all(bool(_within(rating, pressure).all()) for rating in ways),
             )
         )
-    return _stated(pd.DataFrame(rows, columns=list(SAFETY_COLUMNS)), ratings)
+    return _without_empty_reliability(pd.DataFrame(rows, columns=list(SAFETY_COLUMNS)), ratings)
 
 
-def _worst_ways(ways: Sequence[Rated]) -> list[Rated]:
+def _worst_ways(ways: Sequence[FailureRating]) -> list[FailureRating]:
     """Return of each failure the method with the smallest safety."""
     return [
         min((rating for rating in ways if rating.failure == failure), key=lambda rating: rating.safety)
@@ -63,22 +77,36 @@ def _worst_ways(ways: Sequence[Rated]) -> list[Rated]:
 
 
 def rating_table(
-    ratings: Sequence[Rated], pressure: ContactPressure, roots: Mapping[str, RootStress]
+    ratings: Sequence[FailureRating], pressure: ContactPressure, roots: Mapping[str, RootStress]
 ) -> pd.DataFrame:
-    """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest load of any cycle.
+    """Tabulate safety and life by flank, failure and method; stress is that of the hardest load of any cycle.
 
     The error is that of the contact analysis' `pressure`, or of the mesh at the largest of `roots`; other
     methods have none.
+
+    Parameters
+    ----------
+    ratings : Sequence[FailureRating]
+        Ratings of all flanks.
+    pressure : ContactPressure
+        Pressure on the flanks.
+    roots : Mapping[str, RootStress]
+        Root stress of both bodies.
+
+    Returns
+    -------
+    DataFrame
+        Columns as RATING_COLUMNS, without reliability where no card has a Weibull shape.
     """
     rows = [
         (
             *_subject(rating),
             1e-6 * float(rating.stress.max(where=rating.duty.cycles > 0.0, initial=0.0)),
             1e-6 * _error(rating, pressure, roots),
-            1e-6 * rating.allowed,
+            1e-6 * rating.allowed_stress,
             float(rating.duty.cycles.sum()),
             rating.safety,
-            rating.required,
+            rating.required_safety,
             rating.verdict,
             rating.reason,
             "; ".join(rating.caveats),
@@ -89,16 +117,16 @@ def rating_table(
         )
         for rating in ratings
     ]
-    return _stated(pd.DataFrame(rows, columns=list(RATING_COLUMNS)), ratings)
+    return _without_empty_reliability(pd.DataFrame(rows, columns=list(RATING_COLUMNS)), ratings)
 
 
-def _stated(table: pd.DataFrame, ratings: Sequence[Rated]) -> pd.DataFrame:
-    """The table without reliability where no card has the shape of its distribution of lives."""
+def _without_empty_reliability(table: pd.DataFrame, ratings: Sequence[FailureRating]) -> pd.DataFrame:
+    """Remove the reliability where no card has the shape of its distribution of lives."""
     return table if any(rating.has_shape for rating in ratings) else table.drop(columns="reliability")
 
 
-def _error(rating: Rated, pressure: ContactPressure, roots: Mapping[str, RootStress]) -> float:
-    """Of the stress (Pa) under the hardest load, nan where it is not known."""
+def _error(rating: FailureRating, pressure: ContactPressure, roots: Mapping[str, RootStress]) -> float:
+    """Error of the stress (Pa) under the hardest load, nan where it is not known."""
     if rating.method == "contact analysis":
         return pressure.error_at(rating.duty.largest)
     return (
@@ -108,44 +136,68 @@ def _error(rating: Rated, pressure: ContactPressure, roots: Mapping[str, RootStr
     )
 
 
-def curve_table(ratings: Sequence[Rated]) -> pd.DataFrame:
-    """Stress that may be repeated so many times, columns as CURVE_COLUMNS."""
+def curve_table(ratings: Sequence[FailureRating]) -> pd.DataFrame:
+    """Tabulate the stress that may be repeated so many times.
+
+    Parameters
+    ----------
+    ratings : Sequence[FailureRating]
+        Ratings of all flanks.
+
+    Returns
+    -------
+    DataFrame
+        Columns as CURVE_COLUMNS.
+    """
     parts = []
     for rating in ratings:
         cycles = np.geomspace(rating.limit.cycles[0], rating.limit.cycles[-1], POINTS)
-        columns = (*_subject(rating), cycles, 1e-6 * rating.allowed * rating.limit.factor(cycles))
+        columns = (*_subject(rating), cycles, 1e-6 * rating.allowed_stress * rating.limit.factor(cycles))
         parts.append(pd.DataFrame(dict(zip(CURVE_COLUMNS, columns, strict=True))))
     return pd.concat(parts, ignore_index=True)
 
 
 def damage_table(
-    ratings: Sequence[Rated], duty: Sequence[DutyBin], pressure: ContactPressure
+    ratings: Sequence[FailureRating], duty: Sequence[DutyBin], pressure: ContactPressure
 ) -> pd.DataFrame:
-    """Largest torque (with all load factors) and stress, cycles and damage of each bin that loads a flank.
+    """Tabulate largest torque (with all load factors) and stress, cycles and damage of each bin that loads a
+    flank.
 
-    Columns as DAMAGE_COLUMNS.
+    Parameters
+    ----------
+    ratings : Sequence[FailureRating]
+        Ratings of all flanks.
+    duty : Sequence[DutyBin]
+        Bins of the duty cycle.
+    pressure : ContactPressure
+        Gives the range of solved torques.
+
+    Returns
+    -------
+    DataFrame
+        Columns as DAMAGE_COLUMNS.
     """
     rows = []
     for rating in ratings:
         within = _within(rating, pressure)
         for number in np.unique(rating.duty.bins):
-            here = rating.duty.bins == number
+            is_in_bin = rating.duty.bins == number
             rows.append(
                 (
-                    *(*_subject(rating), number + 1, float(rating.duty.torque[here].max())),
+                    *(*_subject(rating), number + 1, float(rating.duty.torque[is_in_bin].max())),
                     *(60.0 * duty[number].speed, duty[number].time / 3600.0),
-                    1e-6 * float(rating.stress[here].max()),
-                    *(float(rating.duty.cycles[here].sum()), float(rating.damage[here].sum())),
-                    bool(within[here].all()),
+                    1e-6 * float(rating.stress[is_in_bin].max()),
+                    *(float(rating.duty.cycles[is_in_bin].sum()), float(rating.damage[is_in_bin].sum())),
+                    bool(within[is_in_bin].all()),
                 )
             )
     return pd.DataFrame(rows, columns=list(DAMAGE_COLUMNS))
 
 
-def _subject(rating: Rated) -> tuple[str, ...]:
+def _subject(rating: FailureRating) -> tuple[str, ...]:
     return rating.duty.body, rating.duty.gear, rating.duty.flank, rating.failure, rating.method
 
 
-def _within(rating: Rated, pressure: ContactPressure) -> np.ndarray:
+def _within(rating: FailureRating, pressure: ContactPressure) -> np.ndarray:
     """Whether each load lies within the torques of the contact analysis, (n,)."""
     return pressure.within(rating.duty.torque) | (rating.duty.cycles == 0.0)

@@ -8,6 +8,7 @@ from facegear.geometry.design import involute
 from facegear.strength.spur import SpurGear
 
 ITERATIONS = 200
+"""Maximum number of fixed-point iterations for the angle of the 30 degree tangent."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +35,25 @@ class RootForm:
 
 
 def root_form(gear: SpurGear, load_radius: float) -> RootForm:
-    """Root section for a force on the flank at `load_radius` (m).
+    """Compute the root section for a force on the flank (ISO 6336-3:2006, clauses 6.2 and 7.2, external spur
+    gears).
 
-    ISO 6336-3:2006, clauses 6.2 and 7.2, external spur gears. Raises NotConverged if the angle of the
-    30 degree tangent is not found.
+    Parameters
+    ----------
+    gear : SpurGear
+        The spur gear.
+    load_radius : float
+        Radius at which the force acts, m.
+
+    Returns
+    -------
+    RootForm
+        Root section.
+
+    Raises
+    ------
+    NotConverged
+        If the angle of the 30 degree tangent is not found.
     """
     m, z, a = gear.module, gear.teeth, gear.pressure_angle
     rho, h = gear.rack_tip_radius, gear.rack_addendum
@@ -64,7 +80,20 @@ def root_form(gear: SpurGear, load_radius: float) -> RootForm:
 
 
 def stress_correction(slenderness: float, notch_parameter: float) -> float:
-    """Y_S from L = s_Fn / h_Fe and q_s; stated for 1 <= q_s < 8."""
+    """Return Y_S, stated for 1 <= q_s < 8.
+
+    Parameters
+    ----------
+    slenderness : float
+        L = s_Fn / h_Fe, dimensionless.
+    notch_parameter : float
+        q_s, dimensionless.
+
+    Returns
+    -------
+    float
+        Y_S, dimensionless.
+    """
     exponent = 1.0 / (1.21 + 2.3 / slenderness)
     return float((1.2 + 0.13 * slenderness) * notch_parameter**exponent)
 
@@ -72,8 +101,8 @@ def stress_correction(slenderness: float, notch_parameter: float) -> float:
 def _tangent_angle(g: float, h: float, teeth: int) -> float:
     angle = pi / 6.0
     for _ in range(ITERATIONS):
-        following = 2.0 * g / teeth * tan(angle) - h
-        if abs(following - angle) < 1e-15:
-            return following
-        angle = following
+        next_angle = 2.0 * g / teeth * tan(angle) - h
+        if abs(next_angle - angle) < 1e-15:
+            return next_angle
+        angle = next_angle
     raise NotConverged("strength", f"root form of {teeth} teeth", f"{ITERATIONS} iterations")

@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 
 LONE = 0.5
-"""Exponent of stress over torque below a single torque solved: less than it is, so that stress is not."""
+"""Exponent of stress over torque below a single solved torque, dimensionless: less than its true value, so
+that stress there is not underestimated."""
 FINER = 8
-"""Points a gauge at which a maximum down the fillet is looked for."""
+"""Number of points for each gauge at which a maximum down the fillet is searched."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,7 @@ class RootStress:
     Attributes
     ----------
     torques : (t,)
-        N m.
+        Torques on the pinion, N m.
     passage : (n,)
         Positions in pitches, 0 to 1 while the tooth belongs to pair 0.
     stress : (t, n, 2, a, b)
@@ -37,9 +38,9 @@ class RootStress:
     along : (b,)
         Gear radius, the pinion's distance from the gear's axis, m.
     angle : (2, a, b)
-        Between the tangent and the tooth's middle line, rad.
+        Angle between the tangent and the tooth's middle line, rad.
     error : (b,)
-        Relative error of the largest stress that the mesh makes, nan where it is not known.
+        Relative error of the largest stress due to the mesh, nan where it is not known.
     """
 
     torques: Array
@@ -51,16 +52,40 @@ class RootStress:
 
     @cached_property
     def scale(self) -> Scale:
-        """How stress grows with torque: as its largest value between those solved, in proportion beyond."""
+        """Growth of stress with torque: that of its largest value between solved torques, in proportion
+        beyond.
+        """
         largest = self.stress.reshape(len(self.torques), -1).max(axis=1)
         return scale(self.torques, largest, LONE, 1.0)
 
     def at_torque(self, torque: float) -> Array:
-        """Stress (n, 2, a, b) at a torque, as `scale` has it."""
+        """Interpolate the stress at a torque by `scale`.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        (n, 2, a, b) array
+            Stress, Pa.
+        """
         return self.scale.at(self.stress, torque)
 
     def error_at(self, torque: float) -> float:
-        """Error (Pa) that the mesh makes of the largest stress at a torque, nan where it is not known."""
+        """Return the error of the largest stress at a torque that the mesh causes.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        float
+            Error, Pa; nan where it is not known.
+        """
         along_face = down_the_fillet(self.at_torque(torque)).max(axis=(0, 1, 2))
         return float(along_face.max() * self.error[np.argmax(along_face)])
 
@@ -75,26 +100,49 @@ def root_stress(
     error: Array | None = None,
     teeth: Integers | None = None,
 ) -> RootStress:
-    """Superpose the readings (2 d + 1, g, c) by the loads {tooth: (t p, c)} of t torques at p positions.
+    """Superpose gauge readings by the loads of t torques at p positions.
 
-    Teeth further apart than d do not feel each other. `along` (b,), `angle` (2, a, b) and `error` (b,) of the
-    gauges as in `RootStress`. `teeth`: those that are read, None for the loaded ones and their neighbours.
+    Teeth further apart than d do not affect each other.
+
+    Parameters
+    ----------
+    readings : (2 d + 1, g, c) array
+        Stress at g gauges of a tooth by unit forces on c nodes of the teeth up to d away, Pa/N.
+    loads : Mapping[int, csr_matrix]
+        Forces by tooth, (t p, c), N.
+    torques : (t,) array
+        Torques on the pinion, N m.
+    positions : (p,) array
+        Positions of the mesh, in pitches.
+    along : (b,) array
+        Gear radius of the gauges, m.
+    angle : (2, a, b) array
+        Angle between the tangent at the gauges and the tooth's middle line, rad.
+    error : (b,) array or None
+        Relative error of the largest stress, None where it is not known.
+    teeth : (n,) array of int or None
+        Numbers of the teeth whose gauges are read, None for the loaded ones and their neighbours.
+
+    Returns
+    -------
+    RootStress
+        Stress over torque and passage.
     """
     shape, count = angle.shape, len(positions)
     teeth = np.arange(min(loads) - 1, max(loads) + 2) if teeth is None else teeth
     stress = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
     reach = len(readings) // 2
     by_node = np.ascontiguousarray(readings.swapaxes(1, 2))
-    felt = [[tooth for tooth in loads if abs(read - tooth) <= reach] for read in teeth]
+    loaded_nearby = [[tooth for tooth in loads if abs(read - tooth) <= reach] for read in teeth]
     for position in range(count):
         # the torques of a position press on few nodes, and on much the same ones
-        here = {tooth: force[position::count] for tooth, force in loads.items()}
-        nodes = {tooth: np.unique(force.indices) for tooth, force in here.items()}
-        pressed = {tooth: -force[:, nodes[tooth]].toarray() for tooth, force in here.items()}
+        forces = {tooth: force[position::count] for tooth, force in loads.items()}
+        nodes = {tooth: np.unique(force.indices) for tooth, force in forces.items()}
+        pressures = {tooth: -force[:, nodes[tooth]].toarray() for tooth, force in forces.items()}
         for row, read in enumerate(teeth):
-            if near := felt[row]:
-                here_read = np.vstack([by_node[read - tooth + reach, nodes[tooth]] for tooth in near])
-                stress[:, row, position] = np.hstack([pressed[tooth] for tooth in near]) @ here_read
+            if near := loaded_nearby[row]:
+                influence = np.vstack([by_node[read - tooth + reach, nodes[tooth]] for tooth in near])
+                stress[:, row, position] = np.hstack([pressures[tooth] for tooth in near]) @ influence
     passage = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),
@@ -107,7 +155,18 @@ def root_stress(
 
 
 def down_the_fillet(values: Array) -> Array:
-    """Values (..., a, b) at FINER times as many points from the first to the last gauge, by splines."""
+    """Interpolate values by splines at FINER times as many points from the first to the last gauge.
+
+    Parameters
+    ----------
+    values : (..., a, b) array
+        Values at a gauges down the fillet, b along the face, in any unit.
+
+    Returns
+    -------
+    (..., FINER a, b) array
+        Values between the gauges, in their unit.
+    """
     finer: Array = _finer(values.shape[-2]) @ values
     return finer
 
@@ -120,17 +179,28 @@ def _finer(rows: int) -> Array:
 
 
 def largest_tension(root: RootStress) -> Callable[[float], float]:
-    """Largest stress (Pa) on either fillet over the passage and the face, at a torque (N m).
+    """Return the largest stress on either fillet over the passage and the face, as a function of torque.
 
-    It looks only where the largest stress may be at some torque, so that it is cheap in time and memory.
+    The function evaluates only places where the largest stress may be at some torque, so that it is cheap in
+    time and memory.
+
+    Parameters
+    ----------
+    root : RootStress
+        Root stress over torque and passage.
+
+    Returns
+    -------
+    Callable[[float], float]
+        Stress (Pa) at a torque (N m) on the pinion.
     """
     sections = _sections_with_the_largest(root.stress)
-    places = np.stack([(_finer(stress.shape[-1]) @ stress.T).ravel() for stress in sections])
-    kept = np.zeros(places.shape[1], dtype=bool)
-    kept[places.argmax(axis=1)] = True
-    for low, high in pairwise(places):
-        kept |= _may_be_largest(low, high)
-    worst, growth = places[:, kept], root.scale
+    values = np.stack([(_finer(stress.shape[-1]) @ stress.T).ravel() for stress in sections])
+    may_be_largest = np.zeros(values.shape[1], dtype=bool)
+    may_be_largest[values.argmax(axis=1)] = True
+    for low, high in pairwise(values):
+        may_be_largest |= _may_be_largest(low, high)
+    worst, growth = values[:, may_be_largest], root.scale
     return lambda torque: float(growth.at(worst, torque).max())
 
 
@@ -141,13 +211,13 @@ def _sections_with_the_largest(stress: Array) -> Array:
     section whose spline stays below half the largest stress at every torque solved is never the largest.
     """
     sections = np.moveaxis(stress, -2, -1).reshape(len(stress), -1, stress.shape[-2])
-    places = sections.reshape(len(sections), -1)
-    best = places.argmax(axis=1)
-    if (places[:, best] < 0.0).any():
+    values = sections.reshape(len(sections), -1)
+    best = values.argmax(axis=1)
+    if (values[:, best] < 0.0).any():
         return sections
     reach = np.abs(_finer(sections.shape[-1])).sum(axis=1).max() * np.abs(sections).max(axis=-1)
-    kept = (reach >= 0.5 * places.max(axis=1)[:, None]).any(axis=0)
-    return sections[:, kept]
+    may_be_largest = (reach >= 0.5 * values.max(axis=1)[:, None]).any(axis=0)
+    return sections[:, may_be_largest]
 
 
 def _may_be_largest(low: Array, high: Array) -> Mask:
@@ -158,5 +228,5 @@ def _may_be_largest(low: Array, high: Array) -> Mask:
     first, last = int(np.argmax(low)), int(np.argmax(high))
     lead, gain = low[first] - low[last], high[last] - high[first]
     part = lead / (lead + gain) if lead + gain > 0.0 else 0.0
-    there = (1.0 - part) * low + part * high
-    return np.asarray(there > there[first])
+    at_kink = (1.0 - part) * low + part * high
+    return np.asarray(at_kink > at_kink[first])

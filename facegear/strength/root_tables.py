@@ -21,10 +21,21 @@ STANDARD_ANGLE = np.radians(30.0)
 
 
 def root_tables(roots: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
-    """`summary`, `passage` and `along_face` of the root stress of each body.
+    """Tabulate the root stress of each body.
 
     Largest and smallest values are of splines through the gauges down the fillet, but of the gauges
     themselves along the face, the outermost of which stand a fifth of an element from its ends.
+
+    Parameters
+    ----------
+    roots : Mapping[str, RootStress]
+        Root stress of each body.
+
+    Returns
+    -------
+    dict[str, DataFrame]
+        `summary`, `passage` and `along_face`; columns as ROOT_STRESS_COLUMNS, PASSAGE_COLUMNS and
+        ALONG_FACE_COLUMNS.
     """
     summary, passage, along_face = [], [], []
     for body, root in roots.items():
@@ -59,22 +70,33 @@ def _peak(root: RootStress, side: int, fine: Array) -> tuple[float, ...]:
     )
 
 
-def _at_angle(fine: Array, angle: Array, wanted: float) -> float:
+def _at_angle(fine: Array, angle: Array, section_angle: float) -> float:
     """Largest of stress (n, m, b) where the angle (m, b) has a value; nan where no gauges enclose it."""
     values = [np.nan]
     for column in range(angle.shape[1]):
         order = np.argsort(angle[:, column])
-        here = angle[order, column]
-        if here[0] <= wanted <= here[-1]:
-            values.append(max(np.interp(wanted, here, stress[order]) for stress in fine[..., column]))
+        angles = angle[order, column]
+        if angles[0] <= section_angle <= angles[-1]:
+            values.append(
+                max(np.interp(section_angle, angles, stress[order]) for stress in fine[..., column])
+            )
     return float(np.nanmax(values)) if len(values) > 1 else np.nan
 
 
 def root_by_flank(variants: Sequence[Mapping[str, RootStress]], flank_variant: Integers) -> pd.DataFrame:
-    """`summary` for both flanks of both gears, columns as ROOT_STRESS_BY_FLANK_COLUMNS.
+    """Tabulate the `summary` for both flanks of both gears.
 
-    `variants`: root stress of each body under each of the errors that flanks meet; `flank_variant`
-    (gears, flanks) numbers them.
+    Parameters
+    ----------
+    variants : Sequence[Mapping[str, RootStress]]
+        Root stress of each body under each of the errors that flanks meet.
+    flank_variant : (gears, flanks) array of int
+        Index of the variant of each gear and flank.
+
+    Returns
+    -------
+    DataFrame
+        Columns as ROOT_STRESS_BY_FLANK_COLUMNS.
     """
     summaries = [root_tables(roots)["summary"] for roots in variants]
     parts = [
@@ -89,11 +111,23 @@ def root_arrays(
     flank_variant: Integers,
     positions: Mapping[str, Array],
 ) -> dict[str, AnyArray]:
-    """All of it as ROOT_STRESS_ARRAYS; `positions` (2, a, b, 3) of the gauges of each body, m.
+    """Return the root stress as ROOT_STRESS_ARRAYS.
 
-    `variants` and `flank_variant` as in `root_by_flank`.
+    Parameters
+    ----------
+    variants : Sequence[Mapping[str, RootStress]]
+        Root stress of each body under each of the errors that flanks meet.
+    flank_variant : (gears, flanks) array of int
+        Index of the variant of each gear and flank.
+    positions : Mapping[str, array]
+        Positions of the gauges of each body, (2, a, b, 3), m.
+
+    Returns
+    -------
+    dict[str, array]
+        Arrays by name, with the shapes (...) of ROOT_STRESS_ARRAYS, in SI units.
     """
-    first, *others = variants
+    first, *other_variants = variants
     arrays: dict[str, AnyArray] = {
         "torque_n_m": next(iter(first.values())).torques,
         "flank_variant": np.asarray(flank_variant),
@@ -101,8 +135,8 @@ def root_arrays(
     for body, root in first.items():
         arrays[f"{body}_passage"] = root.passage
         arrays[f"{body}_stress_pa"] = root.stress
-        more = [other[body].stress for other in others]
-        arrays[f"{body}_other_stress_pa"] = np.reshape(more, (len(more), *root.stress.shape))
+        other_stress = [variant[body].stress for variant in other_variants]
+        arrays[f"{body}_other_stress_pa"] = np.reshape(other_stress, (len(other_stress), *root.stress.shape))
         arrays[f"{body}_position_m"] = positions[body]
         arrays[f"{body}_tangent_rad"] = root.angle
         arrays[f"{body}_error"] = root.error
@@ -110,7 +144,24 @@ def root_arrays(
 
 
 def root_from_arrays(arrays: Arrays, body: str, gear: str = "upper", flank: str = "drive") -> RootStress:
-    """Root stress of a body by the loads of a gear's drive or back flank, from ROOT_STRESS_ARRAYS."""
+    """Restore the root stress of a body by the loads of a gear's drive or back flank.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        ROOT_STRESS_ARRAYS.
+    body : str
+        `pinion` or `face_gear`.
+    gear : str
+        `upper` or `lower`.
+    flank : str
+        `drive` or `back`.
+
+    Returns
+    -------
+    RootStress
+        Root stress over torque and passage.
+    """
     x, y, _ = np.moveaxis(arrays[f"{body}_position_m"], -1, 0)
     variant = int(arrays["flank_variant"][GEARS.index(gear), FLANKS.index(flank)])
     stress = arrays[f"{body}_stress_pa"] if variant == 0 else arrays[f"{body}_other_stress_pa"][variant - 1]

@@ -11,26 +11,51 @@ from facegear.strength.columns import STRESS_OVER_SPEED_COLUMNS
 from facegear.strength.flank_contacts import FlankContact, largest_pressure
 from facegear.ties import first_largest_rows
 
-ALIKE = 1e-3
-"""Motions whose largest forces differ by less, relative, are equally hard: most often they are one."""
+EQUAL_FORCES = 1e-3
+"""Relative difference of largest forces below which motions are equally hard: most often they are one."""
 ROUNDING = 1e-12
-"""Of speeds, relative: of a path that ends at a limit."""
+"""Relative tolerance of speeds, for the rounding error of a path that ends at a limit."""
 FORCE_COLUMNS = ("motion", "class", "speed_rpm", "mesh", "largest_force_n")
+"""Columns of the tables of largest forces."""
 
 
 def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
-    """The mesh with the largest force at each speed and direction of a sweep, columns FORCE_COLUMNS."""
+    """Select the mesh with the largest force at each speed and direction of a sweep.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Long table of a sweep.
+
+    Returns
+    -------
+    DataFrame
+        Columns as FORCE_COLUMNS.
+    """
     rows = sweep[sweep["quantity"] == "largest_elastic_force_n"].reset_index(drop=True)
     worst = first_largest_rows(rows, "value", ["direction", "speed_rpm"])
     worst = worst.assign(motion="sweep " + worst["direction"])
-    named = worst.rename(columns={"body_or_mesh": "mesh", "value": "largest_force_n"})
-    return named[list(FORCE_COLUMNS)]
+    table = worst.rename(columns={"body_or_mesh": "mesh", "value": "largest_force_n"})
+    return table[list(FORCE_COLUMNS)]
 
 
 def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
-    """The same of every stable stretch of a branch at `speeds` (n,) rpm, between its points linearly.
+    """Select the mesh with the largest force on every stable stretch of a branch.
 
-    A stretch has both its ends. Speeds of points that differ from one of `speeds` by rounding are that one.
+    Forces are interpolated linearly between the points of a branch. A stretch has both its ends. Speeds of
+    points that differ from one of `speeds` by rounding are that one.
+
+    Parameters
+    ----------
+    branches : DataFrame
+        Table of branches by point and mesh.
+    speeds : (n,) array
+        Speeds, rpm.
+
+    Returns
+    -------
+    DataFrame
+        Columns as FORCE_COLUMNS.
     """
     forces = []
     for (number, period), rows in branches.groupby(["branch", "period"], sort=False):
@@ -44,11 +69,11 @@ def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
             inside = speeds[(speeds >= min(first, last)) & (speeds <= max(first, last))]
             inside = inside[inside != last] if goes_on[at] else inside
             part = (inside - first) / (last - first or 1.0)
-            there = (1.0 - part) * force[at] + part * force[at + 1]
+            force_at_speed = (1.0 - part) * force[at] + part * force[at + 1]
             mesh = meshes[at] if force[at] >= force[at + 1] else meshes[at + 1]
             forces += [
                 (f"branch {number}", f"period-{period}", float(rpm), mesh, float(value))
-                for rpm, value in zip(inside, there, strict=True)
+                for rpm, value in zip(inside, force_at_speed, strict=True)
             ]
     return pd.DataFrame(forces, columns=list(FORCE_COLUMNS))
 
@@ -65,11 +90,26 @@ def stress_table(
     base_radius: float,
     contacts: Mapping[str, Collection[FlankContact]],
 ) -> pd.DataFrame:
-    """Stress under each of `forces` (FORCE_COLUMNS), columns as STRESS_OVER_SPEED_COLUMNS.
+    """Tabulate the stress under the largest force of each motion.
 
-    The force is taken to act all through the passage, on the flank where it does more. static_force (N): the
-    largest of all meshes at rest, 0 without load; base_radius (m) of the pinion; contacts of each mesh, one a
-    flank. `worst`: the hardest of all motions known at that speed, and those as hard.
+    The force is taken to act all through the passage, on the flank where it does more. `worst`: the hardest
+    of all motions known at that speed, and those as hard.
+
+    Parameters
+    ----------
+    forces : DataFrame
+        Columns as FORCE_COLUMNS.
+    static_force : float
+        Largest force of all meshes at rest, N; 0 without load.
+    base_radius : float
+        Base radius of the pinion, m.
+    contacts : Mapping[str, Collection[FlankContact]]
+        Contacts of each mesh, one a flank.
+
+    Returns
+    -------
+    DataFrame
+        Columns as STRESS_OVER_SPEED_COLUMNS.
     """
     torques = base_radius * forces["largest_force_n"].to_numpy()
     loads = list(zip([dict.fromkeys(contacts[mesh]) for mesh in forces["mesh"]], torques, strict=True))
@@ -85,8 +125,8 @@ def stress_table(
         pressure_mpa=[
             1e-6 * largest_pressure((contact, torque) for contact in near) for near, torque in loads
         ],
-        within_torques_solved=[next(iter(near)).solved(torque) for near, torque in loads],
-        worst=forces["largest_force_n"] >= (1.0 - ALIKE) * max_force,
+        within_torques_solved=[next(iter(near)).is_solved(torque) for near, torque in loads],
+        worst=forces["largest_force_n"] >= (1.0 - EQUAL_FORCES) * max_force,
     )
     return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[
         list(STRESS_OVER_SPEED_COLUMNS)

@@ -14,27 +14,40 @@ class TensionHistory:
     """
 
     def __init__(self, root: RootStress) -> None:
-        within, where = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
+        within, position_of = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
         largest = np.array([down_the_fillet(stress).max(axis=(1, 2, 3)) for stress in root.stress])
-        by_position = np.array([largest[:, where == index].max(axis=1) for index in range(within.size)]).T
+        by_position = np.array(
+            [largest[:, position_of == index].max(axis=1) for index in range(within.size)]
+        ).T
         self._scale = root.scale
-        self._places = np.append(within, within[0] + 1.0)
+        self._positions = np.append(within, within[0] + 1.0)
         self._table = np.hstack([by_position, by_position[:, :1]])
 
-    def __call__(self, torques: Array, places: Array) -> Array:
-        """Stress (n,) Pa at torques (n,) N m and places (n,) in [0, 1)."""
-        column, on = _cell(self._places, places)
-        row, own, above = self._scale.parts(torques)
+    def __call__(self, torques: Array, positions: Array) -> Array:
+        """Return the stress (n,) Pa at torques (n,) N m and positions (n,) in the mesh cycle, in [0, 1)."""
+        column, on = _cell(self._positions, positions)
+        row, below, above = self._scale.parts(torques)
         low, high = (
             (1.0 - on) * self._table[at, column] + on * self._table[at, column + 1]
             for at in (row, np.minimum(row + 1, len(self._table) - 1))
         )
-        return own * low + above * high
+        return below * low + above * high
 
     def over_passage(self, torque: float) -> float:
-        """Largest stress (Pa) while a torque (N m) stays as it is all through the passage."""
-        places = self._places[:-1]
-        return float(self(np.full(places.size, torque), places).max())
+        """Return the largest stress while a torque stays constant all through the passage.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        float
+            Stress, Pa.
+        """
+        positions = self._positions[:-1]
+        return float(self(np.full(positions.size, torque), positions).max())
 
 
 def _cell(edges: Array, values: Array) -> tuple[Integers, Array]:

@@ -33,20 +33,33 @@ from facegear.strength.passing_tension import PassingTension
 from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
-    from facegear.variants.rubbed_teeth import Rub
+    from facegear.variants.lubricated_teeth import ReduceTeeth
 
 Tensions = Mapping[str, PassingTension]
 """By body."""
 
-KEPT = 16
-"""Pairs that are remembered: samples of one block of Saltelli's design share theirs."""
+CACHED_PAIRS = 16
+"""Number of pairs that are remembered: samples of one block of Saltelli's design share theirs."""
 KEPT_BODIES = 4
 """Compliances of both bodies that are remembered, some 70 MB each at the default resolution."""
 
 
-def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) -> Meshes:
-    """`pair`: sections tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies;
-    `rub`: teeth from their contact, where they are lubricated.
+def meshes_in_contact(pair: Values, flanks: Flanks, rub: "ReduceTeeth | None" = None) -> Meshes:
+    """Return a function that solves the contact of tooth pairs, and remembers the last ones.
+
+    Parameters
+    ----------
+    pair : Values
+        Sections tooth_pair, mesh, contact and mesh_stiffness of the config.
+    flanks : Flanks
+        Compliance of both bodies of this pair by name.
+    rub : ReduceTeeth or None
+        Function that reduces the contact of a lubricated pair; None without lubrication.
+
+    Returns
+    -------
+    Meshes
+        Function from section tooth_pair to the mesh of the pair.
     """
     backlash = geometric_backlash(ToothPair.of_config(pair["tooth_pair"]))
     plan, request = contact_plan(Contact.of_config(pair["contact"])), _request(pair)
@@ -57,36 +70,43 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
         """The contact of the pair itself; None where there is none."""
         section = ToothPair.of_config(pair["tooth_pair"])
         try:
-            both, _ = bodies(pair["tooth_pair"], section)
-            solved = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
+            compliances, _ = bodies(pair["tooth_pair"], section)
+            analysis = contact_analysis(
+                pair_design(section), materials(section), compliances, plan, every_flank=False
+            )
         except FacegearError:
             return None
-        flanks_of_it, base_radius = solved.models[0].flanks, solved.models[0].design.pinion_base_radius
+        flanks_of_it, base_radius = analysis.models[0].flanks, analysis.models[0].design.pinion_base_radius
         positions = even_positions(plan.positions)
-        return known_contact(solved.solved[0][0], positions, flanks_of_it.pinion.shape, base_radius)
+        return known_contact(analysis.solved[0][0], positions, flanks_of_it.pinion.shape, base_radius)
 
-    @lru_cache(maxsize=KEPT)
-    def meshed(text: str) -> PairExcitation:
+    @lru_cache(maxsize=CACHED_PAIRS)
+    def solve_mesh(text: str) -> PairExcitation:
         values = json.loads(text)
         section = parse(ToothPair, values, "this pair")
-        added = geometric_backlash(section, even_positions(plan.positions)) - backlash
-        both, tensions = bodies(values, section)
-        known = nominal() if _nodes(values) == own_nodes else None
+        backlash_increase = geometric_backlash(section, even_positions(plan.positions)) - backlash
+        compliances, tensions = bodies(values, section)
+        start_contact = nominal() if _nodes(values) == own_nodes else None
         analysis = contact_analysis(
-            pair_design(section), materials(section), both, plan, every_flank=False, known=known
+            pair_design(section),
+            materials(section),
+            compliances,
+            plan,
+            every_flank=False,
+            known=start_contact,
         )
         curve = curve_from_contact(analysis.ltca[0], request)
         numbers = ToothNumbers.of_config(values)
         return PairExcitation(
             numbers=numbers,
             stiffness=curve.series,
-            unloaded=curve.error,
-            backlash_added=added,
+            unloaded_error=curve.error,
+            backlash_added=backlash_increase,
             answers=_answers(analysis, tensions, numbers, curve.table, request),
-            rubbed=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,
+            lubricated_teeth=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,
         )
 
-    return lambda values: meshed(json.dumps(values, sort_keys=True))
+    return lambda values: solve_mesh(json.dumps(values, sort_keys=True))
 
 
 def _request(pair: Values) -> StiffnessRequest:
@@ -118,24 +138,26 @@ def _bodies(
     """
     start = ToothPair.of_config(pair["tooth_pair"])
     mesh, contact = Mesh.of_config(pair["mesh"]), Contact.of_config(pair["contact"])
-    known = {_nodes(pair["tooth_pair"]): (start, dict(flanks), _tensions(flanks))}
+    cache_by_nodes = {_nodes(pair["tooth_pair"]): (start, dict(flanks), _tensions(flanks))}
 
     def bodies(values: Values, section: ToothPair) -> tuple[tuple[GearFlank, GearFlank], Tensions]:
         key = _nodes(values)
-        if key not in known:
+        if key not in cache_by_nodes:
             setup = contact_setup(section, mesh, contact)
             check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
-            made: dict[str, GearFlank] = {
+            compliances: dict[str, GearFlank] = {
                 body: gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
                 for body in BODIES
             }
-            if len(known) > KEPT_BODIES:
-                known.pop(list(known)[1])
-            known[key] = section, made, _tensions(made)
-        of, made, tensions = known[key]
-        moduli = ([material.young_modulus for material in materials(other)] for other in (of, section))
+            if len(cache_by_nodes) > KEPT_BODIES:
+                cache_by_nodes.pop(list(cache_by_nodes)[1])
+            cache_by_nodes[key] = section, compliances, _tensions(compliances)
+        of, compliances, tensions = cache_by_nodes[key]
+        moduli = (
+            [material.young_modulus for material in materials(pair_section)] for pair_section in (of, section)
+        )
         first, second = (
-            made[body] if before == after else made[body].softer(before / after)
+            compliances[body] if before == after else compliances[body].softer(before / after)
             for body, before, after in zip(BODIES, *moduli, strict=True)
         )
         return (first, second), tensions
@@ -149,7 +171,9 @@ def _tensions(flanks: Flanks) -> Tensions:
 
 
 def _nodes(tooth_pair: Values) -> str:
-    """What of a pair the nodes of its bodies, and how they give way but for Young's moduli, follow from."""
+    """Return the values on which the nodes of a pair's bodies depend, and their compliance but for Young's
+    moduli.
+    """
     for key in (*GAPS, *MODULI):
         tooth_pair = without(tooth_pair, key)
     return json.dumps(tooth_pair, sort_keys=True)

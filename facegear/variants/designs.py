@@ -1,4 +1,4 @@
-"""What a search asks of a design, as designed or with its tolerances."""
+"""Goals of a search for a design, as designed or with its tolerances."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from facegear.config.base import parse
-from facegear.config.changes import movable, moved, placed, variable_part
+from facegear.config.changes import add_changes, movable, set_numbers, variable_part
 from facegear.config.checks import check_positions
 from facegear.config.machine_layout import wired_layout
 from facegear.config.search import ObjectiveSection, Search, jump_range
@@ -34,17 +34,28 @@ class SearchedMachine(VariedMachine):
 
     @cached_property
     def section(self) -> Search:
-        """What is searched."""
+        """Section `search` of the config."""
         return Search.of_config(self.search)
 
     @property
     def values(self) -> dict[str, Any]:
-        """What may be free."""
+        """Plain values that may be free."""
         return variable_part(self.transmission, self.tooth_pair, self.speed_rpm)
 
 
 def task(section: Search) -> Task:
-    """What is free, what is to be small or large and what is to hold."""
+    """Return variables, objectives and limits of a search.
+
+    Parameters
+    ----------
+    section : Search
+        Section `search` of the config.
+
+    Returns
+    -------
+    Task
+        The task of the evolution.
+    """
     return Task(
         variables=tuple(
             Variable(entry.name, *entry.limits, entry.steps, entry.scale == "log")
@@ -57,56 +68,76 @@ def task(section: Search) -> Task:
 
 
 def assessor(
-    given: SearchedMachine, cycles: int, count: int
+    machine: SearchedMachine, cycles: int, count: int
 ) -> Callable[[Sequence[float] | None], tuple[Quantities, Quantities]]:
-    """Function of a design's values, None for the nominal ones: its goals, and all quantities as designed.
+    """Return a function that evaluates a design.
 
-    Over `cycles` mesh cycles and, where percentiles are asked for, `count` samples. The function raises
-    FacegearError for a design that cannot be built, or of which a sample cannot.
+    It raises FacegearError for a design that cannot be built, or of which a sample cannot.
+
+    Parameters
+    ----------
+    machine : SearchedMachine
+        The machine whose numbers are free.
+    cycles : int
+        Number of mesh cycles of the hunting cycle.
+    count : int
+        Number of samples where percentiles are asked for.
+
+    Returns
+    -------
+    Callable[[Sequence[float] | None], tuple[Quantities, Quantities]]
+        Function from a design's values (None: the nominal ones) to its goals and all its quantities as
+        designed, in the units of their columns.
     """
-    section = given.section
-    tolerances = Tolerances.of_config(given.tolerances) if section.robust and given.tolerances else None
+    section = machine.section
+    tolerances = Tolerances.of_config(machine.tolerances) if section.robust and machine.tolerances else None
     causes = population(tolerances) if tolerances else None
     keys = [key for variable in section.variables for key in variable.sets]
     moves = [key for cause in causes.causes for key, _ in cause.gains] if causes else []
-    start = movable(given.values, [*keys, *moves])
-    question = Question(section.model, cycles, given.accuracy, given.options)
+    start = movable(machine.values, [*keys, *moves])
+    question = Question(section.model, cycles, machine.accuracy, machine.options)
     ask, ask_varied = (
-        given.judge_of(replace(question, jumps=within), "this design") for within in _jumps(section)
+        machine.judge_of(replace(question, jumps=within), "this design") for within in _jumps(section)
     )
-    names = given.columns(wired_layout(start["transmission"], given.tooth_pair), question, jumps=True)
-    drawn = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
+    names = machine.columns(wired_layout(start["transmission"], machine.tooth_pair), question, jumps=True)
+    sample_changes = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
 
     def assess(design: Sequence[float] | None) -> tuple[Quantities, Quantities]:
         numbers = zip(section.variables, design, strict=True) if design is not None else ()
-        chosen = placed(start, {key: float(number) for variable, number in numbers for key in variable.sets})
-        pair = parse(ToothPair, chosen["tooth_pair"], "this design")
-        check_positions(pair, parse(Transmission, chosen["transmission"], "this design"))
-        nominal = ask(chosen)
-        varied = [ask_varied(moved(chosen, added)) for added in drawn]
+        design_values = set_numbers(
+            start, {key: float(number) for variable, number in numbers for key in variable.sets}
+        )
+        pair = parse(ToothPair, design_values["tooth_pair"], "this design")
+        check_positions(pair, parse(Transmission, design_values["transmission"], "this design"))
+        nominal = ask(design_values)
+        sample_quantities = [
+            ask_varied(add_changes(design_values, increments)) for increments in sample_changes
+        ]
         goals = {}
         for goal in (*section.objectives, *section.constraints):
-            goals[goal.name] = _goal(goal, names, nominal, varied)
+            goals[goal.name] = _goal(goal, names, nominal, sample_quantities)
         return goals, nominal
 
     return assess
 
 
 def _goal(
-    goal: ObjectiveSection, names: Sequence[str], nominal: Quantities, varied: Sequence[Quantities]
+    goal: ObjectiveSection, names: Sequence[str], nominal: Quantities, sample_quantities: Sequence[Quantities]
 ) -> float:
     columns = [name for start in goal.quantities for name in columns_of(start, names)]
     worst = min if goal.large else max
     if goal.percentile is None:
         return worst(nominal[name] for name in columns)
     return float(
-        np.percentile([worst(values[name] for name in columns) for values in varied], goal.percentile)
+        np.percentile(
+            [worst(values[name] for name in columns) for values in sample_quantities], goal.percentile
+        )
     )
 
 
 def _jumps(section: Search) -> tuple[JumpRange | None, JumpRange | None]:
     """Where jumps are looked for as designed, and in the samples; None where no goal asks."""
     goals = (*section.objectives, *section.constraints)
-    asking = {goal.percentile is not None for goal in goals if any(map(of_jumps, goal.quantities))}
+    percentile_goals = {goal.percentile is not None for goal in goals if any(map(of_jumps, goal.quantities))}
     within = jump_range(section.jumps)
-    return (within if False in asking else None, within if True in asking else None)
+    return (within if False in percentile_goals else None, within if True in percentile_goals else None)

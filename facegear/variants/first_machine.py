@@ -21,11 +21,21 @@ class FirstMachine:
     """A config as YAML text, and what to expect of the machine, one line each."""
 
     text: str
-    expected: tuple[str, ...]
+    expectations: tuple[str, ...]
 
 
 def first_machine(wishes: MachineWishes) -> FirstMachine:
     """Choose what is not wishes, and estimate what the machine will do.
+
+    Parameters
+    ----------
+    wishes : MachineWishes
+        Values that a user gave.
+
+    Returns
+    -------
+    FirstMachine
+        Config text and expectations.
 
     Raises
     ------

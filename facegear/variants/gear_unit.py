@@ -1,4 +1,4 @@
-"""What REXS holds of a machine."""
+"""Exchange of a machine with REXS files: shafts and bearings of a config, pinions of a file."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,23 @@ RIGID = 1e12
 
 
 def gear_unit(config: Config) -> Unit:
-    """Pinions and face gears as shafts on their bearings. Raises ConfigError without a transmission."""
+    """Return pinions and face gears as shafts on their bearings.
+
+    Parameters
+    ----------
+    config : Config
+        The config.
+
+    Returns
+    -------
+    Unit
+        The unit in the units of REXS: stiffness in N/m, Young's modulus in MPa, lengths in mm.
+
+    Raises
+    ------
+    ConfigError
+        If the config has no transmission.
+    """
     pair, machine = config.tooth_pair, config.transmission
     if machine is None:
         raise ConfigError("transmission", None, "given, as REXS describes shafts and bearings")
@@ -27,9 +43,9 @@ def gear_unit(config: Config) -> Unit:
         pressure_angle=pair.pressure_angle_deg,
         bore=None if body is None else body.bore_radius_mm,
     )
-    placed = layout(machine, ToothNumbers.of_config(pair.model_dump()))
-    shafts = [_pinion(pinion.name, pinion.body, spur) for pinion in placed.pinions]
-    shafts += [_gear(gear.name, gear.body) for gear in placed.gears]
+    machine_layout = layout(machine, ToothNumbers.of_config(pair.model_dump()))
+    shafts = [_pinion(pinion.name, pinion.body, spur) for pinion in machine_layout.pinions]
+    shafts += [_gear(gear.name, gear.body) for gear in machine_layout.gears]
     material = (body and body.material) or pair.material
     return Unit(tuple(shafts), 1e3 * material.young_modulus_gpa, material.poisson_ratio)
 
@@ -62,20 +78,35 @@ class RexsPinions:
 
 
 def known_of_rexs(path: str | Path) -> RexsPinions:
-    """Return what a REXS file says of a starting config.
+    """Return the values that a REXS file has for a starting config.
 
-    That is the pinions, with what their bearings and bodies are given; face gears, roles, torques and speeds
-    it has not. Raises FacegearError for a file without cylindrical gears, or with several kinds of them.
+    These are the pinions with their bearings and bodies. The file has no face gears, roles, torques and
+    speeds.
+
+    Parameters
+    ----------
+    path : str or Path
+        The REXS file.
+
+    Returns
+    -------
+    RexsPinions
+        Values of the equal pinions, and notes.
+
+    Raises
+    ------
+    FacegearError
+        For a file without cylindrical gears, or with several kinds of them.
     """
     shafts = [shaft for shaft in read_rexs(path).shafts if shaft.spur is not None]
     spurs = {shaft.spur for shaft in shafts if shaft.spur is not None}
     if len(spurs) != 1:
         sizes = sorted((spur.teeth, spur.module) for spur in spurs)
-        said = ", ".join(f"{teeth} teeth of {module:g} mm" for teeth, module in sizes) or "none"
-        raise FacegearError(f"{path}: cylindrical gears = {said}: must be equal pinions")
+        descriptions = ", ".join(f"{teeth} teeth of {module:g} mm" for teeth, module in sizes) or "none"
+        raise FacegearError(f"{path}: cylindrical gears = {descriptions}: must be equal pinions")
     (spur,) = spurs
     first = shafts[0]
-    known = {
+    file_values = {
         "pinions": len(shafts),
         "pinion_teeth": spur.teeth,
         "module_mm": spur.module,
@@ -87,7 +118,7 @@ def known_of_rexs(path: str | Path) -> RexsPinions:
         "idler_bearing_n_per_m": first.radial,
         "axial_bearing_n_per_m": first.axial,
     }
-    values = {name: value for name, value in known.items() if value is not None}
+    values = {name: value for name, value in file_values.items() if value is not None}
     notes = []
     for name in [name for name in values if name.endswith("_n_per_m") and values[name] >= RIGID]:
         if name != "idler_bearing_n_per_m":

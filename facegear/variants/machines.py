@@ -1,4 +1,4 @@
-"""Machines put together and judged again and again: what samples and designs have in common."""
+"""Machines built and judged again and again, for samples and designs alike."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
@@ -14,7 +14,7 @@ from facegear.config.dynamics import Accuracy, settings
 from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lubrication import LubricationSection, limits_of
-from facegear.config.lumped_model import described, machine
+from facegear.config.lumped_model import lumped_parts, machine
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.mesh_law import tables_of
 from facegear.config.transmission import Transmission
@@ -44,27 +44,30 @@ from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
     from facegear.poses.surface import PoseSurface
-    from facegear.variants.rubbed_teeth import Rub, RubbedTeeth
+    from facegear.variants.lubricated_teeth import LubricatedTeeth, ReduceTeeth
     from facegear.variants.varied_bodies import VariedBodies
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
-"""What a machine is judged by, by column name, given the values of `facegear.config.changes.variable_part`.
+"""Function that returns the quantities of a machine by column, given values of
+`config.changes.variable_part`.
 
-Raises the error that a config gets for a machine that cannot be built, NotConverged."""
+Raises the error that a config gets for a machine that cannot be built, NotConverged.
+"""
 
 ARRAYS = ("flanks", "pressure", "bodies")
-"""What a machine is given beside values and tables that say the same of it."""
+"""Fields of arrays that follow from the values and tables of the same machine; `identity` leaves them out."""
 WHOLE = 2**31
 """More mesh cycles than any hunting cycle has: all of them."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """How machines are judged: by loads over `cycles` mesh cycles of the hunting cycle, or of the motion.
+    """Settings of how machines are judged.
 
-    `model`: quasi_static or dynamic; `accuracy`, `options`: sections dynamics.accuracy and load_sharing;
-    `jumps`: where the nearest jump is looked for, None if it is not asked for. `every_place`: friction by all
-    places of the contact, not by the few that stand for them.
+    Loads are taken over `cycles` mesh cycles of the hunting cycle, or of the motion. `model` is quasi_static
+    or dynamic. `accuracy` and `options` are the sections dynamics.accuracy and load_sharing. The nearest jump
+    is looked for in `jumps`, None if it is not asked for. With `every_place`, friction is taken at all points
+    of the contact, not at the few that stand for them.
     """
 
     model: str
@@ -82,13 +85,13 @@ class Question:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class VariedMachine:
-    """The machine that many are made from, as plain config values: what samples and designs share.
+    """Machine that many are made from, as plain config values: the common part of samples and designs.
 
     With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth pair
-    that differs is put into contact; without, all have the stiffness of `harmonics`, or the arrays `law` of
-    stage mesh_law where it depends on the load. With `solid`, section tooth_pair, face gears bend; `bodies`:
-    arrays `reduced` of stage gear_bodies. With `poses`, arrays `surface` of stage pose_surface, the meshes of
-    each one stand as its own forces put them.
+    that differs is put into contact. Without, all have the stiffness of `harmonics`, or the arrays `law` of
+    stage mesh_law where it depends on the load. With `solid`, section tooth_pair, face gears bend; `bodies`
+    are the arrays `reduced` of stage gear_bodies. With `poses`, arrays `surface` of stage pose_surface, the
+    meshes of each machine stand where its own forces put them.
     """
 
     harmonics: pd.DataFrame
@@ -105,9 +108,22 @@ class VariedMachine:
     poses: Arrays | None = None
 
     @classmethod
-    def of_stage(cls, flanks: Sequence[Arrays] = (), **given: Any) -> Self:
-        """From the arguments of a stage; `flanks`: arrays of both bodies from stage compliance, if any."""
-        return cls(flanks=stored_flanks(flanks), **given)
+    def of_stage(cls, flanks: Sequence[Arrays] = (), **arguments: Any) -> Self:
+        """Build the machine from the arguments of a stage.
+
+        Parameters
+        ----------
+        flanks : Sequence[Arrays]
+            Arrays of both bodies from stage compliance; empty without contact.
+        **arguments : Any
+            The other fields.
+
+        Returns
+        -------
+        Self
+            The machine.
+        """
+        return cls(flanks=stored_flanks(flanks), **arguments)
 
     @cached_property
     def meshes(self) -> Meshes:
@@ -133,11 +149,41 @@ class VariedMachine:
         return PoseSurface.of_arrays(self.poses)
 
     def judge_of(self, question: Question, label: str, nominal: Values | None = None) -> Judge:
-        """What each one is judged by; `label` names it in errors, `nominal`: the values that it is near."""
+        """Return the function that judges each machine.
+
+        Parameters
+        ----------
+        question : Question
+            Settings of the judgement.
+        label : str
+            Name of a machine in errors.
+        nominal : Values or None
+            Values that all machines are near; their orbit is the first guess. None without a guess.
+
+        Returns
+        -------
+        Judge
+            Function from values to quantities.
+        """
         return judge(question, self.meshes, label, self.varied_bodies, self.surface, nominal)
 
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
-        """Names of what a machine is judged by."""
+        """Return the names of the quantities of a machine.
+
+        Parameters
+        ----------
+        layout : Layout
+            Layout of the machine.
+        question : Question
+            Settings of the judgement.
+        jumps : bool
+            Whether the margin to the nearest jump is one of them.
+
+        Returns
+        -------
+        tuple[str, ...]
+            Names of the columns.
+        """
         gauges = self.pair is not None and self.pair["contact"]["root_stress"]
         contact, law = self.pair is not None, self.law is not None
         return quantity_names(layout, question.dynamic, contact, gauges, jumps, self.friction, law)
@@ -148,12 +194,23 @@ class VariedMachine:
         return False
 
     def identity(self, *parts: object) -> str:
-        """Text that differs whenever one of the parts or a value of the machine does."""
+        """Return a text that differs whenever one of the parts or a value of the machine does.
+
+        Parameters
+        ----------
+        *parts : object
+            Plain values.
+
+        Returns
+        -------
+        str
+            The text.
+        """
         plain = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in ARRAYS}
         tables = {name: value.to_csv() for name, value in plain.items() if isinstance(value, pd.DataFrame)}
         arrays = {
-            text: {name: values.tolist() for name, values in (given or {}).items()}
-            for text, given in (("law", self.law), ("poses", self.poses))
+            text: {name: values.tolist() for name, values in (mapping or {}).items()}
+            for text, mapping in (("law", self.law), ("poses", self.poses))
         }
         return identity(*parts, {**plain, **tables, **arrays})
 
@@ -163,13 +220,32 @@ def tooth_meshes(
     pair: Values | None,
     flanks: Flanks,
     law: Arrays | None = None,
-    rub: "Rub | None" = None,
-    rubbed: "RubbedTeeth | None" = None,
+    rub: "ReduceTeeth | None" = None,
+    lubricated_teeth: "LubricatedTeeth | None" = None,
 ) -> Meshes:
-    """One mesh for all, of `harmonics`; or by contact where `pair` holds the sections that it needs.
+    """Return the function that gives the mesh of a tooth pair.
 
-    `pair`: tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies by name.
-    Lubricated teeth: those `rubbed` of the one mesh, or what `rub` makes of each contact.
+    Without `pair` all machines have one mesh, that of `harmonics`.
+
+    Parameters
+    ----------
+    harmonics : pd.DataFrame
+        Table `harmonics` of stage stiffness.
+    pair : Values or None
+        Sections tooth_pair, mesh, contact and mesh_stiffness, where each pair is put into contact; else None.
+    flanks : Flanks
+        Compliance of the bodies of `pair` by name.
+    law : mapping of arrays or None
+        Arrays `law` of stage mesh_law; None where k does not depend on the load.
+    rub : ReduceTeeth or None
+        Function that reduces each contact of lubricated pairs.
+    lubricated_teeth : LubricatedTeeth or None
+        Lubricated teeth of the one mesh.
+
+    Returns
+    -------
+    Meshes
+        Function from section tooth_pair to the mesh.
     """
     if pair is not None:
         from facegear.variants.contact import meshes_in_contact  # only contact needs finite elements
@@ -178,12 +254,23 @@ def tooth_meshes(
     series, error = series_of(harmonics), unloaded_error(harmonics)
     tables = None if law is None else tables_of(law)
     return lambda values: PairExcitation(
-        ToothNumbers.of_config(values), series, error, tables=tables, rubbed=rubbed
+        ToothNumbers.of_config(values), series, error, tables=tables, lubricated_teeth=lubricated_teeth
     )
 
 
 def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
-    """From the arrays of the pinion and of the face gear, or from none where there is no contact."""
+    """Return the compliance of both bodies from stored arrays.
+
+    Parameters
+    ----------
+    arrays : Sequence[Arrays]
+        Arrays of pinion and face gear from stage compliance; empty without contact.
+
+    Returns
+    -------
+    Flanks
+        Compliance by body.
+    """
     if not arrays:
         return {}
     from facegear.contact.gear_flank import from_arrays
@@ -199,65 +286,91 @@ def judge(
     surface: "PoseSurface | None" = None,
     nominal: Values | None = None,
 ) -> Judge:
-    """`label` names the machine in errors; `bodies` of face gears that bend; `surface`: contact over pose,
-    where meshes stand as the forces of their own machine put them. nominal: values that all are near, whose
-    orbit guides theirs.
+    """Return a function that builds and judges a machine.
+
+    Parameters
+    ----------
+    question : Question
+        Settings of the judgement.
+    meshes : Meshes
+        Function from section tooth_pair to its mesh.
+    label : str
+        Name of the machine in errors.
+    bodies : VariedBodies or None
+        Face gears that bend; None for rigid ones.
+    surface : PoseSurface or None
+        Contact over pose, where meshes stand as the forces of their machine put them; else None.
+    nominal : Values or None
+        Values that all machines are near, whose orbit is the first guess; None without a guess.
+
+    Returns
+    -------
+    Judge
+        Function from values to quantities.
     """
     ask = _ask(question)
 
-    def rubbed(
-        teeth: "RubbedTeeth", lubrication: Values, built: Machine, speed: float, loads: FlankLoads
+    def judge_friction(
+        teeth: "LubricatedTeeth",
+        lubrication: Values,
+        lumped_machine: Machine,
+        speed: float,
+        loads: FlankLoads,
     ) -> dict[str, float]:
-        from facegear.variants.rubbed_teeth import friction_quantities  # only friction needs it
+        from facegear.variants.lubricated_teeth import friction_quantities  # only friction needs it
 
         section = parse(LubricationSection, lubrication, label)
         pair = teeth.pair(section, question.every_place)
-        return friction_quantities(built, speed, loads, pair, limits_of(section))
+        return friction_quantities(lumped_machine, speed, loads, pair, limits_of(section))
 
-    def assembled(values: Values) -> tuple[PairExcitation, Machine]:
+    def assemble(values: Values) -> tuple[PairExcitation, Machine]:
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
-        made = described(section, mesh.numbers, mesh.unloaded)
-        require_buildable(section, mesh.numbers, made)
-        require_room(section, mesh.numbers, made)
-        tables = None if mesh.tables is None else mesh.tables(made[0])
-        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded, made, tables)
+        parts = lumped_parts(section, mesh.numbers, mesh.unloaded_error)
+        require_buildable(section, mesh.numbers, parts)
+        require_room(section, mesh.numbers, parts)
+        tables = None if mesh.tables is None else mesh.tables(parts[0])
+        lumped_machine = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded_error, parts, tables)
         if bodies is not None:
-            built = bodies.joined(built, section, values["tooth_pair"])
+            lumped_machine = bodies.add_bodies(lumped_machine, section, values["tooth_pair"])
         if surface is not None:
-            built = posed_machine(built, surface)
-        return mesh, built
+            lumped_machine = posed_machine(lumped_machine, surface)
+        return mesh, lumped_machine
 
     @cache
     def guide() -> Guide | None:
         if nominal is None or not question.dynamic:
             return None
         try:
-            _, built = assembled(nominal)
+            _, lumped_machine = assemble(nominal)
         except FacegearError:
             return None
-        return orbit_of(built, nominal["dynamics"]["speed_rpm"], *_precision(question))
+        return orbit_of(lumped_machine, nominal["dynamics"]["speed_rpm"], *_precision(question))
 
     @keys_named()
-    def judged(values: Mapping[str, Any]) -> dict[str, float]:
-        mesh, built = assembled(values)
+    def judge_machine(values: Mapping[str, Any]) -> dict[str, float]:
+        mesh, lumped_machine = assemble(values)
         speed = values["dynamics"]["speed_rpm"]
-        quantities, loads = ask(built, speed, guide())
+        quantities, loads = ask(lumped_machine, speed, guide())
         quantities |= mesh.quantities(quantities[PEAK])
-        if mesh.rubbed is not None:
-            quantities |= rubbed(mesh.rubbed, values["lubrication"], built, speed, loads)
+        if mesh.lubricated_teeth is not None:
+            quantities |= judge_friction(
+                mesh.lubricated_teeth, values["lubrication"], lumped_machine, speed, loads
+            )
         if question.jumps is not None:
-            quantities[JUMP_MARGIN] = jump_margin(build_model(built), speed, question.jumps)
+            quantities[JUMP_MARGIN] = jump_margin(build_model(lumped_machine), speed, question.jumps)
         return quantities
 
-    return judged
+    return judge_machine
 
 
 def _ask(question: Question) -> Callable[[Machine, float, Guide | None], Found]:
     if not question.dynamic:
-        return lambda built, speed, guide: quasi_static_quantities(at_rest(built), question.cycles)
+        return lambda lumped_machine, speed, guide: quasi_static_quantities(
+            at_rest(lumped_machine), question.cycles
+        )
     precision = _precision(question)
-    return lambda built, speed, guide: dynamic_quantities(built, speed, *precision, guide)
+    return lambda lumped_machine, speed, guide: dynamic_quantities(lumped_machine, speed, *precision, guide)
 
 
 def _precision(question: Question) -> tuple[Settings, SharingOptions]:

@@ -87,7 +87,7 @@ class ChosenBearings:
 
 
 def choose_bearings(
-    closed: SplitMachine,
+    closed_form: SplitMachine,
     wishes: tuple[float | None, float | None, float | None],
     machine_with: Callable[[Bearings], Machine],
 ) -> ChosenBearings:
@@ -95,7 +95,7 @@ def choose_bearings(
 
     Parameters
     ----------
-    closed : SplitMachine
+    closed_form : SplitMachine
         The machine in numbers.
     wishes : tuple of three floats or None
         Radial stiffness of inputs, idlers and gears, N/m, where it is given.
@@ -108,35 +108,48 @@ def choose_bearings(
         The first bearings with a right split by MARGIN, else those that come nearest to one.
     """
     given_input, given_idler, given_gear = wishes
-    mesh = closed.mesh_stiffness
+    mesh = closed_form.mesh_stiffness
     best: ChosenBearings | None = None
     for idler in [given_idler] if given_idler is not None else [factor * mesh for factor in IDLERS]:
         for aim in AIMS if given_input is None else AIMS[:1]:
-            soft = closed.input_bearing_for(aim, idler) if given_input is None else given_input
+            soft = closed_form.input_bearing_for(aim, idler) if given_input is None else given_input
             if given_input is None:
                 soft = min(max(soft, SOFTEST * mesh), STIFF * mesh) if isfinite(soft) else STIFF * mesh
             bearings = Bearings(
-                rounded(soft), rounded(idler), rounded(STIFF * mesh) if given_gear is None else given_gear
+                round_stiffness(soft),
+                round_stiffness(idler),
+                round_stiffness(STIFF * mesh) if given_gear is None else given_gear,
             )
-            found = ChosenBearings(bearings, split_of(machine_with(bearings)))
-            if best is None or found.split.excess < best.split.excess:
-                best = found
-            if found.split.excess <= MARGIN:
-                return found
+            candidate = ChosenBearings(bearings, split_of(machine_with(bearings)))
+            if best is None or candidate.split.excess < best.split.excess:
+                best = candidate
+            if candidate.split.excess <= MARGIN:
+                return candidate
     assert best is not None
     return best
 
 
 def split_of(machine: Machine) -> Split:
-    """Estimate how the machine shares its load, by some cycles spread over the hunting cycle."""
+    """Estimate how the machine shares its load, by some cycles spread over the hunting cycle.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine with its bearings and errors.
+
+    Returns
+    -------
+    Split
+        Load sharing at rest.
+    """
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // CYCLES, 1))
     roles = [machine.layout.pinions[pinion].role for pinion, _ in machine.layout.meshes]
     factors = run.mesh_load_factors
     inputs = np.array([role is Role.INPUT for role in roles])
-    shared = np.zeros(inputs.size, dtype=bool)
+    shares_load = np.zeros(inputs.size, dtype=bool)
     for group in run.groups:
-        shared[list(group.meshes)] = True
-    idlers = factors[~inputs & shared]
+        shares_load[list(group.meshes)] = True
+    idlers = factors[~inputs & shares_load]
     return Split(
         inputs=float(np.nanmax(factors[inputs])),
         idlers=np.array([idlers.min(), idlers.max()]) if idlers.size else np.full(2, np.nan),
@@ -150,29 +163,52 @@ def _group_ratio(run: HuntingCycle) -> float:
     return float(max(ratios, default=np.nan))
 
 
-def smallest_torque(closed: SplitMachine, bearings: Bearings, torque: float) -> float:
-    """Torque of an input, N m, from which the softest bearing gives LARGEST_K_GAMMA without errors.
+def smallest_torque(closed_form: SplitMachine, bearings: Bearings, torque: float) -> float:
+    """Find the torque from which the softest bearing gives LARGEST_K_GAMMA without errors.
 
-    `torque`: that of the machine now, N m. Infinite where no torque is enough.
+    Parameters
+    ----------
+    closed_form : SplitMachine
+        The machine in closed form.
+    bearings : Bearings
+        Bearings of the machine.
+    torque : float
+        Torque of an input now, N m.
+
+    Returns
+    -------
+    float
+        Torque of an input, N m; infinite where no torque is enough.
     """
-    loop = closed.input_k_gamma(SOFTEST * closed.mesh_stiffness, bearings.idlers)
+    loop = closed_form.input_k_gamma(SOFTEST * closed_form.mesh_stiffness, bearings.idlers)
     if loop <= LARGEST_K_GAMMA:
         return torque
     factors = 2.0 ** np.arange(0.25, 12.0, 0.25)
     for factor in factors:
         heavier = SplitMachine(
-            closed.inputs,
-            closed.idlers,
-            closed.input_force * float(factor),
-            closed.mesh_stiffness,
-            closed.backlash,
-            closed.pressure_angle,
+            closed_form.inputs,
+            closed_form.idlers,
+            closed_form.input_force * float(factor),
+            closed_form.mesh_stiffness,
+            closed_form.backlash,
+            closed_form.pressure_angle,
         )
-        if heavier.input_k_gamma(SOFTEST * closed.mesh_stiffness, bearings.idlers) <= LARGEST_K_GAMMA:
+        if heavier.input_k_gamma(SOFTEST * closed_form.mesh_stiffness, bearings.idlers) <= LARGEST_K_GAMMA:
             return torque * float(factor)
     return float("inf")
 
 
-def rounded(stiffness: float) -> float:
-    """Three significant digits, as a config writes it."""
+def round_stiffness(stiffness: float) -> float:
+    """Round a stiffness to three significant digits, as a config writes it.
+
+    Parameters
+    ----------
+    stiffness : float
+        Stiffness, N/m.
+
+    Returns
+    -------
+    float
+        Rounded stiffness, N/m.
+    """
     return float(f"{stiffness:.3g}")

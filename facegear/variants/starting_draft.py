@@ -14,7 +14,7 @@ import numpy as np
 from facegear.config.load import config_of
 from facegear.config.machines import MachineInputs
 from facegear.config.mesh import Mesh, mesh_sizes
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.config.yaml_file import read_yaml
 from facegear.contact.resolution import COARSEST, half_width
 from facegear.errors import FacegearError
@@ -26,7 +26,7 @@ from facegear.transmission.machine import Machine
 from facegear.variants.split_bearings import (
     STIFF,
     Bearings,
-    rounded,
+    round_stiffness,
 )
 from facegear.variants.starting_teeth import MORE_SHAPER_TEETH, choose_teeth, chosen_keys
 from facegear.variants.starting_wishes import MachineWishes
@@ -121,7 +121,7 @@ class Draft:
         Bearings
             Radial stiffness, N/m.
         """
-        stiff, wishes = rounded(STIFF * self.stiffness), self.wishes
+        stiff, wishes = round_stiffness(STIFF * self.stiffness), self.wishes
         bearing_wishes = (getattr(wishes, name) for name in RADIAL)
         return Bearings(*(stiff if stiffness is None else stiffness for stiffness in bearing_wishes))
 
@@ -157,7 +157,7 @@ class Draft:
             values = read_yaml(path)
         # Conjugate flanks have no e(t) without load, and no contact analysis is made for an estimate.
         values["transmission"]["transmission_error"] = {"amplitude_um": 0}
-        return resolved(config_of(values))
+        return resolved_values(config_of(values))
 
     def _spring_values(self, radial: float) -> dict[str, float]:
         axial = self.wishes.axial_bearing_n_per_m
@@ -279,7 +279,7 @@ class Draft:
 
     def _reasons(self) -> dict[str, str]:
         """Reason of each value, or that it was given."""
-        low, high = (1e3 * radius for radius in self.teeth.allowed)
+        low, high = (1e3 * radius for radius in self.teeth.face_limits)
         face = f"chosen within {low:.4g} to {high:.4g} mm, between undercut and pointed tips"
         soft = "; soft bearings let the inputs share between both gears" if self.wishes.idlers else ""
         reasons = {

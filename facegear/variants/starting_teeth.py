@@ -44,16 +44,16 @@ CONTACT_RATIO = 1.05
 """Smallest contact ratio of a pair that is chosen."""
 POSITIONS = 16
 """Positions in a pitch at which gaps are looked for."""
-TRIED = 40
+MAX_ANALYSES = 40
 """Largest number of teeth whose gaps are computed, 0.2 s each."""
 
 
 @dataclass(frozen=True)
 class ChosenTeeth:
-    """Teeth that mesh freely: the design, the radii (m) that its face may have, and what is known of it."""
+    """Teeth that mesh freely: the design, the radii (m) that limit its face, and its analysis."""
 
     design: PairDesign
-    allowed: tuple[float, float]
+    face_limits: tuple[float, float]
     analysis: PairAnalysis
 
 
@@ -99,10 +99,10 @@ def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH
     """
     _require_numbers(wishes)
     refusals = _Refusals()
-    tried = 0
+    analyses = 0
     for candidate in _candidates(wishes, more_shaper_teeth):
         try:
-            design, allowed = _placed(candidate, wishes)
+            design, face_limits = _place_face(candidate, wishes)
         except GeometryError as error:
             refusals.add(str(error))
             continue
@@ -111,7 +111,7 @@ def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH
         if ratio < CONTACT_RATIO:
             refusals.add("contact ratio")
             continue
-        tried += 1
+        analyses += 1
         try:
             analysis = analyse(design, POSITIONS)
         except (GeometryError, NotConverged) as error:
@@ -119,9 +119,9 @@ def choose_teeth(wishes: ToothWishes, more_shaper_teeth: int = MORE_SHAPER_TEETH
             continue
         smallest = (analysis.interference or analysis.smallest).gap
         if smallest >= SMALLEST_GAP * design.module:
-            return ChosenTeeth(design, allowed, analysis)
+            return ChosenTeeth(design, face_limits, analysis)
         refusals.add("gap")
-        if tried == TRIED:
+        if analyses == MAX_ANALYSES:
             break
     raise _no_teeth(wishes, refusals)
 
@@ -147,8 +147,8 @@ def _require_numbers(wishes: ToothWishes) -> None:
     if not 5 <= wishes.pinion_teeth <= 500:
         raise ConfigError("pinion_teeth", wishes.pinion_teeth, "from 5 to 500")
     if not wishes.pinion_teeth < wishes.face_gear_teeth <= 2000:
-        allowed = f"more than the pinion's {wishes.pinion_teeth}, at most 2000"
-        raise ConfigError("face_gear_teeth", wishes.face_gear_teeth, allowed)
+        requirement = f"more than the pinion's {wishes.pinion_teeth}, at most 2000"
+        raise ConfigError("face_gear_teeth", wishes.face_gear_teeth, requirement)
     if not 0.1 <= wishes.module_mm <= 100.0:
         raise ConfigError("module_mm", wishes.module_mm, "from 0.1 to 100")
     if not 10.0 <= wishes.pressure_angle_deg <= 40.0:
@@ -199,16 +199,16 @@ def _smallest_shift(teeth: int, pressure_angle_deg: float, dedendum: float, rack
     return max(0.0, SHIFT_STEP * ceil(round(least / SHIFT_STEP, 9)))
 
 
-def _placed(design: PairDesign, wishes: ToothWishes) -> tuple[PairDesign, tuple[float, float]]:
+def _place_face(design: PairDesign, wishes: ToothWishes) -> tuple[PairDesign, tuple[float, float]]:
     """The design with its face as near to the pitch radius as the limits let it, and these limits, m.
 
     Raises GeometryError where the teeth cannot exist or leave less than NARROWEST modules.
     """
     check_shaper(design)
     limits = face_range(design, radius_limits(design))
-    module, room = design.module, limits.outer - limits.inner
-    free = FREE_ENDS * room
-    width = min(room - 2.0 * free, WIDEST * module)
+    module, radial_range = design.module, limits.outer - limits.inner
+    free = FREE_ENDS * radial_range
+    width = min(radial_range - 2.0 * free, WIDEST * module)
     if width < NARROWEST * module:
         raise GeometryError(
             "face_gear", round(width / module, 3), f"a face of {NARROWEST:g} modules: {limits}"
@@ -223,13 +223,13 @@ def _placed(design: PairDesign, wishes: ToothWishes) -> tuple[PairDesign, tuple[
         outer = 1e-3 * wishes.outer_radius_mm
         if wishes.inner_radius_mm is None:
             inner = max(outer - width, limits.inner + free)
-    placed = replace(
+    design_with_face = replace(
         design,
         face_gear=replace(design.face_gear, inner_radius=inner, outer_radius=outer),
         pinion=replace(design.pinion, width=outer - inner + 2.0 * module),
     )
-    check(placed)
-    return placed, (limits.inner, limits.outer)
+    check(design_with_face)
+    return design_with_face, (limits.inner, limits.outer)
 
 
 def _given_or(wish: float | None, choice: float) -> float:
@@ -241,7 +241,18 @@ def _one_or(wish: float | None, choices: tuple[float, ...]) -> tuple[float, ...]
 
 
 def chosen_keys(teeth: ChosenTeeth) -> dict[str, Any]:
-    """Values of the teeth by the names of ToothWishes, rounded as a config writes them."""
+    """Return the values of the teeth, rounded as a config writes them.
+
+    Parameters
+    ----------
+    teeth : ChosenTeeth
+        The teeth.
+
+    Returns
+    -------
+    dict[str, Any]
+        Values by the names of ToothWishes.
+    """
     design = teeth.design
     module, pinion, gear, shaper = design.module, design.pinion, design.face_gear, design.shaper
     return {

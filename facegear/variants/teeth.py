@@ -1,4 +1,4 @@
-"""What a tooth pair means for the machine that it is built into."""
+"""Mesh of a tooth pair for the machine that it is built into."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from facegear.strength.pair_answers import PairAnswers
 
 if TYPE_CHECKING:
     from facegear.contact.gear_flank import GearFlank
-    from facegear.variants.rubbed_teeth import RubbedTeeth
+    from facegear.variants.lubricated_teeth import LubricatedTeeth
 
 Values = Mapping[str, Any]
 Flanks = Mapping[str, "GearFlank"]
@@ -21,36 +21,59 @@ Flanks = Mapping[str, "GearFlank"]
 
 @dataclass(frozen=True, eq=False)
 class PairExcitation:
-    """What a tooth pair means for its machine: k and e over a pitch, and the teeth's numbers.
+    """Excitation of a machine by a tooth pair: k and e over a pitch, and the teeth's numbers.
 
-    `backlash_added` (um): what the pair has more than the one of the config. `answers` where it was put into
-    contact. tables: of the flanks where k depends on the load. `rubbed` where it is lubricated.
+    `backlash_added` (um) is the difference of the pair's backlash from that of the config. `answers` are
+    those of the contact where the pair was put into contact. `tables` are those of the flanks where k depends
+    on the load. `lubricated_teeth` are given where the pair is lubricated.
     """
 
     numbers: ToothNumbers
     stiffness: Harmonics
-    unloaded: Harmonics | None
+    unloaded_error: Harmonics | None
     backlash_added: float = 0.0
     answers: PairAnswers | None = None
     tables: TablesOf | None = None
-    rubbed: "RubbedTeeth | None" = None
+    lubricated_teeth: "LubricatedTeeth | None" = None
 
     def in_machine(self, transmission: Values) -> dict[str, Any]:
-        """Section `transmission` with the backlash of all meshes as this pair has it."""
-        changed = dict(transmission)
+        """Return section `transmission` with the backlash of this pair.
+
+        Parameters
+        ----------
+        transmission : Values
+            Plain values of the section.
+
+        Returns
+        -------
+        dict[str, Any]
+            Plain values with the added backlash at all meshes.
+        """
+        section = dict(transmission)
         if self.backlash_added == 0.0:
-            return changed
-        changed["backlash_um"] += self.backlash_added
-        changed["single_meshes"] = {
+            return section
+        section["backlash_um"] += self.backlash_added
+        section["single_meshes"] = {
             name: mesh
             if mesh.get("backlash_um") is None
             else {**mesh, "backlash_um": mesh["backlash_um"] + self.backlash_added}
             for name, mesh in transmission["single_meshes"].items()
         }
-        return changed
+        return section
 
     def quantities(self, force: float) -> dict[str, float]:
-        """Columns of a sample whose largest mesh force is `force` (N); none without contact."""
+        """Return the contact quantities of a machine.
+
+        Parameters
+        ----------
+        force : float
+            Largest mesh force of the machine, N.
+
+        Returns
+        -------
+        dict[str, float]
+            Transmission error (um), pressure and root stress (MPa) by column; none without contact.
+        """
         if self.answers is None:
             return {}
         answers, torque = self.answers, force * self.numbers.pinion_base_radius

@@ -21,30 +21,66 @@ from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.machine import Machine
 from facegear.variants.teeth import Values
 
-KEPT = 64
-"""Bodies that are remembered."""
+CACHED_BODIES = 64
+"""Number of bodies that are remembered."""
 
 
 @dataclass(frozen=True, eq=False)
 class VariedBodies:
-    """pair: of the config; `known`: bodies by all that they depend on."""
+    """Bodies of face gears for machines that differ.
+
+    `pair` is the tooth pair of the config. `cache` holds solved bodies by everything that they depend on.
+    """
 
     pair: ToothPair
-    known: dict[Hashable, ReducedBody] = field(default_factory=dict)
+    cache: dict[Hashable, ReducedBody] = field(default_factory=dict)
 
     @classmethod
     def of_stage(cls, transmission: Values, pair: Values, arrays: Arrays) -> Self:
-        """With the bodies of the config itself from the arrays `reduced` of stage gear_bodies."""
+        """Build the cache with the bodies of the config itself.
+
+        Parameters
+        ----------
+        transmission : Values
+            Plain values of section `transmission`.
+        pair : Values
+            Plain values of section `tooth_pair`.
+        arrays : mapping of arrays
+            Arrays `reduced` of stage gear_bodies, in SI units.
+
+        Returns
+        -------
+        Self
+            The bodies.
+        """
         bodies = cls(ToothPair.of_config(pair))
         for side, section in elastic_gears(Transmission.of_config(transmission)).items():
-            bodies.known[_key(section, bodies.pair)] = ReducedBody.of_arrays(arrays, side)
+            bodies.cache[_key(section, bodies.pair)] = ReducedBody.of_arrays(arrays, side)
         return bodies
 
-    def joined(self, machine: Machine, section: Transmission, values: Values) -> Machine:
-        """The machine of a section `transmission` on its bodies; values: of its section tooth_pair, as far as
-        they are known.
+    def add_bodies(self, machine: Machine, section: Transmission, values: Values) -> Machine:
+        """Put a machine on its bodies; a body is solved where it is not in the cache.
 
-        Raises ConfigError for a body that cannot be, NotConverged.
+        Parameters
+        ----------
+        machine : Machine
+            The machine with rigid gears.
+        section : Transmission
+            Section `transmission` of the machine.
+        values : Values
+            Plain values of section `tooth_pair`, as far as they are known.
+
+        Returns
+        -------
+        Machine
+            The machine with elastic gears.
+
+        Raises
+        ------
+        ConfigError
+            For a body that cannot exist.
+        NotConverged
+            If a body is not solved.
         """
         pair = ToothPair.of_config(values) if values.get("face_gear") is not None else self.pair
         check_bodies(pair, section)
@@ -59,19 +95,19 @@ class VariedBodies:
 
     def _body(self, section: BodySection, pair: ToothPair) -> ReducedBody:
         key = _key(section, pair)
-        if key not in self.known:
-            if len(self.known) >= KEPT:
-                del self.known[next(iter(self.known))]
-            self.known[key] = _solved(section, pair)
-        return self.known[key]
+        if key not in self.cache:
+            if len(self.cache) >= CACHED_BODIES:
+                del self.cache[next(iter(self.cache))]
+            self.cache[key] = _solve_body(section, pair)
+        return self.cache[key]
 
 
 def _key(section: BodySection, pair: ToothPair) -> Hashable:
     """All that a body depends on."""
     shape = body_shape(section, pair)
     mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
-    own = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
-    return (section, shape.corners.tobytes(), mounting, own)
+    fitted_teeth = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
+    return (section, shape.corners.tobytes(), mounting, fitted_teeth)
 
 
 def _nominal_teeth(design: PairDesign) -> Hashable:
@@ -81,12 +117,12 @@ def _nominal_teeth(design: PairDesign) -> Hashable:
     return (design.module, design.pressure_angle, pinion, gear, design.shaper)
 
 
-def _solved(section: BodySection, pair: ToothPair) -> ReducedBody:
+def _solve_body(section: BodySection, pair: ToothPair) -> ReducedBody:
     from facegear.gear_body.body import (
         solve_body,  # only a body that no stage has solved needs finite elements
     )
     from facegear.gear_body.reduction import reduced_body
 
     shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
-    solved = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
-    return reduced_body(solved, contact_patch(section, pair), *section.damping)
+    solution = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
+    return reduced_body(solution, contact_patch(section, pair), *section.damping)

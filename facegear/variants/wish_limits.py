@@ -4,7 +4,7 @@ from math import atan, degrees, floor, pi
 
 from facegear.config.base import Section
 from facegear.config.bodies import BearingStiffness, GearBody, PinionBody
-from facegear.config.checks import BROKEN, STEEL, tooth_limit
+from facegear.config.checks import STEEL, STRAIN_REASON, tooth_limit
 from facegear.config.tooth_pair import FaceGearSection, PinionSection, ShaperSection
 from facegear.config.transmission import MAX_PINIONS, DampingSection
 from facegear.errors import ConfigError
@@ -97,7 +97,9 @@ def require_room(wishes: MachineWishes, design: PairDesign) -> None:
     """
     largest = tooth_limit(design, STEEL) / TORQUE_MARGINS[1]
     if wishes.torque_n_m > largest:
-        raise ConfigError("torque_n_m", wishes.torque_n_m, f"at most {largest:.4g} for these teeth: {BROKEN}")
+        raise ConfigError(
+            "torque_n_m", wishes.torque_n_m, f"at most {largest:.4g} for these teeth: {STRAIN_REASON}"
+        )
     bore, root = wishes.pinion_bore_radius_mm, 1e3 * design.pinion_root_radius
     if bore is not None and bore >= root:
         raise ConfigError("pinion_bore_radius_mm", bore, f"less than the root radius, {root:.4g}")

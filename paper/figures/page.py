@@ -37,16 +37,45 @@ TITLES = {
 
 
 def file_name(number: int, ending: str) -> str:
-    """Name of a file of a figure."""
+    """Return the name of a file of a figure.
+
+    Parameters
+    ----------
+    number : int
+        Number of the figure.
+    ending : str
+        Ending of the name, without the dot.
+
+    Returns
+    -------
+    str
+        Name of the file.
+    """
     return f"fig{number:02d}.{ending}"
 
 
 def render(
     case: str, words: Sequence[str], claims: Claims, scorecard: pd.DataFrame, inputs: Sequence[InputSet]
 ) -> str:
-    """The page of a case.
+    """Render the page of a case.
 
-    `words` are its undisclosed inputs, `inputs` the cases that one may switch between.
+    Parameters
+    ----------
+    case : str
+        Name of the case.
+    words : Sequence[str]
+        Undisclosed inputs of the case, in words.
+    claims : Claims
+        Claims of the publication.
+    scorecard : DataFrame
+        The scorecard, a row a claim.
+    inputs : Sequence[InputSet]
+        Cases that the reader may switch between.
+
+    Returns
+    -------
+    str
+        The page, HTML.
     """
     rows = {str(row["id"]): row for row in scorecard.to_dict("records")}
     figures = [
@@ -84,12 +113,12 @@ def _counts_in_words(rows: Sequence[Mapping[Any, Any]]) -> str:
 def _cells(row: Mapping[Any, Any]) -> dict[str, str]:
     """Cells of a claim as text; nothing where there is none."""
     paper, fraction = row["paper"], row["random_share"]
-    known = paper is not None and paper == paper
+    has_number = paper is not None and paper == paper
     return {
         "claim": str(row["claim"]),
         "fitted": "fitted" if row["fitted"] else "",
         "paper": f"{format_number(paper, DIGITS)} {row['unit'] if row['unit'] == row['unit'] else ''}".strip()
-        if known
+        if has_number
         else "",
         "ours": str(row["shown"]),
         "verdict": str(row["verdict"]),

@@ -1,4 +1,4 @@
-"""How often random plausible inputs hold each claim: the level that a verdict has to be seen against."""
+"""Shares of random plausible inputs that hold each claim: the level to compare a verdict with."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -11,52 +11,103 @@ from facegear.scenarios.statistics import fraction_of
 from paper.scorecard.claims import Claim
 
 CONFIDENCE = 0.95
+"""Level of the Wilson interval of a share, dimensionless."""
 TAILS = (0.05, 0.95)
+"""Quantiles of the number of claims held that are quoted as its spread, dimensionless."""
 RATE_COLUMNS = ("id", "samples", "held", "share", "low", "high")
+"""Columns of `base_rates`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Totals:
-    """Of `claims` distinct claims, how many each random set of inputs holds, shape (samples,)."""
+    """Number of claims that each random set of inputs holds, (samples,), out of `claims` distinct ones."""
 
     claims: int
-    held: Array
+    claims_held: Array
 
     @property
     def mean(self) -> float:
         """Claims held on average."""
-        return float(self.held.mean())
+        return float(self.claims_held.mean())
 
     @property
     def spread(self) -> tuple[float, float]:
         """The 5th and the 95th percentile of the number of claims held."""
-        low, high = np.quantile(self.held, TAILS)
+        low, high = np.quantile(self.claims_held, TAILS)
         return float(low), float(high)
 
     def share_reaching(self, count: int) -> float:
-        """Share of the samples that hold at least as many claims."""
-        return float((self.held >= count).mean())
+        """Return the share of the samples that hold at least as many claims.
+
+        Parameters
+        ----------
+        count : int
+            Number of claims.
+
+        Returns
+        -------
+        float
+            Share, 0 to 1.
+        """
+        return float((self.claims_held >= count).mean())
 
 
 def base_rates(samples: pd.DataFrame, claims: Iterable[Claim]) -> pd.DataFrame:
-    """Samples judged, samples that hold the claim, their share and its Wilson interval; one row a claim.
+    """Count the samples that hold each claim, one row a claim.
 
-    `samples` has a column a claim, 1 where it holds; samples that have no result are left out.
+    Rows hold the samples judged, samples that hold the claim, their share and its Wilson interval.
+
+    Parameters
+    ----------
+    samples : DataFrame
+        A column a claim, 1 where it holds; samples that have no result are left out.
+    claims : Iterable[Claim]
+        Claims to count.
+
+    Returns
+    -------
+    DataFrame
+        Columns as RATE_COLUMNS.
     """
-    rows, judged = [], sound(samples)
+    rows, valid_samples = [], sound(samples)
     for claim in claims:
-        held = judged[claim.id].to_numpy(bool)
-        fraction = fraction_of(held, CONFIDENCE)
-        rows.append((claim.id, held.size, int(held.sum()), fraction.value, fraction.low, fraction.high))
+        is_true = valid_samples[claim.id].to_numpy(bool)
+        fraction = fraction_of(is_true, CONFIDENCE)
+        rows.append((claim.id, is_true.size, int(is_true.sum()), fraction.value, fraction.low, fraction.high))
     return pd.DataFrame(rows, columns=list(RATE_COLUMNS))
 
 
 def totals(samples: pd.DataFrame, claims: Sequence[Claim]) -> Totals:
-    """Claims held by each sample; repeated numbers count once, and only claims that were judged count."""
+    """Count the claims held by each sample; repeated numbers count once, and only claims that were judged
+    count.
+
+    Parameters
+    ----------
+    samples : DataFrame
+        A column a claim, 1 where it holds.
+    claims : Sequence[Claim]
+        All claims.
+
+    Returns
+    -------
+    Totals
+        Number of claims held by each sample.
+    """
     ids = [claim.id for claim in claims if claim.counts and claim.id in samples.columns]
     return Totals(len(ids), sound(samples)[ids].sum(axis=1).to_numpy(float))
 
 
 def sound(samples: pd.DataFrame) -> pd.DataFrame:
-    """The samples that have a result."""
+    """Select the samples that have a result.
+
+    Parameters
+    ----------
+    samples : DataFrame
+        Samples with a column `error`.
+
+    Returns
+    -------
+    DataFrame
+        Rows without an error.
+    """
     return samples[samples["error"].isna() | (samples["error"] == "")]

@@ -1,4 +1,4 @@
-"""What the paper claims: one record a number or statement, read from a data file."""
+"""Claims of the paper: one record a number or statement, read from a data file."""
 
 from pathlib import Path
 from typing import Any, Literal
@@ -9,6 +9,7 @@ from facegear.config.base import Section, parse, refuse
 from facegear.config.yaml_file import read_yaml
 
 TORQUE, GEAR_DATA = "torque per engine", "gear data"
+"""Names of undisclosed inputs: of the dynamics, and of the teeth."""
 
 
 class Claim(Section):
@@ -65,12 +66,28 @@ class Claims(Section):
         double = sorted({name for name in names if names.count(name) > 1})
         if double:
             refuse("claims", double, "ids that differ from claim to claim")
-        lost = sorted({claim.same_as for claim in self.claims if claim.same_as} - set(names))
-        if lost:
-            refuse("claims", lost, "ids of other claims, as same_as names them")
+        unknown_ids = sorted({claim.same_as for claim in self.claims if claim.same_as} - set(names))
+        if unknown_ids:
+            refuse("claims", unknown_ids, "ids of other claims, as same_as names them")
         return self
 
 
 def read_claims(path: str | Path) -> Claims:
-    """Read a claims file. Raises ConfigErrors with one line for every mistake."""
+    """Read a claims file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    Claims
+        All claims of the publication.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
+    """
     return parse(Claims, read_yaml(path), source=str(path))

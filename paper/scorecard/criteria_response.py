@@ -15,30 +15,92 @@ periodic motion looked for is as long."""
 
 
 def synchronous(tables: Tables, a: str, b: str, lower: float) -> ClaimOutcome:
-    """On both sides the deflections of the two pinions correlate by at least the stated value."""
+    """On both sides the deflections of the two pinions correlate by at least the stated value.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    a : str
+        Name of a pinion.
+    b : str
+        Name of the other pinion.
+    lower : float
+        Least correlation, dimensionless.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
     values = [_correlation(tables, f"{a}/{side}", f"{b}/{side}") for side in SIDES]
     return statement(min(values) >= lower, _sides(values))
 
 
 def not_synchronous(tables: Tables, a: str, b: list[str], upper: float) -> ClaimOutcome:
-    """On at least one side the deflection of the pinion correlates below the stated value with each other."""
+    """On at least one side the deflection of the pinion correlates below the stated value with each other.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    a : str
+        Name of a pinion.
+    b : list[str]
+        Names of the other pinions.
+    upper : float
+        Largest correlation, dimensionless.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
     values = {
-        other: min(_correlation(tables, f"{a}/{side}", f"{other}/{side}") for side in SIDES) for other in b
+        pinion: min(_correlation(tables, f"{a}/{side}", f"{pinion}/{side}") for side in SIDES) for pinion in b
     }
-    shown = ", ".join(f"with {other} {value:z.2f}" for other, value in values.items())
-    return statement(max(values.values()) <= upper, shown)
+    text = ", ".join(f"with {pinion} {value:z.2f}" for pinion, value in values.items())
+    return statement(max(values.values()) <= upper, text)
 
 
 def sides_not_synchronous(tables: Tables, upper: float) -> ClaimOutcome:
-    """The deflections of a pinion's lower and upper mesh correlate below the value, for every pinion."""
+    """The deflections of a pinion's lower and upper mesh correlate below the value, for every pinion.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    upper : float
+        Largest correlation, dimensionless.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
     pinions = dict.fromkeys(mesh.rsplit("/", 1)[0] for mesh in _meshes(tables))
     values = {name: _correlation(tables, f"{name}/lower", f"{name}/upper") for name in pinions}
-    shown = ", ".join(f"{name} {value:z.2f}" for name, value in values.items())
-    return statement(max(values.values()) <= upper, shown)
+    text = ", ".join(f"{name} {value:z.2f}" for name, value in values.items())
+    return statement(max(values.values()) <= upper, text)
 
 
 def dominant_lines(tables: Tables, pinion: str, lines: list[float]) -> ClaimOutcome:
-    """On both sides the largest spectral lines, as many as are listed, stand at the listed orders."""
+    """On both sides the largest spectral lines, as many as are listed, stand at the listed orders.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    pinion : str
+        Name of the pinion.
+    lines : list[float]
+        Orders of the mesh frequency, dimensionless.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
     strongest = [_strongest(tables, f"{pinion}/{side}", len(lines)) for side in SIDES]
     holds = all(sorted(orders) == sorted(lines) for orders in strongest)
     return statement(holds, _sides(["+".join(f"{order:g}x" for order in orders) for orders in strongest]))
@@ -47,6 +109,22 @@ def dominant_lines(tables: Tables, pinion: str, lines: list[float]) -> ClaimOutc
 def line_larger(tables: Tables, pinion: str, line: float, fraction: float) -> ClaimOutcome:
     """The line at the stated order is larger on the upper side than on the lower one, by at least the stated
     share of the upper side's line at 1x.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    pinion : str
+        Name of the pinion.
+    line : float
+        Order of the mesh frequency, dimensionless.
+    fraction : float
+        Share of the line at 1x, dimensionless.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
     """
     values = [_amplitude(tables, f"{pinion}/{side}", line) for side in SIDES]
     threshold = fraction * _amplitude(tables, f"{pinion}/upper", 1.0)
@@ -60,20 +138,56 @@ def subharmonic_content(tables: Tables, pinion: str, fraction: float) -> ClaimOu
 
     The lines beside the mean and beside 1x are not counted where the spectrum is that of an irregular motion:
     its window spreads every line over the two beside it.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    pinion : str
+        Name of the pinion.
+    fraction : float
+        Share of the line at 1x, dimensionless.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
     """
     shares = [_below(tables, f"{pinion}/{side}") for side in SIDES]
     return statement(min(shares) >= fraction, _sides([f"{100 * value:.0f} % of 1x" for value in shares]))
 
 
 def lost_contact(tables: Tables) -> ClaimOutcome:
-    """At the nominal speed some mesh is out of contact for part of the time."""
+    """At the nominal speed some mesh is out of contact for part of the time.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
     frame = tables["sharing"]
     fraction = float(frame.loc[frame["study"] == "nominal", "lost_fraction"].max())
     return statement(fraction > 0.0, f"up to {100 * fraction:.0f} % of the time")
 
 
 def mesh_period(tables: Tables) -> ClaimOutcome:
-    """Mesh period at the nominal speed."""
+    """Mesh period at the nominal speed.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+
+    Returns
+    -------
+    ClaimOutcome
+        The number, in the unit of the claim.
+    """
     curve = tables["curves"]
     rows = curve[(curve["study"] == "nominal") & (curve["cycle_fraction"] > 0.0)]
     return number(float((rows["time_s"] / rows["cycle_fraction"]).iloc[0]))
@@ -126,5 +240,5 @@ def _correlation(tables: Tables, first: str, second: str) -> float:
 
 
 def _sides(values: list[float] | list[str]) -> str:
-    shown = [f"{value:z.2f}" if isinstance(value, float) else value for value in values]
-    return f"lower {shown[0]}, upper {shown[1]}"
+    texts = [f"{value:z.2f}" if isinstance(value, float) else value for value in values]
+    return f"lower {texts[0]}, upper {texts[1]}"

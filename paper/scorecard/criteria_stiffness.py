@@ -6,7 +6,18 @@ from paper.scorecard.outcome import ClaimOutcome, Tables, number, statement
 
 
 def fe_mean_stiffness(tables: Tables) -> ClaimOutcome:
-    """Mean of the average stiffness from contact analysis at the load at which k(t) is taken."""
+    """Mean of the average stiffness from contact analysis at the load at which k(t) is taken.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+
+    Returns
+    -------
+    ClaimOutcome
+        The number, in the unit of the claim.
+    """
     frame = tables["load_dependence"]
     rows = frame[frame["definition"] == "average"].sort_values("torque_n_m")
     logs = np.log(rows["torque_n_m"].to_numpy(float))
@@ -17,6 +28,18 @@ def fe_mean_stiffness(tables: Tables) -> ClaimOutcome:
 def series_carries_curve(tables: Tables, within: float) -> ClaimOutcome:
     """The kept Fourier series differs from the contact analysis nowhere by more than this part of the
     peak-to-peak value.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    within : float
+        Part of the peak-to-peak value, relative.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
     """
     frame = tables["tvms"]
     off = float(np.abs(frame["k_series_n_per_m"] - frame["k_n_per_m"]).max() / np.ptp(frame["k_n_per_m"]))

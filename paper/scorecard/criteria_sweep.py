@@ -24,6 +24,20 @@ DEFLECTION = ("deflection_ac_rms_um",)
 def peak_speed(tables: Tables, parts: list[str], near: float) -> ClaimOutcome:
     """Speed of the translations' peak nearest to the paper's; a peak stands out by 10 % of the largest level,
     and the motion there or at the next speed is regular.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    parts : list[str]
+        Names of the bodies.
+    near : float
+        Speed that the paper states, rpm.
+
+    Returns
+    -------
+    ClaimOutcome
+        The number, in the unit of the claim.
     """
     speeds, level = _level(tables, TRANSLATIONS, parts, "up")
     regular = _regular(tables, speeds, "up")
@@ -34,6 +48,22 @@ def peak_speed(tables: Tables, parts: list[str], near: float) -> ClaimOutcome:
 def dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> ClaimOutcome:
     """The largest translation over all speeds is a peak within the stated relative distance of the speed, and
     not an end of the sweep.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    parts : list[str]
+        Names of the bodies.
+    near : float
+        Speed that the paper states, rpm.
+    within : float
+        Largest distance from the speed, relative.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
     """
     speeds, level = _level(tables, TRANSLATIONS, parts, "up")
     top = int(level.argmax())
@@ -43,14 +73,43 @@ def dominant_peak(tables: Tables, parts: list[str], near: float, within: float) 
 
 
 def not_dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> ClaimOutcome:
-    """The largest translation over all speeds lies outside the stated relative distance of the speed."""
+    """The largest translation over all speeds lies outside the stated relative distance of the speed.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    parts : list[str]
+        Names of the bodies.
+    near : float
+        Speed that the paper states, rpm.
+    within : float
+        Largest distance from the speed, relative.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
     dominant = dominant_peak(tables, parts, near, within)
-    return statement(not dominant.holds, dominant.shown)
+    return statement(not dominant.holds, dominant.text)
 
 
 def jump_speed(tables: Tables, near: float) -> ClaimOutcome:
     """Speed of the jump, in either direction, nearest to the paper's; at a jump the RMS of a mesh changes by
     a quarter of the larger value or more, and the motion is regular on one side.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    near : float
+        Speed that the paper states, rpm.
+
+    Returns
+    -------
+    ClaimOutcome
+        The number, in the unit of the claim.
     """
     jumps, speeds = tables["jumps"], tables["sweep"]["speed_rpm"]
     levels = jumps[["deflection_ac_rms_before_um", "deflection_ac_rms_after_um"]].to_numpy(float)
@@ -62,43 +121,119 @@ def jump_speed(tables: Tables, near: float) -> ClaimOutcome:
 
 
 def jump_leans(tables: Tables, near: float, within: float, lean: str) -> ClaimOutcome:
-    """Of the speeds within the stated distance at which the mean mesh levels of the up and down sweeps differ
-    by 10 %, the upward level is the higher one at most (hardening) or the lower one at most (softening).
+    """The upward level is the higher one at most (hardening) or the lower one at most (softening) of the
+    speeds within the stated distance at which the mean mesh levels of the up and down sweeps differ by 10
+    %.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    near : float
+        Speed that the paper states, rpm.
+    within : float
+        Largest distance from the speed, relative.
+    lean : str
+        `hardening` or `softening`.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
     """
-    speeds, more = _bistable(tables, list(_meshes(tables)))
+    speeds, higher_sweep = _bistable(tables, list(_meshes(tables)))
     close = np.abs(speeds / near - 1.0) <= within
-    return _leaning(more[close], lean)
+    return _leaning(higher_sweep[close], lean)
 
 
 def jump_in_mesh(tables: Tables, pinion: str, near: float, within: float, lean: str) -> ClaimOutcome:
-    """As for the whole machine, for the meshes of one pinion."""
-    speeds, more = _bistable(tables, [mesh for mesh in _meshes(tables) if mesh.startswith(f"{pinion}/")])
+    """The upward level of the meshes of one pinion is the higher one at most (hardening) or the lower one at
+    most (softening) of the speeds within the stated distance at which the levels of the up and down sweeps
+    differ by 10 %.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    pinion : str
+        Name of the pinion.
+    near : float
+        Speed that the paper states, rpm.
+    within : float
+        Largest distance from the speed, relative.
+    lean : str
+        `hardening` or `softening`.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
+    speeds, higher_sweep = _bistable(
+        tables, [mesh for mesh in _meshes(tables) if mesh.startswith(f"{pinion}/")]
+    )
     close = np.abs(speeds / near - 1.0) <= within
-    return _leaning(more[close], lean)
+    return _leaning(higher_sweep[close], lean)
 
 
 def wider_region(tables: Tables, broad: float, narrow: float, within: float) -> ClaimOutcome:
-    """More speeds around the first than around the second have different levels in the up and down sweeps."""
-    speeds, more = _bistable(tables, list(_meshes(tables)))
+    """More speeds around the first than around the second have different levels in the up and down sweeps.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    broad : float
+        Speed of the wider region, rpm.
+    narrow : float
+        Speed of the narrower region, rpm.
+    within : float
+        Largest distance from the speed, relative.
+
+    Returns
+    -------
+    ClaimOutcome
+        Whether the statement holds, with the evidence.
+    """
+    speeds, higher_sweep = _bistable(tables, list(_meshes(tables)))
     width = [
-        float(np.abs(more[np.abs(speeds / near - 1.0) <= within]).sum() * (speeds[1] - speeds[0]))
+        float(np.abs(higher_sweep[np.abs(speeds / near - 1.0) <= within]).sum() * (speeds[1] - speeds[0]))
         for near in (broad, narrow)
     ]
     return statement(width[0] > width[1], f"{width[0]:.0f} rpm against {width[1]:.0f} rpm")
 
 
 def mode_speed(tables: Tables, order: int, multiple: float, pinion_teeth: int = 23) -> ClaimOutcome:
-    """Speed at which the mesh frequency meets the frequency of the mode, times the multiple."""
+    """Speed at which the mesh frequency meets the frequency of the mode, times the multiple.
+
+    Parameters
+    ----------
+    tables : Tables
+        Stored results by name.
+    order : int
+        Order of the mode, from 1.
+    multiple : float
+        Multiple of the mode frequency, dimensionless.
+    pinion_teeth : int
+        Number of teeth of the pinion.
+
+    Returns
+    -------
+    ClaimOutcome
+        The number, in the unit of the claim.
+    """
     values = tables["frequencies"].set_index("order")["frequency_hz"]
     return number(60.0 * multiple * values[order] / pinion_teeth)
 
 
-def _leaning(more: Integers, lean: str) -> ClaimOutcome:
-    if not more.any():
+def _leaning(higher_sweep: Integers, lean: str) -> ClaimOutcome:
+    if not higher_sweep.any():
         return statement(False, "up and down sweeps agree")
-    lean_of_sweep = "hardening" if more.sum() > 0 else "softening" if more.sum() < 0 else "neither"
-    upward = count_noun(int((more > 0).sum()), "speed")
-    counts = f"{upward} higher upward, {(more < 0).sum()} higher downward"
+    lean_of_sweep = (
+        "hardening" if higher_sweep.sum() > 0 else "softening" if higher_sweep.sum() < 0 else "neither"
+    )
+    upward = count_noun(int((higher_sweep > 0).sum()), "speed")
+    counts = f"{upward} higher upward, {(higher_sweep < 0).sum()} higher downward"
     return statement(lean_of_sweep == lean, f"{lean_of_sweep} ({counts})")
 
 
@@ -117,8 +252,13 @@ def _level(
     if rows.empty:
         raise KeyError(f"no sweep of {', '.join(parts)}")
     largest = rows.groupby(["quantity", "body_or_mesh"])["value"].transform("max")
-    scaled = rows.assign(value=rows["value"] / largest)
-    curve = scaled[scaled["direction"] == direction].groupby("speed_rpm")["value"].mean().sort_index()
+    relative_rows = rows.assign(value=rows["value"] / largest)
+    curve = (
+        relative_rows[relative_rows["direction"] == direction]
+        .groupby("speed_rpm")["value"]
+        .mean()
+        .sort_index()
+    )
     return curve.index.to_numpy(float), curve.to_numpy(float)
 
 

@@ -12,14 +12,26 @@ from paper.scorecard.rows import Verdict
 
 TEMPLATE = Path(__file__).with_name("scorecard.html.j2")
 DIGITS = 4
+"""Number of significant digits on the page."""
 ORDER = (Verdict.DIFFERS, Verdict.UNDECIDED, Verdict.DEPENDS, Verdict.REPRODUCED)
 """Verdicts in the order of the page: differences first."""
 
 
 def counts(frame: pd.DataFrame) -> dict[str, int]:
-    """Distinct rows about this model by verdict, all verdicts present."""
-    kept = frame[frame["counted"]]
-    return {verdict.value: int((kept["verdict"] == verdict.value).sum()) for verdict in Verdict}
+    """Count the distinct rows about this model by verdict, all verdicts present.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        The scorecard, a row a claim.
+
+    Returns
+    -------
+    dict[str, int]
+        Number of rows by verdict.
+    """
+    counted_rows = frame[frame["counted"]]
+    return {verdict.value: int((counted_rows["verdict"] == verdict.value).sum()) for verdict in Verdict}
 
 
 def render(
@@ -30,10 +42,27 @@ def render(
     starts: pd.DataFrame,
     chance: Totals | None = None,
 ) -> str:
-    """The page; `inputs` are lines naming the inputs the paper does not disclose, `sets` those that fit.
+    """Render the page.
 
-    `starts`: what each set holds from rest and from every start (START_COLUMNS); `chance`: what random inputs
-    hold.
+    Parameters
+    ----------
+    frame : DataFrame
+        The scorecard, a row a claim.
+    source : str
+        The publication.
+    inputs : list[str]
+        Lines that name the inputs the paper does not disclose.
+    sets : DataFrame
+        Sets of inputs that fit.
+    starts : DataFrame
+        Claims that each set holds from rest and from every start (START_COLUMNS).
+    chance : Totals or None
+        Claims that random inputs hold, None where there are none.
+
+    Returns
+    -------
+    str
+        The page, HTML.
     """
     held_out = frame[(frame["undisclosed"] != "") & ~frame["fitted"]]
     return pages.render(
@@ -84,19 +113,34 @@ def groups(frame: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 def against_chance(frame: pd.DataFrame, chance: Totals) -> str:
-    """What the config's inputs hold beside what random ones do, in words."""
-    kept = frame[frame["counted"] & frame["dynamic"]]
-    ours = int(kept["holds"].sum())
-    steady = int((kept["verdict"] == Verdict.REPRODUCED).sum())
+    """Compare the claims that the config's inputs hold with those of random inputs, in words.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        The scorecard, a row a claim.
+    chance : Totals
+        Claims that random inputs hold.
+
+    Returns
+    -------
+    str
+        The text.
+    """
+    dynamic_rows = frame[frame["counted"] & frame["dynamic"]]
+    true_claims = int(dynamic_rows["holds"].sum())
+    steady = int((dynamic_rows["verdict"] == Verdict.REPRODUCED).sum())
     low, high = chance.spread
-    reaching = chance.share_reaching(ours)
-    better = "no better than chance" if ours <= high else "more than 95 % of random inputs do"
+    share = chance.share_reaching(true_claims)
+    better = "no better than chance" if true_claims <= high else "more than 95 % of random inputs do"
     return (
         f"Of {chance.claims} distinct claims that hang on the dynamics' undisclosed inputs, "
-        f"{chance.held.size} random plausible sets of inputs hold {chance.mean:.1f} on average (the middle "
-        f"90 % of them {low:.0f} to {high:.0f}, the best {chance.held.max():.0f}). The inputs used here hold "
-        f"{ours}, {steady} of them in every run: {better}; {100 * reaching:.0f} % of the random sets hold as "
-        "many or more."
+        f"{chance.claims_held.size} random plausible sets of inputs hold {chance.mean:.1f} on average "
+        "(the middle "
+        f"90 % of them {low:.0f} to {high:.0f}, the best {chance.claims_held.max():.0f}). "
+        "The inputs used here hold "
+        f"{true_claims}, {steady} of them in every run: {better}; {100 * share:.0f} % of the random sets "
+        "hold as many or more."
     )
 
 

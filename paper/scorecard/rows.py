@@ -11,14 +11,16 @@ from paper.scorecard.claims import Claim
 from paper.scorecard.criteria import CRITERIA
 from paper.scorecard.outcome import ClaimOutcome, Tables, describe
 
-OWN = "config"
+CONFIG_SET = "config"
 """Name of the config's own inputs among the sets."""
 RUN_COLUMNS = ("set", "id", "runs", "held", "low", "high")
+"""Columns of the table of repeated runs."""
 OUTCOME_COLUMNS = ("id", "value", "shown", "holds", "chance", "windows", "spread")
+"""Columns of the table of outcomes."""
 
 
 class Verdict(StrEnum):
-    """What a row comes to."""
+    """Verdicts of a row."""
 
     REPRODUCED = "reproduced"
     UNDECIDED = "undecided"
@@ -27,50 +29,101 @@ class Verdict(StrEnum):
 
 
 def outcome_table(claims: Iterable[Claim], tables: Tables) -> pd.DataFrame:
-    """What the criteria find, columns OUTCOME_COLUMNS.
+    """Evaluate the criteria of all claims.
 
     The chance is the probability with which a number picked at random would hold, where the criterion takes
     the nearest of several. `windows` is the range of a number over single cycles and other starts where its
     ends do not hold alike, and empty otherwise; `spread` is half its width.
 
-    Raises FacegearError for an unknown criterion or one that finds no result.
+    Parameters
+    ----------
+    claims : Iterable[Claim]
+        Claims to evaluate.
+    tables : Tables
+        Stored results by name.
+
+    Returns
+    -------
+    DataFrame
+        Columns as OUTCOME_COLUMNS.
+
+    Raises
+    ------
+    FacegearError
+        For an unknown criterion or one that finds no result.
     """
     rows = []
     for claim in claims:
         outcome = _evaluate(claim, tables)
         chance = None if claim.tolerance is None else outcome.chance(claim.tolerance)
-        judged = (outcome.value, outcome.shown, _holds(claim, outcome.value, outcome.holds), chance)
+        columns = (outcome.value, outcome.text, _holds(claim, outcome.value, outcome.holds), chance)
         low, high = outcome.windows or (0.0, 0.0)
-        rows.append((claim.id, *judged, _split(claim, outcome), 0.5 * (high - low)))
+        rows.append((claim.id, *columns, _split(claim, outcome), 0.5 * (high - low)))
     return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
 
 
 def scorecard(
-    claims: Iterable[Claim], own: pd.DataFrame, runs: pd.DataFrame, rates: pd.DataFrame
+    claims: Iterable[Claim], outcomes: pd.DataFrame, runs: pd.DataFrame, rates: pd.DataFrame
 ) -> pd.DataFrame:
-    """One row a claim, from its outcome with the config's inputs.
+    """Judge each claim from its outcome with the config's inputs, one row a claim.
 
-    `runs` (columns RUN_COLUMNS) says how other runs of the config and of other sets that fit as well came
-    out, `rates` (RATE_COLUMNS) how random inputs do; both may be empty. A row is undecided where runs of the
-    config that differ by rounding or start disagree, or its number does not hold in all windows of the
-    motion. One that fails with the config's inputs but holds in every run of another set depends on an
-    undisclosed input.
+    A row is undecided where runs of the config that differ by rounding or start disagree, or its number does
+    not hold in all windows of the motion. One that fails with the config's inputs but holds in every run of
+    another set depends on an undisclosed input.
 
-    Raises FacegearError for a row that differs or depends without a reason.
+    Parameters
+    ----------
+    claims : Iterable[Claim]
+        Claims to judge.
+    outcomes : DataFrame
+        Outcomes with the config's inputs (OUTCOME_COLUMNS).
+    runs : DataFrame
+        Results of other runs of the config and of other sets that fit as well (RUN_COLUMNS); may be empty.
+    rates : DataFrame
+        Results of random inputs (RATE_COLUMNS); may be empty.
+
+    Returns
+    -------
+    DataFrame
+        The scorecard.
+
+    Raises
+    ------
+    FacegearError
+        For a row that differs or depends without a reason.
     """
-    indexed = own.set_index("id")
-    judged = {str(name): rows.set_index("set") for name, rows in runs.groupby("id")}
+    indexed = outcomes.set_index("id")
+    runs_by_claim = {str(name): rows.set_index("set") for name, rows in runs.groupby("id")}
     shares = rates.set_index("id")
-    return pd.DataFrame([_row(claim, indexed, judged.get(claim.id), shares) for claim in claims])
+    return pd.DataFrame([_row(claim, indexed, runs_by_claim.get(claim.id), shares) for claim in claims])
 
 
-def verdict(split: bool, holds: bool, others: Sequence[bool], undisclosed: Sequence[str]) -> Verdict:
-    """Verdict of a row from whether its own runs disagree, what they say, and whether other sets hold."""
+def verdict(
+    split: bool, holds: bool, set_verdicts: Sequence[bool], undisclosed_inputs: Sequence[str]
+) -> Verdict:
+    """Return the verdict of a row.
+
+    Parameters
+    ----------
+    split : bool
+        Whether its own runs disagree.
+    holds : bool
+        Whether the claim holds with the config's inputs.
+    set_verdicts : Sequence[bool]
+        Whether it holds in every run of each other set.
+    undisclosed_inputs : Sequence[str]
+        Undisclosed inputs on which the row depends.
+
+    Returns
+    -------
+    Verdict
+        The verdict.
+    """
     if split:
         return Verdict.UNDECIDED
     if holds:
         return Verdict.REPRODUCED
-    return Verdict.DEPENDS if undisclosed and any(others) else Verdict.DIFFERS
+    return Verdict.DEPENDS if undisclosed_inputs and any(set_verdicts) else Verdict.DIFFERS
 
 
 def _evaluate(claim: Claim, tables: Tables) -> ClaimOutcome:
@@ -82,15 +135,15 @@ def _evaluate(claim: Claim, tables: Tables) -> ClaimOutcome:
         raise FacegearError(f"scorecard row {claim.id}: no result for it ({error})") from error
 
 
-def _holds(claim: Claim, value: float | None, stated: bool | None) -> bool:
+def _holds(claim: Claim, value: float | None, statement_holds: bool | None) -> bool:
     if claim.paper is None or claim.tolerance is None:
-        return bool(stated)
+        return bool(statement_holds)
     slack = 1e-9 * abs(claim.paper)
     return value is not None and abs(value - claim.paper) <= claim.tolerance + slack
 
 
 def _split(claim: Claim, outcome: ClaimOutcome) -> str:
-    """Range over the windows where a part of it, but not all, is within the tolerance."""
+    """Return the range over the windows where a part of it, but not all, is within the tolerance."""
     if outcome.windows is None or claim.paper is None or claim.tolerance is None:
         return ""
     low, high = outcome.windows
@@ -99,17 +152,25 @@ def _split(claim: Claim, outcome: ClaimOutcome) -> str:
     return f"{low:.4g} to {high:.4g}" if meets and not inside else ""
 
 
-def _row(claim: Claim, own: pd.DataFrame, judged: pd.DataFrame | None, rates: pd.DataFrame) -> dict[str, Any]:
-    run = own.loc[claim.id]
-    sets = pd.DataFrame(columns=RUN_COLUMNS) if judged is None else judged.drop(index=OWN, errors="ignore")
-    again = None if judged is None or OWN not in judged.index else judged.loc[OWN]
-    others = [bool(entry.held == entry.runs) for entry in sets.itertuples()]
+def _row(
+    claim: Claim, outcomes: pd.DataFrame, claim_runs: pd.DataFrame | None, rates: pd.DataFrame
+) -> dict[str, Any]:
+    run = outcomes.loc[claim.id]
+    sets = (
+        pd.DataFrame(columns=RUN_COLUMNS)
+        if claim_runs is None
+        else claim_runs.drop(index=CONFIG_SET, errors="ignore")
+    )
+    again = None if claim_runs is None or CONFIG_SET not in claim_runs.index else claim_runs.loc[CONFIG_SET]
+    set_verdicts = [bool(entry.held == entry.runs) for entry in sets.itertuples()]
     note = _disagreement(bool(run["holds"]), str(run["windows"]), again)
-    decided = verdict(note != "", bool(run["holds"]), others, claim.undisclosed)
-    reason = note if note else "" if decided is Verdict.REPRODUCED else claim.reason
-    if decided is not Verdict.REPRODUCED and not reason:
-        raise FacegearError(f"scorecard row {claim.id} ({run['shown']}): {decided.value}, without a reason")
-    ours = float(run["value"]) if pd.notna(run["value"]) else None
+    row_verdict = verdict(note != "", bool(run["holds"]), set_verdicts, claim.undisclosed)
+    reason = note if note else "" if row_verdict is Verdict.REPRODUCED else claim.reason
+    if row_verdict is not Verdict.REPRODUCED and not reason:
+        raise FacegearError(
+            f"scorecard row {claim.id} ({run['shown']}): {row_verdict.value}, without a reason"
+        )
+    value = float(run["value"]) if pd.notna(run["value"]) else None
     rate = rates.loc[claim.id] if claim.id in rates.index else None
     return {
         "id": claim.id,
@@ -117,8 +178,8 @@ def _row(claim: Claim, own: pd.DataFrame, judged: pd.DataFrame | None, rates: pd
         "claim": claim.claim,
         "criterion": describe(CRITERIA[claim.criterion], claim.args),
         "paper": claim.paper,
-        "ours": ours,
-        "difference": ours - claim.paper if ours is not None and claim.paper is not None else None,
+        "ours": value,
+        "difference": value - claim.paper if value is not None and claim.paper is not None else None,
         "tolerance": claim.tolerance,
         "unit": claim.unit,
         "shown": run["shown"],
@@ -126,7 +187,7 @@ def _row(claim: Claim, own: pd.DataFrame, judged: pd.DataFrame | None, rates: pd
         "random_share": None if rate is None else float(rate["share"]),
         "random_low": None if rate is None else float(rate["low"]),
         "random_high": None if rate is None else float(rate["high"]),
-        "verdict": decided.value,
+        "verdict": row_verdict.value,
         "holds": bool(run["holds"]),
         "runs_holding": "" if again is None else f"{int(again['held'])} of {int(again['runs'])}",
         "fitted": claim.fitted,
@@ -134,14 +195,14 @@ def _row(claim: Claim, own: pd.DataFrame, judged: pd.DataFrame | None, rates: pd
         "dynamic": claim.dynamic,
         "sets_low": float(sets["low"].min()) if sets["low"].notna().any() else None,
         "sets_high": float(sets["high"].max()) if sets["high"].notna().any() else None,
-        "sets_reproducing": f"{sum(others)} of {len(others)}" if others else "",
+        "sets_reproducing": f"{sum(set_verdicts)} of {len(set_verdicts)}" if set_verdicts else "",
         "undisclosed": "; ".join(claim.undisclosed),
         "reason": reason,
     }
 
 
 def _disagreement(holds: bool, windows: str, again: "pd.Series | None") -> str:
-    """Why a row is undecided; empty where it is not."""
+    """Return why a row is undecided; empty where it is not."""
     if windows:
         return f"Single cycles of the motion, or other starts, give {windows}: only a part of it agrees."
     if again is None or int(again["held"]) == holds * int(again["runs"]):

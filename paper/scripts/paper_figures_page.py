@@ -11,16 +11,16 @@ from facegear.plots.save import save
 from facegear.provenance.stage import stage
 from facegear.report.inputs import inputs_in_words
 from paper.figures.claims_of import NUMBERS, claims_of
-from paper.figures.drawn import draw, shown_data
+from paper.figures.draw import draw, shown_data
 from paper.figures.page import file_name, render
 from paper.reproduction import InputSet
 from paper.scorecard.claims import read_claims
 
-STORED = ("frequencies", "shapes", "tvms", "harmonics", "response", "spectrum", "sweep", "sharing")
+TABLES = ("frequencies", "shapes", "tvms", "harmonics", "response", "spectrum", "sweep", "sharing")
 
 with stage(snakemake) as run:
     files = snakemake.input
-    inputs = {name: tables.read(files[name]) for name in STORED}
+    inputs = {name: tables.read(files[name]) for name in TABLES}
     inputs["curves"] = pd.concat([tables.read(path) for path in files.studies], ignore_index=True)
     claims = read_claims(files.claims)
     folder = Path(snakemake.output.html).parent

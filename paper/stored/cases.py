@@ -27,33 +27,63 @@ def changed_cases(
     changes: Mapping[str, Any],
     points: PointChanges = MappingProxyType({}),
 ) -> Cases:
-    """Cases of a config with dotted keys set to new values; a study's own keys come after them, and `points`
-    puts other values in their place.
+    """Return the cases of a config with dotted keys set to new values.
 
-    Raises ConfigErrors for a value that the config refuses.
+    A study's own keys come after them, and `points` puts other values in their place.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the config.
+    changes : Mapping[str, Any]
+        New values by dotted key.
+    points : PointChanges
+        New values of points of studies.
+
+    Returns
+    -------
+    Cases
+        Cases of the machine and of each (study, point).
+
+    Raises
+    ------
+    ConfigErrors
+        For a value that the config refuses.
     """
-    changed = json.loads(json.dumps({**values, "reproduction": None}))
+    new_values = json.loads(json.dumps({**values, "reproduction": None}))
     for key, value in changes.items():
-        set_key(changed, key, value)
-    for study in changed["studies"]:
+        set_key(new_values, key, value)
+    for study in new_values["studies"]:
         for point in (point for axis in study["axes"] for point in axis["points"]):
             point["set"].update(points.get((study["name"], folder_name(point["label"])), {}))
-    cases = expand_cases(parse(Config, changed))
-    base = cases.pop(changed["case"])
+    cases = expand_cases(parse(Config, new_values))
+    base = cases.pop(new_values["case"])
     return base, {_study_and_point(case): case_values for case, case_values in cases.items()}
 
 
 def settings_key(base: Mapping[str, Any], points: Mapping[tuple[str, str], Mapping[str, Any]]) -> str:
-    """Text that differs whenever a key on which the dynamics of a case or of its studies depends does.
+    """Return a text that differs if a key on which the dynamics of a case or of its studies depends does.
 
-    Keys left at their defaults do not count, nor what decides no result: chunks of the sweep.
+    Keys left at their defaults do not count, nor those that decide no result: chunks of the sweep.
+
+    Parameters
+    ----------
+    base : Mapping[str, Any]
+        Plain values of the machine.
+    points : Mapping[tuple[str, str], Mapping[str, Any]]
+        Plain values of each (study, point).
+
+    Returns
+    -------
+    str
+        The first 16 digits of a SHA-256 sum.
     """
     text = json.dumps([_decisive(values) for values in (base, *points.values())], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def _decisive(values: Mapping[str, Any]) -> dict[str, Any]:
-    """What decides the dynamics, of the full plain values of a case, less what stands at its default."""
+    """Select the values of a case that decide its dynamics, without those at their defaults."""
     case = json.loads(json.dumps({**values, "case": "any"}))
     case["dynamics"]["sweep"]["chunks"] = 1
     case["mesh"]["thin_fillet"] = case["mesh"]["thin_fillet"] or None  # false is filled in where null stood

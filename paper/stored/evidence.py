@@ -1,4 +1,6 @@
-"""What the repository stores beside the config's own run: other sets, repeated runs, random inputs."""
+"""Results that the repository stores in addition to the config's own run: other sets, repeated runs, random
+inputs.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -36,16 +38,40 @@ class Evidence:
 def stored_evidence(
     claims: Sequence[Claim], case: Mapping[str, Any], sets: File, runs: File, random: File
 ) -> Evidence:
-    """Read what is stored; `case` holds the full plain values of the config. Raises CorruptFile."""
+    """Read the stored results.
+
+    Parameters
+    ----------
+    claims : Sequence[Claim]
+        All claims.
+    case : Mapping[str, Any]
+        Full plain values of the config.
+    sets : File
+        File of the sets that fit.
+    runs : File
+        File of the repeated runs.
+    random : File
+        File of the random inputs.
+
+    Returns
+    -------
+    Evidence
+        Results that hold for the config's settings.
+
+    Raises
+    ------
+    CorruptFile
+        If a file cannot be read.
+    """
     fitting = pd.read_csv(str(sets)) if sets else pd.DataFrame()
-    same, rates = pd.DataFrame(columns=RUN_COLUMNS), pd.DataFrame(columns=RATE_COLUMNS)
+    matching_runs, rates = pd.DataFrame(columns=RUN_COLUMNS), pd.DataFrame(columns=RATE_COLUMNS)
     chance, starts = None, pd.DataFrame(columns=START_COLUMNS)
     if runs:
-        others = stored_sets(str(sets)) if sets else {}
-        stored = tables.read(str(runs), STORED_COLUMNS[:4])
-        same, starts = runs_of_config(stored, case, others), start_table(stored, claims)
+        set_rows = stored_sets(str(sets)) if sets else {}
+        stored_runs = tables.read(str(runs), STORED_COLUMNS[:4])
+        matching_runs, starts = runs_of_config(stored_runs, case, set_rows), start_table(stored_runs, claims)
     if random:
         samples = tables.read(str(random))
-        judged = [claim for claim in claims if claim.id in samples.columns]
-        rates, chance = base_rates(samples, judged), totals(samples, judged)
-    return Evidence(fitting, same, rates, chance, starts)
+        judged_claims = [claim for claim in claims if claim.id in samples.columns]
+        rates, chance = base_rates(samples, judged_claims), totals(samples, judged_claims)
+    return Evidence(fitting, matching_runs, rates, chance, starts)

@@ -1,4 +1,4 @@
-"""What random inputs hold: shares with their intervals, totals."""
+"""Shares of random inputs that hold a claim, with their intervals, and totals."""
 
 import numpy as np
 import pandas as pd
@@ -38,4 +38,4 @@ def test_samples_without_a_result_are_left_out(samples):
     samples.loc[0, ["always", "never", "half", "again"]] = np.nan
     samples["error"] = ["no motion"] + [""] * 39
     assert base_rates(samples, CLAIMS)["samples"].tolist() == [39] * 4
-    assert totals(samples, CLAIMS).held.size == 39
+    assert totals(samples, CLAIMS).claims_held.size == 39

@@ -10,7 +10,7 @@ import pytest
 
 import facegear
 from paper.figures.claims_of import NUMBERS, STUDIES, claims_of, figures_of
-from paper.figures.drawn import MODES, PINIONS, SWEPT, draw, shown_data, stated_speed
+from paper.figures.draw import MODES, PINIONS, SWEEP_PINIONS, draw, shown_data, stated_speed
 from paper.figures.page import render
 from paper.reproduction import read_reproduction
 from paper.scorecard.claims import read_claims
@@ -33,7 +33,7 @@ def swept():
     items = [
         (f"{axis}_ac_rms_um", body)
         for axis in "xyz"
-        for body in (*SWEPT, "lower face gear", "upper face gear")
+        for body in (*SWEEP_PINIONS, "lower face gear", "upper face gear")
     ]
     items += [("deflection_ac_rms_um", mesh) for mesh in MESHES]
     rows = [

@@ -12,7 +12,7 @@ from paper.scorecard.claims import Claim, read_claims
 from paper.scorecard.criteria import CRITERIA
 from paper.scorecard.outcome import ClaimOutcome
 from paper.scorecard.page import counts, groups, render
-from paper.scorecard.rows import OWN, RUN_COLUMNS, Verdict, outcome_table, scorecard
+from paper.scorecard.rows import CONFIG_SET, RUN_COLUMNS, Verdict, outcome_table, scorecard
 from paper.scorecard.starts import START_COLUMNS, start_table
 
 CLAIMS = Path(__file__).parents[2] / "config" / "claims" / "paper.yaml"
@@ -79,7 +79,9 @@ def test_row_that_hangs_on_nothing_undisclosed_cannot_be_excused_by_it():
 
 @pytest.mark.parametrize(("own", "held"), [(100.5, 2), (100.5, 0), (103.0, 1), (103.0, 3)])
 def test_row_whose_runs_differ_by_rounding_and_disagree_is_undecided(own, held):
-    row = judged(own, stored=runs((OWN, "period", 3, held, 99.0, 103.0), ("a", "period", 2, 2, 100.0, 100.0)))
+    row = judged(
+        own, stored=runs((CONFIG_SET, "period", 3, held, 99.0, 103.0), ("a", "period", 2, 2, 100.0, 100.0))
+    )
     assert row["verdict"] == Verdict.UNDECIDED
     assert f"{held} of 3 runs" in row["reason"]
     assert row["runs_holding"] == f"{held} of 3"
@@ -87,7 +89,7 @@ def test_row_whose_runs_differ_by_rounding_and_disagree_is_undecided(own, held):
 
 @pytest.mark.parametrize(("own", "held"), [(100.5, 3), (103.0, 0)])
 def test_row_whose_runs_agree_keeps_its_verdict(own, held):
-    row = judged(own, stored=runs((OWN, "period", 3, held, own, own)))
+    row = judged(own, stored=runs((CONFIG_SET, "period", 3, held, own, own)))
     assert row["verdict"] == (Verdict.REPRODUCED if held else Verdict.DIFFERS)
 
 
@@ -223,9 +225,9 @@ def test_page_says_of_each_set_what_holds_from_rest_and_what_from_every_start():
     nan = float("nan")
     stored = pd.DataFrame(
         [
-            (OWN, "period", 20, 20, 99.5, 100.5, True),
-            (OWN, "other", 20, 5, 99.5, 140.0, True),
-            (OWN, "again", 20, 20, 99.5, 100.5, True),
+            (CONFIG_SET, "period", 20, 20, 99.5, 100.5, True),
+            (CONFIG_SET, "other", 20, 5, 99.5, 140.0, True),
+            (CONFIG_SET, "again", 20, 20, 99.5, 100.5, True),
             ("a", "period", 20, 15, 99.5, 120.0, False),
             ("a", "other", 20, 0, nan, nan, False),
         ],
@@ -233,7 +235,7 @@ def test_page_says_of_each_set_what_holds_from_rest_and_what_from_every_start():
     )
     found = start_table(stored, [NUMBER, again, other])
     assert found.to_dict("records") == [
-        dict(zip(START_COLUMNS, (OWN, 2, 2, 1, 2, 0), strict=True)),
+        dict(zip(START_COLUMNS, (CONFIG_SET, 2, 2, 1, 2, 0), strict=True)),
         dict(zip(START_COLUMNS, ("a", 2, 0, 0, 1, 1), strict=True)),
     ]
     frame = scorecard([NUMBER], outcome_table([NUMBER], frequencies(100.5)), runs(), NO_RATES)

@@ -51,8 +51,8 @@ def chance_row():
     found = totals(pd.read_csv(STORED.random), CLAIMS)
     low, high = found.spread
     return (
-        f"| {found.held.size} random plausible sets | {found.mean:.1f} on average; the middle 90 % {low:.0f} "
-        f"to {high:.0f}, at most {found.held.max():.0f} | |"
+        f"| {found.claims_held.size} random plausible sets | {found.mean:.1f} on average; "
+        f"the middle 90 % {low:.0f} to {high:.0f}, at most {found.claims_held.max():.0f} | |"
     )
 
 
@@ -162,7 +162,7 @@ def recommended_texts():
 
 
 def confirmed_text():
-    """What the inputs confirmed have over their runs, and in the worst of them."""
+    """Return how likely the confirmed inputs are over their runs, and in the worst of them."""
     found = table("confirmed")
     likely, worst = found[LOG_LIKELIHOOD], found["least_log_likelihood"]
     near = int((likely >= likely.max() - LOG_UNITS).sum())

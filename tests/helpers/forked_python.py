@@ -23,7 +23,7 @@ IMPORTED = ("pandas", "scipy.sparse.linalg", "scipy.optimize", "xarray", "pydant
 def run_together(
     programs: Sequence[str], environment: Mapping[str, str] | None = None
 ) -> list[subprocess.CompletedProcess[str]]:
-    """What programs give that start together, with variables of the environment beside its own."""
+    """Return the output of programs that start together, with variables of the environment beside its own."""
     with tempfile.TemporaryDirectory() as folder:
         files = [[str(Path(folder, f"{name}{i}")) for name in ("out", "error")] for i in range(len(programs))]
         server = _server()

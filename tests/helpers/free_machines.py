@@ -1,4 +1,4 @@
-"""What a machine without damping and clearance does: its modes, and how it turns as a whole."""
+"""Behaviour of a machine without damping and clearance: its modes, and its rotation as a whole."""
 
 import numpy as np
 

@@ -112,6 +112,6 @@ def gearbox(body=None, **changes):
 
 
 def mesh_forces(machine):
-    """What each mesh transmits under the mean torques, N."""
+    """Force of each mesh under the mean torques, N."""
     drive, back = np.split(forces_by_active_sets(machine), 2)
     return drive - back

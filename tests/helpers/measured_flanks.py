@@ -46,8 +46,9 @@ def place_on_pinion(design, radius, depth):
 
 
 def seen_from(design, displaced, normal, distance) -> Separation:
-    """What rays a little aslant to the normals (n, 3), as those of the pinion are, meet at or near the points
-    displaced (n, 3) of the gear's flank, from a distance (m) before them.
+    """Intersect rays a little aslant to the normals (n, 3), like those of the pinion, with the gear's flank.
+
+    The rays meet it at or near the points displaced (n, 3), from a distance (m) before them.
     """
     ways = -normal + 0.02 * np.array([1.0, -0.5, 1.0])
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)

@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from validation.references import EQUAL, NO_LESS, ROOT, Kind, declarations, merged, read, write
+from validation.references import EQUAL, NO_LESS, ROOT, Kind, declarations, merge_rows, read, write
 
 ROWS = "reference"
 """Name of the rows in what a worker of xdist reports of a test."""
@@ -118,7 +118,7 @@ class Collector:
         fresh = fresh.drop_duplicates(["test", "quantity"])
         fresh = fresh.assign(date=date.today().isoformat(), commit=_commit())
         stored = read(self.path) if self.path.exists() else fresh.iloc[:0]
-        write(merged(stored, fresh, set(declarations())), self.path)
+        write(merge_rows(stored, fresh, set(declarations())), self.path)
 
 
 class Numbers:

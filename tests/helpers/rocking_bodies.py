@@ -60,7 +60,7 @@ class Rocking:
 
 @dataclass(frozen=True, eq=False)
 class InOtherCoordinates:
-    """The same bodies in coordinates p, q = transform p, in which masses need not be diagonal."""
+    """Equal bodies in coordinates p, q = transform p, in which masses need not be diagonal."""
 
     bodies: Rocking
     transform: np.ndarray

@@ -65,7 +65,7 @@ class SpurPath:
             point=point,
             normal=normal,
             velocity=velocity,
-            closing=closing,
+            normal_velocity=closing,
         )
 
 

@@ -1,4 +1,4 @@
-"""What machines of one study have in common is computed once, and nothing else counts as common."""
+"""Common parts of the machines of one study are computed once, and nothing else counts as common."""
 
 from dataclasses import dataclass, replace
 

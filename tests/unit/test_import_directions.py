@@ -74,7 +74,9 @@ MODULES = sorted(PACKAGE.rglob("*.py"))
 
 @cache
 def parsed(module: Path) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
-    """Of a module's text: modules that it imports, what it takes from them, and its types NDArray[...]."""
+    """Read a module's text: modules that it imports, names that it takes from them, and its types
+    NDArray[...].
+    """
     modules, taken, types = set(), set(), set()
     for node in ast.walk(ast.parse(module.read_text())):
         if isinstance(node, ast.Import):

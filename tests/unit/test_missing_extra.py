@@ -15,7 +15,7 @@ MEAN = {"mesh_stiffness.mesh_law": "constant_load", "modal.stiffness": "average"
 
 
 def message(module, call):
-    """What a call says in a process without the package, in which `module` cannot be imported."""
+    """Return the message of a call in a process without the package, in which `module` cannot be imported."""
     script = f"""
 import sys
 sys.modules[{module!r}] = None

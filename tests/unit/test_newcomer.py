@@ -24,7 +24,7 @@ LIGHT = {
     "transmission_error: from_contact": "transmission_error: {amplitude_um: 5}",
     "points: 12, chunks: 1": "points: 2, chunks: 1",
 }
-"""What a test changes in the config beside leaving out the rating, so that no contact is solved."""
+"""Changes of the config beside leaving out the rating, so that no contact is solved."""
 
 
 @cache

@@ -30,7 +30,7 @@ def seconds(message):
 
 
 def by_mean_pace(durations, interval=5.0):
-    """What was told before: all time so far over all steps so far."""
+    """Estimate of the former version: all time so far over all steps so far."""
     found, now, last = [], 0.0, 0.0
     for done, duration in enumerate(durations, start=1):
         now += duration

@@ -10,8 +10,14 @@ import pytest
 
 from facegear.__main__ import main
 
-TERMINAL = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))"
-"""Runs a command at a terminal of its own, so that its keys mean what they mean to a user."""
+TERMINAL = (
+    "import os, pty, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+    "sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))"
+)
+"""Runs a command at a terminal of its own, so that its keys mean what they mean to a user.
+
+Ctrl-C has its meaning back, as jobs in the background of a shell ignore it.
+"""
 QUESTION = b"Teeth of a pinion: "
 KEYS = {"Ctrl-C": b"\x03", "Ctrl-D": b"\x04"}
 

@@ -36,13 +36,13 @@ class Project:
         parse_sources()
 
     def copied(self, folder: Path) -> "Project":
-        """The same results, and what Snakemake knows of them, in another folder."""
+        """Copy the results, and Snakemake's records of them, to another folder."""
         for name in ("results", ".snakemake"):
             shutil.copytree(self.folder / name, folder / name)
         return Project(folder, self.sources)
 
     def command(self, *arguments: str) -> list[str]:
-        """Of a process for itself, to be watched or killed."""
+        """Start a process by itself, to be watched or killed."""
         return [sys.executable, "-m", "snakemake", *self._all(*arguments)]
 
     def _all(self, *arguments: str) -> list[str]:
@@ -66,7 +66,7 @@ class Project:
 
 @cache
 def dry_run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """Of a folder without results, which must hold no table afterwards; for the same arguments made once."""
+    """Run dry in a folder without results, which must hold no table afterwards; once for equal arguments."""
     with tempfile.TemporaryDirectory() as folder:
         done = Project(Path(folder)).run("-n", *arguments, check=False)
         assert not list(Path(folder).rglob("*.csv"))

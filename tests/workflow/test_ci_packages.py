@@ -1,4 +1,4 @@
-"""What `.ci/run` installs on a new machine; a few small scripts stand in for Debian."""
+"""Packages that `.ci/run` installs on a new machine; a few small scripts stand in for Debian."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""What is computed again, and what is not, after an edit of code or config."""
+"""Jobs that are run again, and jobs that are not, after an edit of code or config."""
 
 import ast
 import json
@@ -37,7 +37,7 @@ def test_second_run_does_nothing_and_imports_no_solvers_and_no_compiler(quick):
 
 
 def test_a_first_run_parses_the_sources_of_the_rules_that_it_needs_alone(tmp_path):
-    """Those of all benchmarks, too, took a fresh clone a second before it could plan."""
+    """Parsing those of all benchmarks, too, took a fresh clone a second before it could plan."""
     sources = copy_sources(tmp_path)
     Project(tmp_path / "run", sources).run("results/paper/modal/frequencies.csv")
     parsed = json.loads((sources / ".snakemake" / "sources.json").read_text())["files"]

@@ -1,4 +1,4 @@
-"""What the geometry and mesh stages leave behind, as users and later stages read it."""
+"""Files of the geometry and mesh stages, as users and later stages read them."""
 
 import numpy as np
 import pytest

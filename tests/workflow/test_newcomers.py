@@ -86,7 +86,7 @@ def test_misalignments_of_a_machine_without_load_sharing_are_studied(tmp_path):
 
 
 def interrupted(command, begun):
-    """What a run prints that gets Ctrl-C as soon as the file `begun` is there."""
+    """Return the output of a run that gets Ctrl-C as soon as the file `begun` is there."""
     process = subprocess.Popen(
         command, env=environment(), stderr=subprocess.PIPE, text=True, start_new_session=True
     )

@@ -1,4 +1,4 @@
-"""What `make release` is made of: notes, licences and the version; the builds themselves run in `make ci`."""
+"""Parts of `make release`: notes, licences and the version; the builds themselves run in `make ci`."""
 
 import hashlib
 import importlib.util

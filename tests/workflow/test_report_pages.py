@@ -1,4 +1,4 @@
-"""What the report of a run says of its config and of the publication that it reproduces."""
+"""Statements of a run's report about its config and about the publication that it reproduces."""
 
 import html
 import json

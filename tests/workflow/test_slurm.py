@@ -36,7 +36,7 @@ pytestmark = [
 
 
 def jobs():
-    """Of every job that Slurm remembers: chunk, node, start and end in seconds, state."""
+    """Read every job that Slurm remembers: chunk, node, start and end in seconds, state."""
     message = subprocess.run(
         ["scontrol", "--oneliner", "show", "job"], capture_output=True, text=True, check=True
     )

@@ -43,7 +43,7 @@ def project(folder, samples, chunk):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The same samples computed by the front door, in one process and one piece."""
+    """Samples computed by the front door, in one process and one piece."""
     found, _ = project(tmp_path_factory.mktemp("whole"), 64, 64)
     return facegear.load(found.folder / "config" / "own.yaml", results=None).tolerances(64).samples()
 

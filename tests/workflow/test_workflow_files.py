@@ -40,7 +40,7 @@ Path("rules.json").write_text(json.dumps({rule.name: record(rule) for rule in wo
 
 @pytest.fixture(scope="module")
 def rules(tmp_path_factory):
-    """What Snakemake knows of every rule that writes files, with the profile that loads by itself."""
+    """Return Snakemake's attributes of every rule that writes files, with the profile that is the default."""
     folder = tmp_path_factory.mktemp("rules")
     sources = copy_sources(folder)
     with open(sources / "workflow" / "Snakefile", "a") as stream:
@@ -84,7 +84,7 @@ def test_no_two_rules_write_the_same_file(rules):
 
 
 def test_every_input_and_parameter_of_a_rule_is_used_by_its_script(rules):
-    """What a script names is an attribute or a text in it; those that take all by `items()` name none."""
+    """Names in a script are attributes or texts in it; scripts that take all by `items()` name none."""
     for name in set(rules) - of_stages(rules) - {name for name in rules if name.endswith(FIGURES)}:
         rule = rules[name]
         words = {word for node in ast.walk(_script(name)) for word in _words(node)}

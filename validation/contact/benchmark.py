@@ -38,20 +38,55 @@ class Level:
 
 
 def level(name: str, design: PairDesign, plan: ContactPlan) -> Level:
-    """A refinement level with the positions and torques of `plan`. Raises KeyError for an unknown name."""
+    """Return a refinement level with the positions and torques of a plan.
+
+    Parameters
+    ----------
+    name : str
+        Name of the level.
+    design : PairDesign
+        The pair.
+    plan : ContactPlan
+        The plan.
+
+    Returns
+    -------
+    Level
+        The level.
+
+    Raises
+    ------
+    KeyError
+        For an unknown name.
+    """
     resolution, cuts = CUTS[DEFAULT if name in SECTORS or name in LINEAR else name]
-    changed = replace(plan, refinement=cuts, sector=Sector(), element="hex27")
+    level_plan = replace(plan, refinement=cuts, sector=Sector(), element="hex27")
     if name in SECTORS:
-        changed = replace(changed, sector=Sector(SECTORS[name], SECTORS[name], "free"))
+        level_plan = replace(level_plan, sector=Sector(SECTORS[name], SECTORS[name], "free"))
     if name in LINEAR:
-        changed = replace(changed, element=LINEAR[name])
-    return Level(name, named_sizes(resolution, design.module), changed)
+        level_plan = replace(level_plan, element=LINEAR[name])
+    return Level(name, named_sizes(resolution, design.module), level_plan)
 
 
 def compliances(
     design: PairDesign, level: Level, materials: tuple[Material, Material]
 ) -> tuple[GearFlank, GearFlank]:
-    """Both bodies of a level."""
+    """Compute both bodies of a level.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    level : Level
+        The level.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+
+    Returns
+    -------
+    tuple[GearFlank, GearFlank]
+        Pinion and gear.
+    """
     pinion, gear = (
         gear_flank(design, body, level.sizes, material, level.plan)
         for body, material in zip(BUILDERS, materials, strict=True)
@@ -61,12 +96,27 @@ def compliances(
 
 @dataclass
 class Stopwatch:
-    """Adds up the seconds of named steps."""
+    """Sum of the seconds of named steps."""
 
     seconds: dict[str, float] = field(default_factory=dict)
 
     def time(self, name: str, step: Callable[..., Result], *arguments: Any) -> Result:
-        """The step's result."""
+        """Run a step and add its time.
+
+        Parameters
+        ----------
+        name : str
+            Name of the step.
+        step : Callable[..., Result]
+            The step.
+        *arguments : Any
+            Arguments of the step.
+
+        Returns
+        -------
+        Result
+            Result of the step.
+        """
         start = time.perf_counter()
         result = step(*arguments)
         self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
@@ -74,25 +124,39 @@ class Stopwatch:
 
 
 def measure(design: PairDesign, level: Level, materials: tuple[Material, Material]) -> pd.DataFrame:
-    """One row a torque: free dof, times (s), memory (GB), mean and first harmonic of both stiffnesses (N/m).
+    """Measure a level, one row a torque: free dof, times (s), memory (GB), mean and first harmonic of both
+    stiffnesses.
 
-    Times of both bodies: what their meshes and dof are; element matrices and factorisation down to flank and
-    cut faces; compliance of the flanks in the
-    ring; then contact at all positions and torques, and the sum. One position is solved beforehand, so that
-    machine code is loaded. The memory is the process's largest so far, so that levels should be measured in
-    processes of their own.
+    Times of both bodies: element matrices and factorisation down to flank and cut faces; compliance of the
+    flanks in the ring; then contact at all positions and torques, and the sum. One position is solved
+    beforehand, so that machine code is loaded. The memory is the process's largest so far, so that levels
+    should be measured in processes of their own.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    level : Level
+        The level.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+
+    Returns
+    -------
+    DataFrame
+        Columns of `summary` (N/m), level, element and costs.
     """
     watch, dof, bodies, plan = Stopwatch(), 0, [], level.plan
     for body, material in zip(BUILDERS, materials, strict=True):
         tooth = BUILDERS[body](design, level.sizes)
         elastic, side = elastic_tooth(design, tooth, material)
         system = watch.time("assembly_s", tied_system, elastic, plan.refinement, plan.element)
-        kept, solved = extent(tooth, body, plan), []
+        dof_per_body, solutions = extent(tooth, body, plan), []
         for half in watch.time("assembly_s", halves, system):
-            condensed = watch.time("factorisation_s", condense, half.system)
-            rest = half.system, condensed, plan.refinement, *kept, plan.element
-            solved.append(watch.time("compliance_s", coupled_compliance, *rest))
-        bodies.append(GearFlank(side, watch.time("compliance_s", whole, solved)))
+            condensed_bodies = watch.time("factorisation_s", condense, half.system)
+            rest = half.system, condensed_bodies, plan.refinement, *dof_per_body, plan.element
+            solutions.append(watch.time("compliance_s", coupled_compliance, *rest))
+        bodies.append(GearFlank(side, watch.time("compliance_s", whole, solutions)))
         dof += int(np.count_nonzero(~system.held))
     model = contact_model(design, *bodies)
     loaded_contact(model, [0.3], plan.torques, plan.options)
@@ -116,27 +180,58 @@ def growth(
     positions: Sequence[int],
     loads: Sequence[int],
 ) -> pd.DataFrame:
-    """Time (s) of contact against the number of positions (at 4 torques) and of torques (at 16 positions)."""
+    """Measure the time of contact against the number of positions (at 4 torques) and of torques (at 16
+    positions).
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    level : Level
+        The level.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+    positions : Sequence[int]
+        Numbers of positions.
+    loads : Sequence[int]
+        Numbers of torques.
+
+    Returns
+    -------
+    DataFrame
+        Columns varied, positions, loads and contact_s.
+    """
     model = contact_model(design, *compliances(design, level, materials))
     low, high = min(level.plan.torques), max(level.plan.torques)
     loaded_contact(model, [0.3], level.plan.torques, level.plan.options)
     cases = [("positions", n, 4) for n in positions] + [("loads", 16, n) for n in loads]
     rows = []
-    for varied, count, number in cases:
+    for quantity, count, number in cases:
         watch = Stopwatch()
         torques = np.geomspace(high, low, number)[::-1]
         watch.time("contact_s", loaded_contact, model, even_positions(count), torques, level.plan.options)
-        rows.append((varied, count, number, watch.seconds["contact_s"]))
+        rows.append((quantity, count, number, watch.seconds["contact_s"]))
     return pd.DataFrame(rows, columns=["varied", "positions", "loads", "contact_s"])
 
 
 def summary(results: Sequence[LoadedPosition]) -> pd.DataFrame:
-    """Mean and first harmonic (N/m) of average and local stiffness, one row a torque."""
+    """Fit mean and first harmonic of average and local stiffness, one row a torque.
+
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Results at evenly spaced positions.
+
+    Returns
+    -------
+    DataFrame
+        Columns torque_n_m and stiffnesses, N/m.
+    """
     rows = []
     for torque in sorted({result.torque for result in results}):
-        chosen = [result for result in results if result.torque == torque]
+        of_torque = [result for result in results if result.torque == torque]
         average, local = (
-            fit_harmonics(np.array([getattr(result, name) for result in chosen])).series
+            fit_harmonics(np.array([getattr(result, name) for result in of_torque])).series
             for name in ("k_average", "k_local")
         )
         rows.append((torque, average.mean, average.amplitudes[1], local.mean, local.amplitudes[1]))
@@ -145,8 +240,19 @@ def summary(results: Sequence[LoadedPosition]) -> pd.DataFrame:
 
 
 def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
-    """Add the errors of mean and first harmonic of both stiffnesses (`local_*` the local one), in percent of
-    the reference level's at the same torque.
+    """Add the errors of mean and first harmonic of both stiffnesses (`local_*` the local one).
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `summary` with a column level.
+    reference : str
+        Name of the reference level.
+
+    Returns
+    -------
+    DataFrame
+        The table with errors in percent of the reference level's values at the same torque.
     """
     finest = table[table["level"] == reference].set_index("torque_n_m")
     result = table.copy()
@@ -157,9 +263,22 @@ def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
 
 
 def cheapest(table: pd.DataFrame) -> str:
-    """The quickest level of a table with errors that is within LIMITS at all torques.
+    """Return the quickest level of a table with errors that is within LIMITS at all torques.
 
-    Raises NotConverged if there is none.
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `with_errors` with a column total_s.
+
+    Returns
+    -------
+    str
+        Name of the level.
+
+    Raises
+    ------
+    NotConverged
+        If there is none.
     """
     columns = [f"{name}_error_percent" for name in LIMITS]
     inside = (table[columns].abs() <= list(LIMITS.values())).all(axis=1)
@@ -171,7 +290,22 @@ def cheapest(table: pd.DataFrame) -> str:
 
 
 def shortcuts(design: PairDesign, base: Level, materials: tuple[Material, Material]) -> pd.DataFrame:
-    """Effect (percent) of each shortcut on mean and first harmonic against the full model at `base`."""
+    """Measure the effect of each shortcut on mean and first harmonic against the full model.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    base : Level
+        Level of the full model.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+
+    Returns
+    -------
+    DataFrame
+        Table with errors in percent and a column case.
+    """
     plan = base.plan
     plain, few = ContactOptions(), Refinement()
     cases = {"full model": base}

@@ -20,14 +20,15 @@ from facegear.errors import NotConverged
 from facegear.geometry import pinion
 from facegear.geometry.design import Material
 from facegear.geometry.unloaded import PAIRS
-from validation.contact.brute_mesh import FacetChain, FlatGear, FlatMesh, flat_gear, refined
-from validation.contact.twin import involute_separation, standard_centre, turned
+from validation.contact.brute_mesh import FacetChain, FlatGear, FlatMesh, flat_gear, refine
+from validation.contact.twin import involute_separation, rotate, standard_centre
 
 PENALTIES = (1e14, 1e15, 1e16, 1e17, 1e18)
 """Pa per m, each the start of the next: by the last a pressure of 1 GPa gives way by 1 nm."""
 STEPS = 60
+"""Largest number of Newton steps."""
 DEGREE = 11
-"""Of the quadrature along a facet: six Gauss points."""
+"""Degree of the quadrature along a facet: six Gauss points."""
 CLOSE = 3e-4
 """Points with larger gaps (m) are left out."""
 REFINED_BELOW = 40e-6
@@ -37,7 +38,26 @@ REFINED_BELOW = 40e-6
 def gears_at(
     meshes: tuple[FlatMesh, FlatMesh], position: float, material: Material, radius: float, halvings: int
 ) -> tuple[FlatGear, FlatGear]:
-    """Both gears, halved `halvings` times within `radius` (m) of where they touch at a position."""
+    """Mesh both gears, refined where they touch at a position.
+
+    Parameters
+    ----------
+    meshes : tuple[FlatMesh, FlatMesh]
+        Meshes before refinement.
+    position : float
+        Position, fraction of a pitch.
+    material : Material
+        Material of both.
+    radius : float
+        Distance from the contact within which triangles are halved, m.
+    halvings : int
+        Number of halvings.
+
+    Returns
+    -------
+    tuple[FlatGear, FlatGear]
+        Both gears.
+    """
     first, second = (mesh.design for mesh in meshes)
     facets = [len(mesh.flanks[0]) - 1 for mesh in meshes]
     at = np.linspace(0.0, facets[0], 40 * facets[0] + 1)
@@ -50,21 +70,38 @@ def gears_at(
         if gap[nearest] < REFINED_BELOW:
             spots[0].append((tooth, float(at[nearest])))
             spots[1].append((-tooth, float(_flank_position(second, facets[1], hit[nearest]))))
-    own, other = (
-        flat_gear(mesh, refined(mesh, touching, radius, halvings), material, PAIRS.tolist())
-        for mesh, touching in zip(meshes, spots, strict=True)
+    first_gear, second_gear = (
+        flat_gear(mesh, refine(mesh, contact_points, radius, halvings), material, PAIRS.tolist())
+        for mesh, contact_points in zip(meshes, spots, strict=True)
     )
-    return own, other
+    return first_gear, second_gear
 
 
 def loaded_rotations(
     gears: tuple[FlatGear, FlatGear], position: float, line_loads: Sequence[float]
 ) -> list[tuple[float, Array]]:
-    """Rotation (rad) of the pinion's bore under each load (N/m along the line of action), and the pairs'
-    shares.
+    """Solve for the rotation of the pinion's bore under each load, and the pairs' shares.
 
     Newton's method on a convex energy with an exact search along each step, hence no cycling.
-    Raises NotConverged naming position and load.
+
+    Parameters
+    ----------
+    gears : tuple[FlatGear, FlatGear]
+        Both gears.
+    position : float
+        Position, fraction of a pitch.
+    line_loads : Sequence[float]
+        Loads along the line of action, N/m.
+
+    Returns
+    -------
+    list of (float, (pairs,) array)
+        Rotation, rad, and share of the load of each pair.
+
+    Raises
+    ------
+    NotConverged
+        Naming position and load.
     """
     first, second = gears
     base = first.design.pinion_base_radius
@@ -80,7 +117,9 @@ def loaded_rotations(
     for load in line_loads:
         for penalty in PENALTIES if load == line_loads[0] else PENALTIES[-1:]:
             springs = penalty * weights
-            state = _balanced(stiffness, rows, springs, gaps, state, load * base, f"position {position:g}")
+            state = _solve_balance(
+                stiffness, rows, springs, gaps, state, load * base, f"position {position:g}"
+            )
         force = springs * np.maximum(-gaps - rows @ state, 0.0)
         rotations.append(
             (float(state[-1]), np.array([force[owner == tooth].sum() for tooth in PAIRS]) / load)
@@ -88,40 +127,40 @@ def loaded_rotations(
     return rotations
 
 
-def _balanced(stiffness, rows, springs, gaps, state, torque, where):  # type: ignore[no-untyped-def]
+def _solve_balance(stiffness, rows, springs, gaps, state, torque, position_name):  # type: ignore[no-untyped-def]
     """Displacements and rotation at balance."""
     for _ in range(STEPS):
         depth = -gaps - rows @ state
         active = depth > 0
         step = _newton_step(stiffness, rows[active], springs[active], depth[active], state, torque)
         state = state + _length(stiffness, rows, springs, depth, state, step, torque) * step
-        pressed = -gaps - rows @ state > 0
-        if np.array_equal(pressed, active) and np.abs(step).max() < 1e-10 * np.abs(state).max():
+        is_pressed = -gaps - rows @ state > 0
+        if np.array_equal(is_pressed, active) and np.abs(step).max() < 1e-10 * np.abs(state).max():
             return state
-    raise NotConverged("brute force", f"{where}, {torque:g} N m per m", f"{STEPS} Newton steps")
+    raise NotConverged("brute force", f"{position_name}, {torque:g} N m per m", f"{STEPS} Newton steps")
 
 
 def _newton_step(stiffness, rows, springs, depth, state, torque):  # type: ignore[no-untyped-def]
     """Change of displacements and rotation (the last) to the balance of the present contact points."""
-    scaled = sp.diags_array(springs) @ rows
+    weighted_rows = sp.diags_array(springs) @ rows
     part, lever = rows[:, :-1], rows[:, -1].toarray().ravel()
-    tangent = (stiffness + part.T @ scaled[:, :-1]).tocsr()
+    tangent = (stiffness + part.T @ weighted_rows[:, :-1]).tocsr()
     push = part.T @ (springs * lever)
-    missing = -stiffness @ state[:-1] + part.T @ (springs * depth)
-    both = solve_sparse(tangent, np.stack([push, missing], axis=1))
+    residual = -stiffness @ state[:-1] + part.T @ (springs * depth)
+    solutions = solve_sparse(tangent, np.stack([push, residual], axis=1))
     short = torque + lever @ (springs * depth)
-    turn = (short - push @ both[:, 1]) / (lever @ (springs * lever) - push @ both[:, 0])
-    return np.append(both[:, 1] - turn * both[:, 0], turn)
+    turn = (short - push @ solutions[:, 1]) / (lever @ (springs * lever) - push @ solutions[:, 0])
+    return np.append(solutions[:, 1] - turn * solutions[:, 0], turn)
 
 
 def _length(stiffness, rows, springs, depth, state, step, torque):  # type: ignore[no-untyped-def]
     """Where along the step the energy is least: the root of its slope, which never falls."""
-    bent = stiffness @ step[:-1]
-    start, rise = state[:-1] @ bent - torque * step[-1], step[:-1] @ bent
-    closing = rows @ step
+    elastic_force = stiffness @ step[:-1]
+    start, rise = state[:-1] @ elastic_force - torque * step[-1], step[:-1] @ elastic_force
+    approach = rows @ step
 
     def slope(length: float) -> float:
-        return start + length * rise + (springs * closing) @ np.minimum(length * closing - depth, 0.0)
+        return start + length * rise + (springs * approach) @ np.minimum(length * approach - depth, 0.0)
 
     high = 1.0
     while slope(high) < 0 and high < 1e6:
@@ -166,25 +205,25 @@ def _constraints(
     designs = gears[0].design, gears[1].design
     pitches = [2 * np.pi / design.pinion.teeth for design in designs]
     facets = [round(gear.chains[0].ends[-1]) for gear in gears]
-    where, weight = get_quadrature(ElementLineP2, DEGREE)
+    gauss_points, weight = get_quadrature(ElementLineP2, DEGREE)
     shift = gears[0].stiffness.shape[0]
     size = shift + gears[1].stiffness.shape[0]
     matrices, gaps, weights, owners = [], [], [], []
     for tooth in PAIRS.tolist():
-        own, other = gears[0].chains[tooth], gears[1].chains[-tooth]
-        long = np.diff(own.ends)
-        at = (own.ends[:-1, None] + long[:, None] * where).ravel()
-        length = own.length[:, None] * weight
+        pinion_chain, gear_chain = gears[0].chains[tooth], gears[1].chains[-tooth]
+        long = np.diff(pinion_chain.ends)
+        at = (pinion_chain.ends[:-1, None] + long[:, None] * gauss_points).ravel()
+        length = pinion_chain.length[:, None] * weight
         normals, gap, hit = _separation(designs, facets, at, phi1, tooth)
         on = np.isfinite(hit) & (gap < CLOSE)
-        along = turned(normals[on][:, [0, 2]], tooth * pitches[0])
+        along = rotate(normals[on][:, [0, 2]], tooth * pitches[0])
         n2 = np.stack(pinion.involute_normal(designs[1], hit[on]), axis=1)
         matrices.append(
-            _rows(own, at[on], along, size, 0)
+            _rows(pinion_chain, at[on], along, size, 0)
             + _rows(
-                other,
+                gear_chain,
                 _flank_position(designs[1], facets[1], hit[on]),
-                turned(n2, -tooth * pitches[1]),
+                rotate(n2, -tooth * pitches[1]),
                 size,
                 shift,
             )

@@ -51,23 +51,55 @@ class FlatGear:
 
 
 def flat_mesh(design: PairDesign, sizes: MeshSizes, teeth: int) -> FlatMesh:
-    """Sector of `teeth` spur teeth, right flanks to be loaded."""
+    """Mesh a sector of spur teeth, right flanks to be loaded.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The gear.
+    sizes : MeshSizes
+        Mesh sizes.
+    teeth : int
+        Number of teeth.
+
+    Returns
+    -------
+    FlatMesh
+        The mesh before refinement.
+    """
     slab = sector(slab_tooth(design, sizes), teeth, -(teeth // 2))
     quads = slab.hexes[:, [0, 2, 8, 6]]
-    used, local = np.unique(quads, return_inverse=True)
-    points = slab.nodes[used][:, [0, 2]]
+    nodes_used, local = np.unique(quads, return_inverse=True)
+    points = slab.nodes[nodes_used][:, [0, 2]]
     corners = local.reshape(-1, 4)
     (ax, az), (bx, bz) = ((points[corners[:, i]] - points[corners[:, 0]]).T for i in (1, 2))
-    inverted = ax * bz - az * bx < 0
-    corners[inverted] = corners[inverted][:, ::-1]
+    is_inverted = ax * bz - az * bx < 0
+    corners[is_inverted] = corners[is_inverted][:, ::-1]
     grid = slab.tooth.surfaces["flank_right"].nodes[::2, 0]
     flanks = {slab.first + j: slab.nodes[nodes[grid]][:, [0, 2]] for j, nodes in enumerate(slab.tooth_nodes)}
     mesh = MeshQuad(points.T.copy(), corners.T.copy()).to_meshtri()
     return FlatMesh(design, mesh, design.pinion.bore_radius, flanks)
 
 
-def refined(flat: FlatMesh, spots: Sequence[tuple[int, float]], radius: float, halvings: int) -> MeshTri:
-    """Halve the triangles within `radius` (m) of the spots (tooth, place along its flank) so many times."""
+def refine(flat: FlatMesh, spots: Sequence[tuple[int, float]], radius: float, halvings: int) -> MeshTri:
+    """Halve the triangles near spots of the flanks.
+
+    Parameters
+    ----------
+    flat : FlatMesh
+        The mesh before refinement.
+    spots : Sequence[tuple[int, float]]
+        Tooth, and position along its flank in units of facets from the tip.
+    radius : float
+        Distance from a spot within which triangles are halved, m.
+    halvings : int
+        Number of halvings.
+
+    Returns
+    -------
+    MeshTri
+        The refined mesh.
+    """
     centres = np.array([_at(flat.flanks[tooth], spot) for tooth, spot in spots])
     mesh = flat.mesh
     for _ in range(halvings):
@@ -78,18 +110,35 @@ def refined(flat: FlatMesh, spots: Sequence[tuple[int, float]], radius: float, h
 
 
 def flat_gear(flat: FlatMesh, mesh: MeshTri, material: Material, teeth: Sequence[int]) -> FlatGear:
-    """Assemble a (refined) mesh, bore clamped and cut faces free, with the flanks of `teeth`."""
+    """Assemble a (refined) mesh, bore clamped and cut faces free.
+
+    Parameters
+    ----------
+    flat : FlatMesh
+        The mesh before refinement.
+    mesh : MeshTri
+        The mesh to assemble.
+    material : Material
+        Its material.
+    teeth : Sequence[int]
+        Teeth whose flanks are returned.
+
+    Returns
+    -------
+    FlatGear
+        Stiffness and flanks.
+    """
     basis = Basis(mesh, ElementVector(ElementTriP2()), intorder=2)
     lame = lame_parameters(material.young_modulus, material.poisson_ratio)
     stiffness = linear_elasticity(*lame).assemble(basis).tocsc()
-    held = np.zeros(mesh.p.shape[1], dtype=bool)
+    is_fixed = np.zeros(mesh.p.shape[1], dtype=bool)
     boundary = mesh.boundary_facets()
     ends = mesh.facets[:, boundary]
     # straight facets of the bore: their ends lie on the circle, their middles inside it
     on_bore = np.abs(np.hypot(*mesh.p[:, ends]) - flat.bore_radius).max(axis=0) < 1e-9
-    held[ends[:, on_bore]] = True
+    is_fixed[ends[:, on_bore]] = True
     free = np.ones(basis.N, dtype=bool)
-    free[basis.nodal_dofs[:, held]] = False
+    free[basis.nodal_dofs[:, is_fixed]] = False
     free[basis.facet_dofs[:, boundary[on_bore]]] = False
     chains = {tooth: _chain(basis, boundary, flat.flanks[tooth]) for tooth in teeth}
     return FlatGear(flat.design, stiffness, free, chains)
@@ -119,7 +168,7 @@ def _chain(basis: Basis, boundary: Integers, line: Array) -> FacetChain:
         (basis.mesh.p[:, pair] - start[owner].T[:, None]) * along[owner].T[:, None], axis=0
     ) / (length[owner] ** 2)
     first = np.argmin(position, axis=0)
-    left, right = (pair[which, np.arange(len(on))] for which in (first, 1 - first))
+    left, right = (pair[row, np.arange(len(on))] for row in (first, 1 - first))
     if not np.array_equal(left[1:], right[:-1]):
         raise ValueError("the flank's facets do not join")
     dofs = np.empty((2 * len(on) + 1, 2), dtype=np.int64)

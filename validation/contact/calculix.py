@@ -1,8 +1,8 @@
-"""The same pair as a CalculiX deck: an independent solver on the same mesh.
+"""CalculiX deck of the pair: an independent solver on the same mesh.
 
 Two sectors of C3D20 elements in one deck, cut faces free, rim back clamped, the pinion's bore rigid and
-turned by a given angle about its axis; frictionless face-to-face contact of the loaded flanks and fillets.
-The moment at the bore is what the turn costs.
+rotated by a given angle about its axis; frictionless face-to-face contact of the loaded flanks and fillets.
+The result is the moment at the bore.
 """
 
 import re
@@ -26,7 +26,8 @@ from facegear.mesh.tooth import gear_tooth, pinion_tooth
 from validation.contact.process import run_alone
 
 PROGRAM = "ccx"
-HELD = {"pinion": ("bore",), "face_gear": ("rim_back",)}
+"""Name of CalculiX's executable."""
+FIXED_FACES = {"pinion": ("bore",), "face_gear": ("rim_back",)}
 """Groups of faces that are held; the pinion's turn as one about its axis."""
 
 
@@ -50,7 +51,13 @@ class PeerResult:
 
 
 def program() -> str | None:
-    """Path of ccx, None where it is not installed."""
+    """Return the path of ccx.
+
+    Returns
+    -------
+    str or None
+        Path, None where it is not installed.
+    """
     return shutil.which(PROGRAM)
 
 
@@ -63,25 +70,48 @@ def write_deck(
     angles: tuple[float, float],
     turn: float,
     slave: str = "pinion",
-    held: Mapping[str, Sequence[str]] = HELD,
+    fixed_faces: Mapping[str, Sequence[str]] = FIXED_FACES,
     output: str = "",
 ) -> int:
-    """Write the deck of the pair at angles (phi1, phi2) with the pinion turned by `turn` (rad); returns its
-    dof.
+    """Write the deck of the pair with the pinion rotated; lengths in mm, stresses in MPa.
 
-    `slave` is the body, pinion or face_gear, on whose flank CalculiX integrates the contact pressure. Both
-    sectors have `teeth` teeth around the pairs in mesh; `held` are the groups of faces that supports hold,
-    `output` further lines that ask for results. Lengths are in mm, stresses in MPa.
+    Parameters
+    ----------
+    path : Path
+        Path of the deck.
+    design : PairDesign
+        The pair.
+    sizes : MeshSizes
+        Mesh sizes.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+    teeth : int
+        Number of teeth of both sectors, around the pairs in mesh.
+    angles : tuple[float, float]
+        Angles (phi1, phi2) of pinion and gear, rad.
+    turn : float
+        Rotation of the pinion's bore, rad.
+    slave : str
+        Body, pinion or face_gear, on whose flank CalculiX integrates the contact pressure.
+    fixed_faces : Mapping[str, Sequence[str]]
+        Groups of faces that supports hold, by body.
+    output : str
+        Further lines that request results.
+
+    Returns
+    -------
+    int
+        Number of dof.
     """
     first = -(teeth // 2)
     bodies = {
         "pinion": sector(pinion_tooth(design, sizes), teeth, first),
         "face_gear": sector(gear_tooth(design, sizes), teeth, first),
     }
-    points = _placed(design, bodies, angles)
+    points = _place_bodies(design, bodies, angles)
     count = len(points["pinion"])
     nodes = np.concatenate([points["pinion"], points["face_gear"]])
-    used = np.unique(
+    nodes_used = np.unique(
         np.concatenate(
             [bodies["pinion"].hexes[:, SERENDIPITY20], count + bodies["face_gear"].hexes[:, SERENDIPITY20]]
         )
@@ -89,7 +119,9 @@ def write_deck(
     reference, rotation = len(nodes) + 1, len(nodes) + 2
     with open(path, "w", encoding="ascii") as deck:
         deck.write("*NODE, NSET=ALL_NODES\n")
-        np.savetxt(deck, np.column_stack([used + 1, 1e3 * nodes[used]]), fmt="%d, %.13e, %.13e, %.13e")
+        np.savetxt(
+            deck, np.column_stack([nodes_used + 1, 1e3 * nodes[nodes_used]]), fmt="%d, %.13e, %.13e, %.13e"
+        )
         deck.write(f"{reference}, 0., 0., 0.\n{rotation}, 0., 0., 0.\n")
         start = 1
         for body, shift, material in zip(bodies, (0, count), materials, strict=True):
@@ -99,27 +131,48 @@ def write_deck(
             for row in np.column_stack([labels, mesh.hexes[:, SERENDIPITY20] + shift + 1]).tolist():
                 deck.write(", ".join(map(str, row[:11])) + ",\n" + ", ".join(map(str, row[11:])) + "\n")
             side = LOADED_SIDE[body]
-            touching = [f for name in ("flank", "fillet") for f in element_faces(mesh, f"{name}_{side}")]
+            contact_faces = [f for name in ("flank", "fillet") for f in element_faces(mesh, f"{name}_{side}")]
             per_tooth = len(mesh.hexes) // teeth
             for tooth in range(teeth):
                 deck.write(f"*SURFACE, NAME={_surface(body, tooth)}, TYPE=ELEMENT\n")
-                own = [(element, name) for element, name in touching if element // per_tooth == tooth]
-                deck.writelines(f"{start + element}, {name}\n" for element, name in own)
-            faces = np.concatenate([mesh.faces(name) for name in held[body]])
-            fixed = np.intersect1d(faces + shift, used)
-            deck.write(f"*NSET, NSET=H_{body.upper()}\n" + "".join(f"{node + 1},\n" for node in fixed))
+                tooth_faces = [
+                    (element, name) for element, name in contact_faces if element // per_tooth == tooth
+                ]
+                deck.writelines(f"{start + element}, {name}\n" for element, name in tooth_faces)
+            faces = np.concatenate([mesh.faces(name) for name in fixed_faces[body]])
+            fixed_nodes = np.intersect1d(faces + shift, nodes_used)
+            deck.write(f"*NSET, NSET=H_{body.upper()}\n" + "".join(f"{node + 1},\n" for node in fixed_nodes))
             deck.write(f"*MATERIAL, NAME=M_{body.upper()}\n*ELASTIC\n")
             deck.write(f"{1e-6 * material.young_modulus:.10g}, {material.poisson_ratio:.10g}\n")
             deck.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL=M_{body.upper()}\n")
             start += len(mesh.hexes)
         deck.write(_step(reference, rotation, turn, teeth, slave, output))
-    return 3 * len(used)
+    return 3 * len(nodes_used)
 
 
 def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> PeerResult:
     """Run ccx on a deck and read the moment.
 
-    Raises FacegearError if ccx is not installed, fails, or prints no moment.
+    Parameters
+    ----------
+    path : Path
+        Path of the deck.
+    threads : int
+        Number of threads.
+    dof : int
+        Number of dof of the deck.
+    timeout : float
+        Time after which the run is ended, s.
+
+    Returns
+    -------
+    PeerResult
+        Moment and costs.
+
+    Raises
+    ------
+    FacegearError
+        If ccx is not installed, fails, or prints no moment.
     """
     run = run_program(path, threads, timeout)
     result = path.with_suffix(".dat")
@@ -134,7 +187,24 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
 def run_program(path: Path, threads: int, timeout: float = 3600.0) -> CalculixRun:
     """Run ccx on a deck, its output in a log beside it.
 
-    Raises FacegearError if ccx is not installed or fails.
+    Parameters
+    ----------
+    path : Path
+        Path of the deck.
+    threads : int
+        Number of threads.
+    timeout : float
+        Time after which the run is ended, s.
+
+    Returns
+    -------
+    CalculixRun
+        Costs and version.
+
+    Raises
+    ------
+    FacegearError
+        If ccx is not installed or fails.
     """
     executable = program()
     if executable is None:
@@ -145,19 +215,19 @@ def run_program(path: Path, threads: int, timeout: float = 3600.0) -> CalculixRu
         "PATH": "/usr/bin:/bin",
     }
     log = path.with_suffix(".log")
-    done = run_alone((executable, "-i", path.stem), path.parent, log, environment, timeout)
-    if done.code != 0:
+    process = run_alone((executable, "-i", path.stem), path.parent, log, environment, timeout)
+    if process.code != 0:
         raise FacegearError(f"{PROGRAM} failed on {path}: see {log}")
     version = re.search(r"Version ([\d.]+)", log.read_text(encoding="utf-8", errors="replace"))
     return CalculixRun(
-        seconds=done.seconds,
-        cpu_seconds=done.cpu_seconds,
-        gigabytes=done.gigabytes,
+        seconds=process.seconds,
+        cpu_seconds=process.cpu_seconds,
+        gigabytes=process.gigabytes,
         version=version.group(1) if version else "unknown",
     )
 
 
-def _placed(
+def _place_bodies(
     design: PairDesign, bodies: dict[str, SectorMesh], angles: tuple[float, float]
 ) -> dict[str, Array]:
     """Both bodies in the pinion's frame, whose y axis is the axis the bore turns about."""

@@ -15,6 +15,7 @@ from facegear.arrays import Array, ComplexArray, Mask
 from facegear.errors import NotConverged
 
 STEPS = 3000
+"""Largest number of conjugate gradient steps."""
 
 TOLERANCE = 1e-8
 """Change of the pressures in a step, relative to all, at which they count as found."""
@@ -22,22 +23,50 @@ TOLERANCE = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class HalfSpace:
-    """Two bodies on a grid of `shape` cells; `kernel`: the influence of one cell, transformed."""
+    """Two bodies on a grid of `shape` cells; `kernel`: the influence of one cell, transformed on `fft_shape`
+    cells.
+    """
 
     shape: tuple[int, int]
-    padded: tuple[int, int]
+    fft_shape: tuple[int, int]
     kernel: ComplexArray
 
-    def displaced(self, pressure: Array) -> Array:
-        """Displacement (m) into both bodies together by pressures (Pa), of `shape`."""
-        displacement = irfft2(rfft2(pressure, self.padded) * self.kernel, self.padded)
+    def displacement(self, pressure: Array) -> Array:
+        """Return the displacement into both bodies together.
+
+        Parameters
+        ----------
+        pressure : (n, m) array
+            Pressures of the cells, Pa.
+
+        Returns
+        -------
+        (n, m) array
+            Displacement, m.
+        """
+        displacement = irfft2(rfft2(pressure, self.fft_shape) * self.kernel, self.fft_shape)
         return displacement[: self.shape[0], : self.shape[1]]
 
 
 def half_space(shape: tuple[int, int], size: tuple[float, float], modulus: float) -> HalfSpace:
-    """A grid of cells of `size` (m) across the profile and along the axis; `modulus` E* (Pa)."""
-    padded = next_fast_len(2 * shape[0]), next_fast_len(2 * shape[1])
-    ways = (np.fft.fftfreq(count, 1 / count) * step for count, step in zip(padded, size, strict=True))
+    """Transform the influence of a cell.
+
+    Parameters
+    ----------
+    shape : tuple[int, int]
+        Number of cells across the profile and along the axis.
+    size : tuple[float, float]
+        Size of a cell across the profile and along the axis, m.
+    modulus : float
+        E*, Pa.
+
+    Returns
+    -------
+    HalfSpace
+        Two bodies on the grid.
+    """
+    fft_shape = next_fast_len(2 * shape[0]), next_fast_len(2 * shape[1])
+    ways = (np.fft.fftfreq(count, 1 / count) * step for count, step in zip(fft_shape, size, strict=True))
     x, y = np.meshgrid(*ways, indexing="ij")
     left, right = x - size[0] / 2, x + size[0] / 2
     low, high = y - size[1] / 2, y + size[1] / 2
@@ -47,26 +76,45 @@ def half_space(shape: tuple[int, int], size: tuple[float, float], modulus: float
             (first + np.hypot(first, coordinate)) / (second + np.hypot(second, coordinate))
         )
 
-    loaded = part(right, high, low) + part(high, right, left) + part(left, low, high) + part(low, left, right)
-    return HalfSpace(shape, padded, rfft2(loaded / (np.pi * modulus)))
+    influence = (
+        part(right, high, low) + part(high, right, left) + part(left, low, high) + part(low, left, right)
+    )
+    return HalfSpace(shape, fft_shape, rfft2(influence / (np.pi * modulus)))
 
 
 def pressures(bodies: HalfSpace, gap: Array, load: Array) -> Array:
-    """Pressures on the grid (n, m) that carry `load` (m,), the sum of the pressures (Pa) of each plane.
+    """Solve for the pressures that carry the load of each plane.
 
-    gap (n, m) m before loading. Raises NotConverged.
+    Parameters
+    ----------
+    bodies : HalfSpace
+        The bodies.
+    gap : (n, m) array
+        Gaps before loading, m.
+    load : (m,) array
+        Sum of the pressures of each plane, Pa.
+
+    Returns
+    -------
+    (n, m) array
+        Pressures, Pa.
+
+    Raises
+    ------
+    NotConverged
+        If STEPS are not enough.
     """
-    loaded = np.where(gap <= np.quantile(gap, 0.1, axis=0), 1.0, 0.0)
-    pressure = loaded * (load / loaded.sum(axis=0))
+    is_loaded = np.where(gap <= np.quantile(gap, 0.1, axis=0), 1.0, 0.0)
+    pressure = is_loaded * (load / is_loaded.sum(axis=0))
     way, last = np.zeros_like(gap), 1.0
     restart = True
     for _ in range(STEPS):
-        rest = _from_mean(gap + bodies.displaced(pressure), pressure > 0)
+        rest = _from_mean(gap + bodies.displacement(pressure), pressure > 0)
         on = pressure > 0
         size = float(np.sum(rest[on] ** 2))
         way = np.where(on, rest + (0.0 if restart else size / last) * way, 0.0)
-        turned = _from_mean(bodies.displaced(way), on)
-        step = float(np.sum(rest[on] * way[on]) / np.sum(turned[on] * way[on]))
+        response = _from_mean(bodies.displacement(way), on)
+        step = float(np.sum(rest[on] * way[on]) / np.sum(response[on] * way[on]))
         before, last = pressure, size
         pressure = np.where(on, np.maximum(pressure - step * way, 0.0), 0.0)
         entering = ~(pressure > 0) & (rest < 0)

@@ -7,9 +7,19 @@ from facegear.geometry.pinion import junction_roll
 
 
 def single_stiffness(first: PairDesign, second: PairDesign) -> float:
-    """Theoretical single stiffness c'_th times 0.8 (C_B = C_R = 1), N/m per m of width.
+    """Return the theoretical single stiffness c'_th times 0.8 (C_B = C_R = 1).
 
     Solid steel gears; q' by the standard's polynomial in the tooth numbers and profile shifts.
+
+    Parameters
+    ----------
+    first, second : PairDesign
+        Both gears.
+
+    Returns
+    -------
+    float
+        Stiffness per width, N/m per m.
     """
     (z1, x1), (z2, x2) = (
         (gear.pinion.teeth, gear.pinion.profile_shift / gear.module) for gear in (first, second)
@@ -20,16 +30,38 @@ def single_stiffness(first: PairDesign, second: PairDesign) -> float:
 
 
 def mesh_stiffness(first: PairDesign, second: PairDesign) -> float:
-    """c_gamma = c' (0.75 eps_alpha + 0.25), N/m per m of width."""
+    """Return c_gamma = c' (0.75 eps_alpha + 0.25).
+
+    Parameters
+    ----------
+    first, second : PairDesign
+        Both gears.
+
+    Returns
+    -------
+    float
+        Stiffness per width, N/m per m.
+    """
     return single_stiffness(first, second) * (0.75 * contact_ratio(first, second) + 0.25)
 
 
 def contact_ratio(first: PairDesign, second: PairDesign) -> float:
-    """Transverse contact ratio at the standard centre distance, cut off where an involute ends."""
+    """Return the transverse contact ratio at the standard centre distance, cut off where an involute ends.
+
+    Parameters
+    ----------
+    first, second : PairDesign
+        Both gears.
+
+    Returns
+    -------
+    float
+        Contact ratio, dimensionless.
+    """
     total = 0.0
-    for own, other in ((first, second), (second, first)):
-        pitch = own.pinion_base_radius * tan(own.pressure_angle)
-        reach = own.pinion_base_radius * own.pinion_tip_roll - pitch
-        other_pitch = other.pinion_base_radius * tan(other.pressure_angle)
-        total += min(reach, other_pitch - other.pinion_base_radius * junction_roll(other))
+    for gear, mating_gear in ((first, second), (second, first)):
+        pitch = gear.pinion_base_radius * tan(gear.pressure_angle)
+        reach = gear.pinion_base_radius * gear.pinion_tip_roll - pitch
+        other_pitch = mating_gear.pinion_base_radius * tan(mating_gear.pressure_angle)
+        total += min(reach, other_pitch - mating_gear.pinion_base_radius * junction_roll(mating_gear))
     return total / (2 * pi * first.pinion_base_radius / first.pinion.teeth)

@@ -20,12 +20,14 @@ from facegear.geometry.design import Material
 from validation.contact.process import run_alone
 
 VERSION = "10.4.4"
+"""Version of Kratos."""
 PACKAGES = (
     "KratosMultiphysics",
     "KratosStructuralMechanicsApplication",
     "KratosContactStructuralMechanicsApplication",
     "KratosLinearSolversApplication",
 )
+"""Packages of the environment that uv makes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,21 +37,21 @@ class TwoBodies:
     Attributes
     ----------
     nodes : (n, 3)
-        Of both, mm.
+        Nodes of both, mm.
     cubes : (c, 8) each
         Nodes of their hexahedra.
     faces : (f, 4) each
         Nodes of the faces that may touch, normals outward; the first body's are the slave's.
-    moved : (n, 3)
+    support_displacement : (n, 3)
         Displacements (mm) of the nodes that supports hold, nan where a node is free.
     materials
-        Of the two.
+        Materials of the two.
     """
 
     nodes: Array
     cubes: tuple[Integers, Integers]
     faces: tuple[Integers, Integers]
-    moved: Array
+    support_displacement: Array
     materials: tuple[Material, Material]
 
 
@@ -78,11 +80,33 @@ def solve(
     work: float | None = None,
     timeout: float = 3600.0,
 ) -> KratosRun:
-    """Solve in steps of the displacements, `parts` of them one after the other.
+    """Solve in steps of the displacements; input, log and results stay in the folder.
 
-    `work` (N mm) is that of the support's last reactions on the whole displacements: further steps follow
-    until it is met within `kratos_run.CLOSE`. Input, log and results stay in the folder.
-    Raises FacegearError if uv is missing, Kratos fails or its contact does not converge.
+    Parameters
+    ----------
+    folder : Path
+        Folder of the run.
+    bodies : TwoBodies
+        Both bodies.
+    parts : Sequence[float]
+        Parts of the displacements, fractions, one after the other.
+    threads : int
+        Number of threads.
+    work : float or None
+        Work of the support's last reactions on the whole displacements, N mm: further steps follow until it
+        is met within `kratos_run.CLOSE`. None for no further steps.
+    timeout : float
+        Time after which the run is ended, s.
+
+    Returns
+    -------
+    KratosRun
+        The solution.
+
+    Raises
+    ------
+    FacegearError
+        If uv is missing, Kratos fails or its contact does not converge.
     """
     write(folder, bodies, parts, work)
     log = folder / "kratos.log"
@@ -97,13 +121,25 @@ def solve(
 
 
 def write(folder: Path, bodies: TwoBodies, parts: Sequence[float], work: float | None) -> None:
-    """Write the input of a run into a folder."""
+    """Write the input of a run into a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the run.
+    bodies : TwoBodies
+        Both bodies.
+    parts : Sequence[float]
+        Parts of the displacements, fractions.
+    work : float or None
+        Work to be met, N mm, or None.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "pair.mdpa").write_text(_mesh(bodies.nodes, bodies.cubes, bodies.faces), encoding="ascii")
     (folder / "materials.json").write_text(json.dumps(_materials(bodies.materials)), encoding="ascii")
     (folder / "parameters.json").write_text(json.dumps(_parameters(), indent=1), encoding="ascii")
     (folder / "steps.json").write_text(json.dumps({"parts": list(parts), "work": work}), encoding="ascii")
-    np.savetxt(folder / "moved.csv", bodies.moved, delimiter=",", fmt="%.12e")
+    np.savetxt(folder / "moved.csv", bodies.support_displacement, delimiter=",", fmt="%.12e")
 
 
 def _command() -> list[str]:
@@ -112,12 +148,12 @@ def _command() -> list[str]:
         raise FacegearError(
             "uv is not installed, which makes the environment that Kratos runs in (make tools)"
         )
-    packages = [argument for name in (*PACKAGES, "numpy") for argument in ("--with", _pinned(name))]
-    isolated = "run", "--no-project", "--isolated", "--python", sys.executable
-    return [uv, *isolated, *packages, "python", str(Path(__file__).with_name("kratos_run.py"))]
+    packages = [argument for name in (*PACKAGES, "numpy") for argument in ("--with", _requirement(name))]
+    options = "run", "--no-project", "--isolated", "--python", sys.executable
+    return [uv, *options, *packages, "python", str(Path(__file__).with_name("kratos_run.py"))]
 
 
-def _pinned(name: str) -> str:
+def _requirement(name: str) -> str:
     return f"{name}=={VERSION}" if name in PACKAGES else name
 
 
@@ -128,10 +164,10 @@ def _mesh(nodes: Array, cubes: Sequence[Integers], faces: Sequence[Integers]) ->
     lines += ["Begin Nodes", *points, "End Nodes"]
     elements = _blocks("Elements SmallDisplacementElement3D8N", cubes, (1, 2), lines)
     conditions = _blocks("Conditions SurfaceCondition3D4N", faces, (0, 0), lines)
-    for body, own in enumerate(elements):
-        lines += _part(f"Body_{body}", np.unique(cubes[body]) + 1, own, [])
-    touching = np.unique(np.concatenate([face.ravel() for face in faces])) + 1
-    lines += _part("Contact_0", touching, [], [*conditions[0], *conditions[1]])
+    for body, body_elements in enumerate(elements):
+        lines += _part(f"Body_{body}", np.unique(cubes[body]) + 1, body_elements, [])
+    contact_nodes = np.unique(np.concatenate([face.ravel() for face in faces])) + 1
+    lines += _part("Contact_0", contact_nodes, [], [*conditions[0], *conditions[1]])
     lines += _part("Slave_0", np.unique(faces[0]) + 1, [], conditions[0])
     return "\n".join(lines) + "\n"
 
@@ -141,11 +177,11 @@ def _blocks(
 ) -> list[list[int]]:
     """Append numbered tables of nodes to the lines; returns the numbers of each table."""
     start, numbers = 1, []
-    for table, own in zip(tables, properties, strict=True):
+    for table, property_number in zip(tables, properties, strict=True):
         numbers.append(list(range(start, start + len(table))))
         rows = zip(numbers[-1], (table + 1).tolist(), strict=True)
         lines.append(f"Begin {kind}")
-        lines += [f"{number} {own} " + " ".join(map(str, row)) for number, row in rows]
+        lines += [f"{number} {property_number} " + " ".join(map(str, row)) for number, row in rows]
         lines.append(f"End {kind.split()[0]}")
         start += len(table)
     return numbers

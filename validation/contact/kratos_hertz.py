@@ -1,4 +1,4 @@
-"""Hertz's contact by Kratos: a cylinder on a block in plane strain, held against the formula.
+"""Hertz's contact by Kratos: a cylinder on a block in plane strain, compared with the formula.
 
 Both are linear hexahedra whose nodes do not meet. Lengths in mm, forces in N.
 """
@@ -14,8 +14,9 @@ from facegear.geometry.design import Material
 from validation.contact.kratos import VERSION, TwoBodies, solve
 
 RADIUS, YOUNG, POISSON = 10.0, 210_000.0, 0.3
+"""Radius of the cylinder, mm, Young's modulus, N/mm2, and Poisson's ratio of both bodies."""
 APPROACH = 0.026
-"""By how much the far sides of both bodies come closer."""
+"""Approach of the far sides of both bodies, mm."""
 REACH, FINE, GROWTH = 12.0, 0.4, 1.4
 """Half width and depth of a body; width on each side with even cells; growth of the cells beyond."""
 SLAVE, MASTER = 2, 3
@@ -25,15 +26,32 @@ UNEVEN = 1.23
 
 
 def hertz_peer(folder: Path, cells: Sequence[float], threads: int) -> pd.DataFrame:
-    """A row for each length of the cylinder's cells (mm): largest pressure against Hertz at Kratos' own load.
+    """Compare the largest pressure with Hertz's at Kratos' own load.
 
-    Raises FacegearError if Kratos cannot be run or does not converge.
+    Parameters
+    ----------
+    folder : Path
+        Folder of the runs.
+    cells : Sequence[float]
+        Lengths of the cylinder's cells, mm.
+    threads : int
+        Number of threads.
+
+    Returns
+    -------
+    DataFrame
+        One row for each length.
+
+    Raises
+    ------
+    FacegearError
+        If Kratos cannot be run or does not converge.
     """
     rows = []
     for cell in cells:
-        bodies, held = cylinder_on_block(cell)
+        bodies, fixed_nodes = cylinder_on_block(cell)
         run = solve(folder / f"hertz_{round(1e3 * cell):03d}", bodies, (1.0,), threads)
-        load = run.reaction[held, 1].sum() / thickness(cell)
+        load = run.reaction[fixed_nodes, 1].sum() / thickness(cell)
         pressure, half_width = hertz(load)
         rows.append(
             {
@@ -52,44 +70,77 @@ def hertz_peer(folder: Path, cells: Sequence[float], threads: int) -> pd.DataFra
 
 
 def hertz(load: float) -> tuple[float, float]:
-    """Largest pressure (N/mm2) and half width (mm) of the contact under a line load (N/mm)."""
+    """Return largest pressure and half width of the contact.
+
+    Parameters
+    ----------
+    load : float
+        Line load, N/mm.
+
+    Returns
+    -------
+    float, float
+        Pressure, N/mm2, and half width, mm.
+    """
     stiffness = YOUNG / (2.0 * (1.0 - POISSON**2))
     return np.sqrt(load * stiffness / (np.pi * RADIUS)), np.sqrt(4.0 * load * RADIUS / (np.pi * stiffness))
 
 
 def thickness(cell: float) -> float:
-    """Length of both bodies along the axis, mm."""
+    """Return the length of both bodies along the axis.
+
+    Parameters
+    ----------
+    cell : float
+        Length of the cylinder's cells, mm.
+
+    Returns
+    -------
+    float
+        Length, mm.
+    """
     return 6.0 * cell
 
 
 def cylinder_on_block(cell: float) -> tuple[TwoBodies, Integers]:
-    """The cylinder, then the block, and which of the nodes hold the block."""
+    """Mesh the cylinder, then the block.
+
+    Parameters
+    ----------
+    cell : float
+        Length of the cylinder's cells, mm.
+
+    Returns
+    -------
+    TwoBodies, (n,) array of int
+        Bodies, and indices of the nodes that hold the block.
+    """
     depth = thickness(cell)
     upper, lower = _grid(cell, 1.0, depth, SLAVE), _grid(UNEVEN * cell, -1.0, depth, MASTER)
     upper[..., 1] += upper[..., 0] ** 2 / (2.0 * RADIUS) * (1.0 - upper[..., 1] / upper[..., 1].max())
     numbers = [np.arange(upper[..., 0].size).reshape(upper.shape[:-1])]
     numbers.append(numbers[0].size + np.arange(lower[..., 0].size).reshape(lower.shape[:-1]))
     nodes = np.concatenate([upper.reshape(-1, 3), lower.reshape(-1, 3)])
-    moved = np.full(nodes.shape, np.nan)
-    moved[:, 2] = 0.0
-    held = numbers[1][:, -1].ravel()
-    moved[held, :2] = 0.0
-    moved[numbers[0][:, -1].ravel(), :2] = 0.0, -APPROACH
+    support_displacement = np.full(nodes.shape, np.nan)
+    support_displacement[:, 2] = 0.0
+    fixed_nodes = numbers[1][:, -1].ravel()
+    support_displacement[fixed_nodes, :2] = 0.0
+    support_displacement[numbers[0][:, -1].ravel(), :2] = 0.0, -APPROACH
     cubes = _cubes(numbers[0]), _cubes(numbers[1])[:, [4, 5, 6, 7, 0, 1, 2, 3]]
     faces = _faces(numbers[0]), _faces(numbers[1])[:, ::-1]
     steel = Material(1e6 * YOUNG, POISSON)
-    return TwoBodies(nodes, cubes, faces, moved, (steel, steel)), held
+    return TwoBodies(nodes, cubes, faces, support_displacement, (steel, steel)), fixed_nodes
 
 
 def _grid(cell: float, side: float, depth: float, layers: int) -> Array:
     """Points (along, down, axis, 3) of a block whose contact face is y = 0, above (side 1) or below it."""
-    down = _graded(cell)
+    down = _graded_distances(cell)
     along = np.concatenate([-down[:0:-1], down])
     x, y, z = np.meshgrid(along, down, np.linspace(0.0, depth, layers + 1), indexing="ij")
     return np.stack([x, side * y, z], axis=-1)
 
 
-def _graded(cell: float) -> Array:
+def _graded_distances(cell: float) -> Array:
     """Distances from the first point of contact to REACH, even up to FINE."""
     ends, step = [0.0], cell
     while ends[-1] < REACH:

@@ -37,7 +37,7 @@ MULTIGRID = {
     "provide_coordinates": False,
     "verbosity": 1,
 }
-CONDENSED = {
+CONDENSATION = {
     "solver_type": "mixed_ulm_linear_solver",
     "tolerance": 1e-9,
     "max_iteration_number": 1000,
@@ -49,23 +49,25 @@ percent, and the condensation leaves that out: a step of Newton's method is then
 is not."""
 
 
-class Moved(StructuralMechanicsAnalysis):
-    """A part of the displacements of moved.csv on the boundary."""
+class SupportAnalysis(StructuralMechanicsAnalysis):
+    """Analysis with a part of the displacements of moved.csv on the boundary."""
 
     def __init__(self, model: Kratos.Model, parameters: Kratos.Parameters) -> None:
         super().__init__(model, parameters)
-        self.moved = np.loadtxt("moved.csv", delimiter=",")
+        self.support_displacement = np.loadtxt("moved.csv", delimiter=",")
         self.part = 0.0
         # By its settings Kratos cannot be asked for both: it refuses entries that it added to them itself.
-        multigrid, condensed = (Kratos.Parameters(json.dumps(entry)) for entry in (MULTIGRID, CONDENSED))
-        solver = Contact.MixedULMLinearSolver(Kratos.AMGCLSolver(multigrid), condensed)
+        multigrid, condensation = (
+            Kratos.Parameters(json.dumps(entry)) for entry in (MULTIGRID, CONDENSATION)
+        )
+        solver = Contact.MixedULMLinearSolver(Kratos.AMGCLSolver(multigrid), condensation)
         self._GetSolver()._linear_solver = solver
 
     def ApplyBoundaryConditions(self) -> None:
         """Hold the nodes that moved.csv moves."""
         super().ApplyBoundaryConditions()
         nodes = self.model["Structure"].Nodes
-        for number, displacement in enumerate(self.moved, 1):
+        for number, displacement in enumerate(self.support_displacement, 1):
             node = nodes[number]
             for axis, value in zip(AXES, displacement, strict=True):
                 if not np.isnan(value):
@@ -73,75 +75,130 @@ class Moved(StructuralMechanicsAnalysis):
                     node.SetSolutionStepValue(axis, self.part * value)
 
     def step(self, part: float) -> bool:
-        """Solve under a part of the displacements; whether it converged."""
+        """Solve under a part of the displacements.
+
+        Parameters
+        ----------
+        part : float
+            Part of the displacements, fraction.
+
+        Returns
+        -------
+        bool
+            Whether the step converged.
+        """
         self.part = part
         self.time = self._AdvanceTime()
         self.InitializeSolutionStep()
         self._GetSolver().Predict()
-        converged = bool(self._GetSolver().SolveSolutionStep())
+        has_converged = bool(self._GetSolver().SolveSolutionStep())
         self.FinalizeSolutionStep()
         self.OutputSolutionStep()
-        return converged
+        return has_converged
 
     def work(self) -> float:
-        """Of the reactions on the whole displacements, N mm."""
+        """Return the work of the reactions on the whole displacements.
+
+        Returns
+        -------
+        float
+            Work, N mm.
+        """
         nodes = self.model["Structure"].Nodes
-        reaction = np.array([node.GetSolutionStepValue(Kratos.REACTION) for node in ordered(nodes)])
-        return float(np.nansum(self.moved * reaction))
+        reaction = np.array([node.GetSolutionStepValue(Kratos.REACTION) for node in sort_nodes(nodes)])
+        return float(np.nansum(self.support_displacement * reaction))
 
 
-def ordered(nodes: Kratos.NodesArray) -> list[Kratos.Node]:
+def sort_nodes(nodes: Kratos.NodesArray) -> list[Kratos.Node]:
+    """Sort nodes by their number.
+
+    Parameters
+    ----------
+    nodes : Kratos.NodesArray
+        Nodes of a model.
+
+    Returns
+    -------
+    list[Kratos.Node]
+        The sorted nodes.
+    """
     return sorted(nodes, key=lambda node: node.Id)
 
 
 def pressure(node: Kratos.Node) -> float:
-    """Contact pressure of a node of the slave face, zero elsewhere, N/mm2."""
+    """Return the contact pressure of a node of the slave face, zero elsewhere.
+
+    Parameters
+    ----------
+    node : Kratos.Node
+        The node.
+
+    Returns
+    -------
+    float
+        Pressure, N/mm2.
+    """
     return max(-node.GetValue(PRESSURE), 0.0) if node.Is(Kratos.SLAVE) and node.Has(PRESSURE) else 0.0
 
 
-def follow(analysis: Moved, parts: list[float], work: float | None) -> bool:
-    """Solve in parts of the displacements, then until `work` is met: work grows as a power of the part."""
-    seen: list[tuple[float, float]] = []
-    wanted = list(parts)
-    while wanted:
-        part = wanted.pop(0)
+def follow(analysis: SupportAnalysis, parts: list[float], work: float | None) -> bool:
+    """Solve in parts of the displacements, then until the work is met: work grows as a power of the part.
+
+    Parameters
+    ----------
+    analysis : SupportAnalysis
+        The analysis.
+    parts : list[float]
+        Parts of the displacements, fractions.
+    work : float or None
+        Work to be met, N mm, or None.
+
+    Returns
+    -------
+    bool
+        Whether all steps converged and the work is met.
+    """
+    solutions: list[tuple[float, float]] = []
+    next_parts = list(parts)
+    while next_parts:
+        part = next_parts.pop(0)
         if not analysis.step(part):
             return False
-        seen.append((part, analysis.work()))
-        print(f"part {part:.6f} of the displacements: work {seen[-1][1]:.6e} N mm", flush=True)
-        if work is None or wanted:
+        solutions.append((part, analysis.work()))
+        print(f"part {part:.6f} of the displacements: work {solutions[-1][1]:.6e} N mm", flush=True)
+        if work is None or next_parts:
             continue
-        if abs(seen[-1][1] / work - 1.0) < CLOSE:
+        if abs(solutions[-1][1] / work - 1.0) < CLOSE:
             break
-        if len(seen) == len(parts) + FURTHER:
+        if len(solutions) == len(parts) + FURTHER:
             return False
-        (first, before), (last, after) = seen[-2:]
+        (first, before), (last, after) = solutions[-2:]
         if not 0.0 < before < after:
             return False
         exponent = np.log(after / before) / np.log(last / first)
-        wanted.append(float(last * (work / after) ** (1.0 / exponent)))
+        next_parts.append(float(last * (work / after) ** (1.0 / exponent)))
     return True
 
 
 def main() -> None:
     start = time.perf_counter()
-    asked = json.loads(Path("steps.json").read_text(encoding="ascii"))
+    steps = json.loads(Path("steps.json").read_text(encoding="ascii"))
     model = Kratos.Model()
-    analysis = Moved(model, Kratos.Parameters(Path("parameters.json").read_text(encoding="ascii")))
+    analysis = SupportAnalysis(model, Kratos.Parameters(Path("parameters.json").read_text(encoding="ascii")))
     analysis.Initialize()
-    converged = follow(analysis, asked["parts"], asked["work"])
+    has_converged = follow(analysis, steps["parts"], steps["work"])
     rows = [
         (
             *node.GetSolutionStepValue(Kratos.DISPLACEMENT),
             *node.GetSolutionStepValue(Kratos.REACTION),
             pressure(node),
         )
-        for node in ordered(model["Structure"].Nodes)
+        for node in sort_nodes(model["Structure"].Nodes)
     ]
     np.savetxt("nodes.csv", rows, delimiter=",", fmt="%.12e")
     usage = resource.getrusage(resource.RUSAGE_SELF)
     result = {
-        "converged": converged,
+        "converged": has_converged,
         "part": analysis.part,
         "seconds": time.perf_counter() - start,
         "cpu_seconds": usage.ru_utime + usage.ru_stime,

@@ -1,4 +1,4 @@
-"""Root stress under an even load along a line of the flank: what meshes and solvers are compared by."""
+"""Root stress under an even load along a line of the flank, by which meshes and solvers are compared."""
 
 from dataclasses import dataclass, replace
 
@@ -16,7 +16,7 @@ from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import FeTooth
 
 HEIGHT = 0.25
-"""Where on the flank the line lies, 0 at its tip end to 1 at its root end, evenly in the mesh's rows."""
+"""Position of the line on the flank, 0 at its tip end to 1 at its root end, evenly in the mesh's rows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,18 +42,42 @@ def loaded_tooth(
     ends: Ends = "free",
     on_corners: bool = False,
 ) -> LoadedTooth:
-    """Stress of the middle one of `teeth` teeth of `pinion` or `face_gear`.
+    """Compute the stress of the middle tooth of a sector; sizes as they are given.
 
-    `on_corners` moves the line to the nearest row of element corners, which 20-node elements share.
-    Sizes as they are given. Raises FacegearError if the mesh cannot be factorised.
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    body : str
+        `pinion` or `face_gear`.
+    sizes : MeshSizes
+        Mesh sizes.
+    material : Material
+        Material of the body.
+    teeth : int
+        Number of teeth of the sector.
+    ends : Ends
+        Support of its cut faces.
+    on_corners : bool
+        Whether the line moves to the nearest row of element corners, which 20-node elements share.
+
+    Returns
+    -------
+    LoadedTooth
+        The tooth with its stress.
+
+    Raises
+    ------
+    FacegearError
+        If the mesh cannot be factorised.
     """
     mesh = BUILDERS[body](design, sizes)
     elastic, side = elastic_tooth(design, mesh, material)
     gauges, rows = root_gauges(mesh, material)
     load = line_load(elastic.points[elastic.flank], side, on_corners)
     strip = _loaded_rows(load.reshape(side.shape))
-    loaded = replace(elastic, flank=elastic.flank[strip], normals=elastic.normals[strip])
-    compliance = flank_compliance(loaded, Refinement(), teeth, 0, ends, gauges=rows)
+    strip_tooth = replace(elastic, flank=elastic.flank[strip], normals=elastic.normals[strip])
+    compliance = flank_compliance(strip_tooth, Refinement(), teeth, 0, ends, gauges=rows)
     stress = -(compliance.readings[0] @ load.reshape(side.shape)[strip].ravel())
     stress = stress.reshape(gauges.position.shape[:3])
     forces = -load.reshape(*side.shape, 1) * elastic.normals
@@ -68,7 +92,22 @@ def _loaded_rows(load: Array) -> slice:
 
 
 def line_load(points: Array, side: ContactSide, on_corners: bool) -> Array:
-    """Forces (n,) N on the nodes of a contact surface with `points` (nu, nv, 3), 1 N in all."""
+    """Return the forces on the nodes of a contact surface, 1 N in all.
+
+    Parameters
+    ----------
+    points : (nu, nv, 3) array
+        Nodes of the surface, m.
+    side : ContactSide
+        The surface.
+    on_corners : bool
+        Whether the line moves to the nearest row of element corners.
+
+    Returns
+    -------
+    (n,) array
+        Forces, N.
+    """
     row = HEIGHT * (side.flank_rows - 1)
     row = 2.0 * round(row / 2.0) if on_corners else row
     columns = side.shape[1]

@@ -24,15 +24,20 @@ from validation.contact.sector_model import angles_at
 from validation.contact.stress_peer import ENDS
 
 Body = Literal["pinion", "face_gear"]
-HELD = {"pinion": ("bore", "cut_left", "cut_right"), "face_gear": ("rim_back", "cut_left", "cut_right")}
+FIXED_FACES = {
+    "pinion": ("bore", "cut_left", "cut_right"),
+    "face_gear": ("rim_back", "cut_left", "cut_right"),
+}
 """Groups of faces that supports hold; the pinion's turn as one about its axis."""
 RING = ((0, 0), (1, 0), (1, 1), (0, 1))
+"""Corners of a square cell in their order round it."""
 OCTANTS = tuple((i, j, k) for k in (0, 1) for j in (0, 1) for i in (0, 1))
+"""First corners of the eight cells that a 27-node hexahedron is cut into."""
 
 
 @dataclass(frozen=True)
 class PairBodies:
-    """A pair at a position (0..1 of a pitch), meshed in `sizes`."""
+    """Pair at a position (0..1 of a pitch), meshed in `sizes`."""
 
     design: PairDesign
     sizes: MeshSizes
@@ -45,11 +50,22 @@ class PairBodies:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Of the unloaded pinion and gear, rad."""
+        """Angles of the unloaded pinion and gear, rad."""
         return angles_at(self.design, self.position)
 
-    def placed(self, body: str) -> Array:
-        """Nodes (n, 3) of a body in the pinion's frame, whose y axis it turns about, m."""
+    def node_positions(self, body: str) -> Array:
+        """Return the nodes of a body in the pinion's frame, about whose y axis it turns.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+
+        Returns
+        -------
+        (n, 3) array
+            Positions, m.
+        """
         nodes = self.teeth[body].nodes
         if body == "pinion":
             return nodes
@@ -58,36 +74,71 @@ class PairBodies:
         return np.stack([x, y, -minus_z], axis=1)
 
     def linear(self, turn: float) -> TwoBodies:
-        """Each 27-node hexahedron cut into eight of 8 nodes, the pinion's support turned by `turn` (rad)."""
+        """Cut each 27-node hexahedron into eight of 8 nodes, and rotate the pinion's support.
+
+        Parameters
+        ----------
+        turn : float
+            Rotation of the support, rad.
+
+        Returns
+        -------
+        TwoBodies
+            Both bodies, in mm.
+        """
         pinion, gear = self.teeth.values()
         count = len(pinion.nodes)
-        nodes = 1e3 * np.concatenate([self.placed(body) for body in self.teeth])
-        moved = np.full(nodes.shape, np.nan)
-        moved[count + held_nodes(gear)] = 0.0
-        turned = held_nodes(pinion)
-        x, _, z = nodes[turned].T
-        moved[turned] = np.stack([-turn * z, np.zeros_like(x), turn * x], axis=1)
+        nodes = 1e3 * np.concatenate([self.node_positions(body) for body in self.teeth])
+        support_displacement = np.full(nodes.shape, np.nan)
+        support_displacement[count + held_nodes(gear)] = 0.0
+        rotating_nodes = held_nodes(pinion)
+        x, _, z = nodes[rotating_nodes].T
+        support_displacement[rotating_nodes] = np.stack([-turn * z, np.zeros_like(x), turn * x], axis=1)
         return TwoBodies(
             nodes=nodes,
             cubes=(_cut_cubes(pinion.hexes), count + _cut_cubes(gear.hexes)),
             faces=(_cut_faces(contact_faces(pinion)), count + _cut_faces(contact_faces(gear))),
-            moved=moved,
+            support_displacement=support_displacement,
             materials=self.materials,
         )
 
     def root_stress(self, body: str, displacement: Array) -> float:
-        """Largest tension (Pa) down the fillet below the loaded flank, by displacements (n, 3) m of the body
-        as placed; the ends of the face are left out.
+        """Return the largest tension down the fillet below the loaded flank; the ends of the face are left
+        out.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+        displacement : (n, 3) array
+            Displacements of the body in the pinion's frame, m.
+
+        Returns
+        -------
+        float
+            Stress, Pa.
         """
         tooth = self.teeth[body]
         grid = tooth.surfaces[f"fillet_{fillet_sides(tooth.body)[0]}"].nodes
         material = self.materials[list(self.teeth).index(body)]
-        gauges = gauges_on(self.placed(body), grid, material)
+        gauges = gauges_on(self.node_positions(body), grid, material)
         stress = (gauges.normal @ displacement.ravel()).reshape(gauges.position.shape[:2])
         return largest_inside(stress, along(body, gauges_on(tooth.nodes, grid, material).position))
 
     def largest_pressure(self, pressure: Array) -> float:
-        """Largest value (n,) at the nodes of the pinion's flank, tip edge and ends of the face left out."""
+        """Return the largest pressure at the nodes of the pinion's flank, tip edge and ends of the face left
+        out.
+
+        Parameters
+        ----------
+        pressure : (n,) array
+            Pressure of the nodes, Pa.
+
+        Returns
+        -------
+        float
+            Pressure, Pa.
+        """
         tooth = self.teeth["pinion"]
         grid = tooth.surfaces[f"flank_{LOADED_SIDE['pinion']}"].nodes[2:]
         at = along("pinion", tooth.nodes[grid])
@@ -95,12 +146,29 @@ class PairBodies:
         return float(pressure[grid[inside]].max())
 
     def contact_nodes(self) -> Array:
-        """Places (nu, nv, 3) of the nodes of the pinion that can touch, m."""
+        """Return the positions of the nodes of the pinion that can touch.
+
+        Returns
+        -------
+        (nu, nv, 3) array
+            Positions, m.
+        """
         tooth = self.teeth["pinion"]
         return np.asarray(tooth.nodes[contact_side(self.design, tooth).nodes])
 
     def path(self, pressure: Array) -> float:
-        """Middle (m) along the pinion's axis of the forces of a pressure (n,) at its nodes."""
+        """Return the middle along the pinion's axis of the forces of a pressure at its nodes.
+
+        Parameters
+        ----------
+        pressure : (n,) array
+            Pressure of the nodes, Pa.
+
+        Returns
+        -------
+        float
+            Position, m.
+        """
         points = self.contact_nodes()
         down, beside = (np.asarray(np.gradient(points, axis=axis)) for axis in (0, 1))
         areas = np.linalg.norm(np.cross(down, beside), axis=-1)
@@ -109,22 +177,71 @@ class PairBodies:
 
 
 def contact_faces(tooth: FeTooth) -> Integers:
-    """Faces (f, 9) of flank and fillet that can touch."""
+    """Return the faces of flank and fillet that can touch.
+
+    Parameters
+    ----------
+    tooth : FeTooth
+        Mesh of the tooth.
+
+    Returns
+    -------
+    (f, 9) array of int
+        Indices of the nodes of each face.
+    """
     side = LOADED_SIDE[tooth.body]
     return np.concatenate([tooth.faces[f"{name}_{side}"] for name in ("flank", "fillet")])
 
 
 def held_nodes(tooth: FeTooth) -> Integers:
-    return np.unique(np.concatenate([tooth.faces[name].ravel() for name in HELD[tooth.body]]))
+    """Return the nodes that supports hold.
+
+    Parameters
+    ----------
+    tooth : FeTooth
+        Mesh of the tooth.
+
+    Returns
+    -------
+    (n,) array of int
+        Indices of the nodes.
+    """
+    return np.unique(np.concatenate([tooth.faces[name].ravel() for name in FIXED_FACES[tooth.body]]))
 
 
 def along(body: str, points: Array) -> Array:
-    """Where points (..., 3) of a body's own frame stand along the face, m."""
+    """Return the position of points along the face.
+
+    Parameters
+    ----------
+    body : str
+        `pinion` or `face_gear`.
+    points : (..., 3) array
+        Points in the body's own frame, m.
+
+    Returns
+    -------
+    (...) array
+        Positions, m.
+    """
     return points[..., 1] if body == "pinion" else np.hypot(points[..., 0], points[..., 1])
 
 
 def largest_inside(stress: Array, at: Array) -> float:
-    """Largest of stress (a, b) down a fillet, at places (a, b) along the face but at its ends."""
+    """Return the largest stress down a fillet, the ends of the face left out.
+
+    Parameters
+    ----------
+    stress : (a, b) array
+        Stress, Pa.
+    at : (a, b) array
+        Positions along the face, m.
+
+    Returns
+    -------
+    float
+        Stress, Pa.
+    """
     along = at.mean(axis=0)
     inside = np.abs(along - along.mean()) < (0.5 - ENDS) * np.ptp(along)
     return float(down_the_fillet(stress).max(axis=0)[inside].max())

@@ -23,14 +23,15 @@ from facegear.errors import FacegearError
 from facegear.geometry.design import Material
 from facegear.mesh.tooth import FeTooth
 from validation.contact.pair_bodies import PairBodies, along, largest_inside
-from validation.contact.process import Finished, run_alone
+from validation.contact.process import ProcessResult, run_alone
 from validation.contact.sector_model import SectorPair
 
-ASKED, ANSWER = "asked.pickle", "answer.json"
+REQUEST, ANSWER = "asked.pickle", "answer.json"
+"""Names of the files of request and answer."""
 
 
 @dataclass(frozen=True)
-class Asked:
+class PairRequest:
     """A pair under a torque (N m), its flank layers cut by `refinement`, its elements as `element`."""
 
     pair: PairBodies
@@ -41,7 +42,7 @@ class Asked:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a program makes of the pair under its torque (N m).
+    """Result of a program for the pair under its torque (N m).
 
     Turn (rad) of the pinion; largest `pressure` (Pa) on its flank and largest tension (Pa) at both fillets;
     `path`, the middle of the contact forces along the pinion's axis (m); `exponent` of the torque as a power
@@ -71,35 +72,66 @@ class _OwnBody:
         return largest_inside(stress, along(body, self.gauges.position[0]))
 
 
-def solve(folder: Path, asked: Asked, threads: int) -> tuple[Answer, Finished]:
-    """Solve in a process of its own. Raises FacegearError if it fails."""
+def solve(folder: Path, request: PairRequest, threads: int) -> tuple[Answer, ProcessResult]:
+    """Solve in a process of its own.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the process's files.
+    request : PairRequest
+        The pair, its torque and mesh.
+    threads : int
+        Number of threads.
+
+    Returns
+    -------
+    tuple[Answer, ProcessResult]
+        Answer and costs.
+
+    Raises
+    ------
+    FacegearError
+        If the process fails.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / ASKED).write_bytes(pickle.dumps(asked))
+    (folder / REQUEST).write_bytes(pickle.dumps(request))
     root = Path(__file__).parents[2]
     names = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
     environment = os.environ | dict.fromkeys(names, str(threads)) | {"PYTHONPATH": str(root)}
     command = (sys.executable, "-m", "validation.contact.pair_own", str(folder.resolve()))
-    done = run_alone(command, root, folder / "own.log", environment, 3600.0)
-    if done.code != 0:
+    process = run_alone(command, root, folder / "own.log", environment, 3600.0)
+    if process.code != 0:
         raise FacegearError(f"our own solution failed: see {folder / 'own.log'}")
-    return Answer(**json.loads((folder / ANSWER).read_text(encoding="ascii"))), done
+    return Answer(**json.loads((folder / ANSWER).read_text(encoding="ascii"))), process
 
 
-def own_answer(asked: Asked) -> Answer:
-    """Contact of the pair's flanks, and the stress at its fillets by the forces on them."""
-    pair = asked.pair
+def own_answer(request: PairRequest) -> Answer:
+    """Solve the contact of the pair's flanks, and the stress at its fillets by the forces on them.
+
+    Parameters
+    ----------
+    request : PairRequest
+        The pair, its torque and mesh.
+
+    Returns
+    -------
+    Answer
+        The answer.
+    """
+    pair = request.pair
     pinion, gear = (
-        _own_body(asked, tooth, material)
+        _own_body(request, tooth, material)
         for tooth, material in zip(pair.teeth.values(), pair.materials, strict=True)
     )
-    cuts = asked.refinement
-    flanks = flank_pair(pair.design, (pinion.side, gear.side), (cuts, cuts), asked.element != "hex27")
+    cuts = request.refinement
+    flanks = flank_pair(pair.design, (pinion.side, gear.side), (cuts, cuts), request.element != "hex27")
     blocks = ({(0, 0): body.compliance.own} for body in (pinion, gear))
-    result = SectorPair(flanks, *blocks).solve(pair.position, (asked.torque,))[0]
+    result = SectorPair(flanks, *blocks).solve(pair.position, (request.torque,))[0]
     (spot,) = result.spots
     pressure, _ = flank_pressure([result], flanks, pair.materials).loads[0].largest()
     return Answer(
-        torque=asked.torque,
+        torque=request.torque,
         turn=result.ste / pair.design.pinion_base_radius,
         pressure=pressure,
         pinion_root=pinion.root("pinion", spot.on_pinion),
@@ -109,18 +141,18 @@ def own_answer(asked: Asked) -> Answer:
     )
 
 
-def _own_body(asked: Asked, tooth: FeTooth, material: Material) -> _OwnBody:
-    elastic, side = elastic_tooth(asked.pair.design, tooth, material)
+def _own_body(request: PairRequest, tooth: FeTooth, material: Material) -> _OwnBody:
+    elastic, side = elastic_tooth(request.pair.design, tooth, material)
     gauges, rows = root_gauges(tooth, material)
-    held = elastic.held.copy()
+    is_fixed = elastic.held.copy()
     nowhere = np.zeros(0, dtype=np.int64)
-    held[np.union1d(elastic.left, elastic.right)] = True
-    cut_out = replace(elastic, held=held, left=nowhere, right=nowhere)
-    compliance = flank_compliance(cut_out, asked.refinement, element=asked.element, gauges=rows)
+    is_fixed[np.union1d(elastic.left, elastic.right)] = True
+    cut_out = replace(elastic, held=is_fixed, left=nowhere, right=nowhere)
+    compliance = flank_compliance(cut_out, request.refinement, element=request.element, gauges=rows)
     return _OwnBody(side, compliance, gauges)
 
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
-    answer = own_answer(pickle.loads((folder / ASKED).read_bytes()))
+    answer = own_answer(pickle.loads((folder / REQUEST).read_bytes()))
     (folder / ANSWER).write_text(json.dumps(asdict(answer)), encoding="ascii")

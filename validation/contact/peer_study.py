@@ -18,11 +18,13 @@ from validation.contact.refinement_levels import CUTS
 from validation.contact.sector_model import SectorPair, angles_at, sector_pair
 
 TEETH = 5
-LOADED = (-1, 0, 1, 2)
+"""Number of teeth of both sectors."""
+LOADED_TEETH = (-1, 0, 1, 2)
+"""Numbers of the teeth that may carry load."""
 HAND_OVER = 0.0
 POSITIONS = (HAND_OVER, 0.34, 0.67)
-RESOLVED = "coarse_4x1x2"
-"""The level that the errors of both are taken from."""
+REFERENCE_LEVEL = "coarse_4x1x2"
+"""Level that the errors of both are taken from."""
 AMORTISED = 128
 """Solutions over which one compliance is shared: 32 positions at 4 loads."""
 LOADS = (0.25, 0.5, 0.75, 1.0)
@@ -39,34 +41,59 @@ def peer_study(
     folder: Path,
     threads: int,
 ) -> pd.DataFrame:
-    """Torque (N m) that both need for the turn our sector takes under `torque`, with times (s) and memory
-    (GB), for each level at its positions (0..1 of a pitch).
+    """Compare the torque that both need for the turn our sector takes, with times (s) and memory (GB).
 
     CalculiX runs with either body's flank as the slave surface, a row each: its answer should not depend on
-    it. `resolved_torque_n_m` is what the same sector takes at that turn with its contact strip resolved, by
-    our solver on the level RESOLVED; errors are taken from it. At a given turn torques differ by some
-    1.3 times what turns do at a given torque (local over average stiffness). `seconds` is ours for one
+    it. `resolved_torque_n_m` is the torque of the same sector at that turn with its contact strip resolved,
+    by our solver on REFERENCE_LEVEL; errors are taken from it. At a given turn torques differ by some 1.3
+    times the difference of turns at a given torque (local over average stiffness). `seconds` is ours for one
     solution with its part of the compliances of both sectors, `calculix_seconds` one run.
-    Raises FacegearError if ccx is not installed or fails.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    levels : Mapping[str, tuple[MeshSizes, Sequence[float]]]
+        Mesh sizes and positions (fractions of a pitch) by level.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+    torque : float
+        Torque on the pinion, N m.
+    folder : Path
+        Folder of CalculiX's files.
+    threads : int
+        Number of threads of CalculiX.
+
+    Returns
+    -------
+    DataFrame
+        One row for each level, position and slave.
+
+    Raises
+    ------
+    FacegearError
+        If ccx is not installed or fails.
     """
-    size, cuts = CUTS[RESOLVED]
-    resolved = sector_pair(design, named_sizes(size, design.module), materials, TEETH, LOADED, cuts)
-    asked = {position for _, positions in levels.values() for position in positions}
-    fine = {position: _torque_by_turn(resolved, position, torque) for position in asked}
-    del resolved
+    size, cuts = CUTS[REFERENCE_LEVEL]
+    reference_pair = sector_pair(
+        design, named_sizes(size, design.module), materials, TEETH, LOADED_TEETH, cuts
+    )
+    all_positions = {position for _, positions in levels.values() for position in positions}
+    fine = {position: _torque_by_turn(reference_pair, position, torque) for position in all_positions}
+    del reference_pair
     progress = Progress("CalculiX", sum(len(positions) for _, positions in levels.values()) * len(BUILDERS))
     rows = []
     for name, (sizes, positions) in levels.items():
         start = time.perf_counter()
-        pair = sector_pair(design, sizes, materials, TEETH, LOADED, Refinement())
+        pair = sector_pair(design, sizes, materials, TEETH, LOADED_TEETH, Refinement())
         # one more solution makes what all positions share
         pair.solve(0.5, (1.0,))
-        shared = time.perf_counter() - start
+        preparation = time.perf_counter() - start
         for position in positions:
             start = time.perf_counter()
-            ours = pair.solve(position, tuple(part * torque for part in LOADS))[-1]
-            seconds = shared / AMORTISED + (time.perf_counter() - start) / len(LOADS)
-            turn = ours.ste / design.pinion_base_radius
+            result = pair.solve(position, tuple(part * torque for part in LOADS))[-1]
+            seconds = preparation / AMORTISED + (time.perf_counter() - start) / len(LOADS)
+            turn = result.ste / design.pinion_base_radius
             exact = float(fine[position](turn))
             for slave in BUILDERS:
                 deck = folder / f"{name}_{round(100 * position):03d}_{slave}.inp"

@@ -1,4 +1,4 @@
-"""A program as a process of its own: its output in a log, its time and its largest memory."""
+"""Program in a process of its own: its output in a log, its time and its largest memory."""
 
 import os
 import subprocess
@@ -10,7 +10,7 @@ from threading import Timer
 
 
 @dataclass(frozen=True)
-class Finished:
+class ProcessResult:
     """Exit code, wall and processor time (s) and largest memory (GB) of a process and what it started."""
 
     code: int
@@ -21,8 +21,27 @@ class Finished:
 
 def run_alone(
     command: Sequence[str], folder: Path, log: Path, environment: Mapping[str, str], timeout: float
-) -> Finished:
-    """Run a command in a folder until it ends, or is ended after `timeout` seconds."""
+) -> ProcessResult:
+    """Run a command in a folder until it ends, or is ended.
+
+    Parameters
+    ----------
+    command : Sequence[str]
+        Program and its arguments.
+    folder : Path
+        Working directory.
+    log : Path
+        Path of the log.
+    environment : Mapping[str, str]
+        Environment variables.
+    timeout : float
+        Time after which it is ended, s.
+
+    Returns
+    -------
+    ProcessResult
+        Exit code and costs.
+    """
     start = time.perf_counter()
     with open(log, "w", encoding="utf-8") as output:
         process = subprocess.Popen(
@@ -34,7 +53,7 @@ def run_alone(
         _, status, usage = os.wait4(process.pid, 0)
         limit.cancel()
     process.returncode = os.waitstatus_to_exitcode(status)
-    return Finished(
+    return ProcessResult(
         code=process.returncode,
         seconds=time.perf_counter() - start,
         cpu_seconds=usage.ru_utime + usage.ru_stime,

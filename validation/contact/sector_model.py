@@ -41,9 +41,24 @@ class SectorPair:
     gear: Blocks
 
     def solve(self, position: float, torques: Sequence[float]) -> list[LoadedPosition]:
-        """Contact at a position (0..1 of a pitch) under torques (N m), unloaded transmission error left in.
+        """Solve contact at a position, unloaded transmission error left in.
 
-        Raises NotConverged naming position and torque.
+        Parameters
+        ----------
+        position : float
+            Position, fraction of a pitch.
+        torques : Sequence[float]
+            Torques on the pinion, N m.
+
+        Returns
+        -------
+        list[LoadedPosition]
+            Result at each torque.
+
+        Raises
+        ------
+        NotConverged
+            Naming position and torque.
         """
         pair = _SectorAtPosition(self, position)
         guess = first_turn(torques, pair.base_radius, self.flanks.pinion.width)
@@ -75,7 +90,20 @@ class _SectorAtPosition:
 
 
 def angles_at(design: PairDesign, position: float) -> tuple[float, float]:
-    """Angles (rad) of the unloaded pinion and gear at a position."""
+    """Return the angles of the unloaded pinion and gear at a position.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    position : float
+        Position, fraction of a pitch.
+
+    Returns
+    -------
+    float, float
+        Angles, rad.
+    """
     phi1 = (position - 0.5) * 2 * pi / design.pinion.teeth
     return phi1, float(unloaded_contact(design, [phi1]).phi2[0])
 
@@ -85,13 +113,34 @@ def sector_pair(
     sizes: MeshSizes,
     materials: tuple[Material, Material],
     teeth: int,
-    loaded: Sequence[int],
+    loaded_teeth: Sequence[int],
     refinement: Refinement,
 ) -> SectorPair:
-    """Sectors of `teeth` teeth, those `loaded` among them, flank layers cut by `refinement`."""
+    """Build the sectors of both gears.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    sizes : MeshSizes
+        Mesh sizes.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+    teeth : int
+        Number of teeth of each sector.
+    loaded_teeth : Sequence[int]
+        Numbers of the teeth that may carry load.
+    refinement : Refinement
+        Cuts of the flank layers.
+
+    Returns
+    -------
+    SectorPair
+        Surfaces and compliances.
+    """
     bodies = [build(design, sizes) for build in BUILDERS.values()]
     pinion, gear = (
-        sector_blocks(design, tooth, material, teeth, loaded, refinement)
+        sector_blocks(design, tooth, material, teeth, loaded_teeth, refinement)
         for tooth, material in zip(bodies, materials, strict=True)
     )
     first, second = (contact_side(design, tooth) for tooth in bodies)
@@ -103,25 +152,44 @@ def sector_blocks(
     tooth: FeTooth,
     material: Material,
     teeth: int,
-    loaded: Sequence[int],
+    loaded_teeth: Sequence[int],
     refinement: Refinement,
 ) -> Blocks:
-    """Flank compliance (n, n), m/N, for each pair of `loaded` teeth (seen, loaded) of a sector of `teeth`
-    around tooth 0, cut faces free.
+    """Return the flank compliance for each pair of loaded teeth of a sector around tooth 0, cut faces free.
 
     Equal to that of the sector meshed whole, from one condensed tooth.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    tooth : FeTooth
+        Mesh of a tooth.
+    material : Material
+        Its material.
+    teeth : int
+        Number of teeth of the sector.
+    loaded_teeth : Sequence[int]
+        Numbers of the loaded teeth.
+    refinement : Refinement
+        Cuts of the flank layer.
+
+    Returns
+    -------
+    Blocks
+        Compliance (n, n), m/N, by number of the displaced and of the loaded tooth.
     """
     elastic, _ = elastic_tooth(design, tooth, material, LOADED_SIDE[tooth.body])
-    condensed = condense(tied_system(elastic, refinement))
-    planes = plane_compliance(condensed.faces, teeth)
-    seen, own = condensed.influence, condensed.flank
-    size = seen.shape[1]
-    starts = {number: size // 2 * (number + teeth // 2) for number in loaded}
+    condensed_body = condense(tied_system(elastic, refinement))
+    planes = plane_compliance(condensed_body.faces, teeth)
+    influence, flank_compliance = condensed_body.influence, condensed_body.flank
+    size = influence.shape[1]
+    starts = {number: size // 2 * (number + teeth // 2) for number in loaded_teeth}
     faces = {number: slice(start, start + size) for number, start in starts.items()}
     return {
-        (first, second): seen @ planes[faces[first], faces[second]] @ seen.T
-        + (own if first == second else 0.0)
-        for first, second in pairs_of(loaded, repeat=2)
+        (first, second): influence @ planes[faces[first], faces[second]] @ influence.T
+        + (flank_compliance if first == second else 0.0)
+        for first, second in pairs_of(loaded_teeth, repeat=2)
     }
 
 

@@ -1,4 +1,4 @@
-"""Root stress beside that of a mesh twice as fine, and what reading it costs."""
+"""Root stress compared with that of a mesh twice as fine, and the cost of reading it."""
 
 import resource
 import time
@@ -18,42 +18,64 @@ from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
 from facegear.strength.root_stress import down_the_fillet, root_stress
 from validation.contact.line_load import LoadedTooth, loaded_tooth
-from validation.contact.stress_levels import HALVED
+from validation.contact.stress_levels import HALVED_SIZES
 
 Result = TypeVar("Result")
 
 TEETH = 3
-"""Of the sector, its cut faces free; the middle one is loaded."""
+"""Number of teeth of the sector, its cut faces free; the middle one is loaded."""
 ENDS = 0.1
 """Part of the face at each end that is left out: an edge's stress is no element's to give."""
 REPEATS = 3
+"""Number of runs whose least time counts."""
 POSITIONS, LOADS, NODES = 32, 1000, 80
-"""Of the timed root stress; nodes of each of three pairs that carry load."""
+"""Numbers of positions and loads of the timed root stress, and of nodes of each of three pairs that carry
+load."""
 
 
 def stress_convergence(
     design: PairDesign, body: str, sizes: MeshSizes, material: Material, halvings: Sequence[str]
 ) -> Iterator[dict[str, float | str]]:
-    """One row a halving: largest tension (MPa) below an even line load of 1 kN, and its change.
+    """Yield one row a halving: largest tension (MPa) below an even line load of 1 kN, and its change.
 
     error_percent: of the largest value; largest_error_percent: of the largest down the fillet, anywhere along
     the face but at its ends. CPU seconds of both meshes, condensation and gauges included.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    body : str
+        `pinion` or `face_gear`.
+    sizes : MeshSizes
+        Mesh sizes.
+    material : Material
+        Material of the body.
+    halvings : Sequence[str]
+        Keys of HALVED_SIZES.
+
+    Yields
+    ------
+    dict
+        Values by column; errors in percent, stress in MPa.
     """
-    coarse, seconds = _timed(design, body, sizes, material)
-    at, own = _along_the_face(coarse)
-    for halved in halvings:
-        changes = {name: 0.5 * getattr(sizes, name) for name in HALVED[halved] if getattr(sizes, name)}
-        fine, fine_seconds = _timed(design, body, replace(sizes, **changes), material)
+    coarse, seconds = _measure_time(design, body, sizes, material)
+    at, stress = _along_the_face(coarse)
+    for sizes_halved in halvings:
+        changes = {
+            name: 0.5 * getattr(sizes, name) for name in HALVED_SIZES[sizes_halved] if getattr(sizes, name)
+        }
+        fine, fine_seconds = _measure_time(design, body, replace(sizes, **changes), material)
         reference = np.interp(at, *_along_the_face(fine))
         yield {
             "body": body,
-            "halved": halved,
+            "halved": sizes_halved,
             "dof": 3 * len(coarse.mesh.nodes),
             "fine_dof": 3 * len(fine.mesh.nodes),
-            "stress_mpa": 1e-3 * float(own.max()),
+            "stress_mpa": 1e-3 * float(stress.max()),
             "fine_stress_mpa": 1e-3 * float(reference.max()),
-            "error_percent": 100.0 * float(own.max() / reference.max() - 1.0),
-            "largest_error_percent": 100.0 * float(np.abs(own / reference - 1.0).max()),
+            "error_percent": 100.0 * float(stress.max() / reference.max() - 1.0),
+            "largest_error_percent": 100.0 * float(np.abs(stress / reference - 1.0).max()),
             "cpu_s": seconds,
             "fine_cpu_s": fine_seconds,
         }
@@ -62,11 +84,31 @@ def stress_convergence(
 def stress_costs(
     design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
 ) -> dict[str, float | str]:
-    """CPU seconds of the compliance of one body without and with gauges, and of many loads' root stress.
+    """Measure the CPU seconds of the compliance of one body without and with gauges, and of many loads' root
+    stress.
 
-    Both in turn, the least of REPEATS each: what other programs do to memory counts in CPU seconds as well.
+    Both in turn, the least of REPEATS each: the load of other programs on memory counts in CPU seconds as
+    well.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    body : str
+        `pinion` or `face_gear`.
+    sizes : MeshSizes
+        Mesh sizes.
+    material : Material
+        Material of the body.
+    plan : ContactPlan
+        Plan of the contact analysis.
+
+    Returns
+    -------
+    dict[str, float or str]
+        Values by column, times in s, memory in GB.
     """
-    plain, reading = (replace(plan, root_stress=asked) for asked in (False, True))
+    plain, reading = (replace(plan, root_stress=gauge_rows) for gauge_rows in (False, True))
     without = with_gauges = np.inf
     for _ in range(REPEATS):
         without = min(without, _cpu(lambda: gear_flank(design, body, sizes, material, plain))[0])
@@ -114,13 +156,17 @@ def _many_loads(flank: GearFlank, body: str) -> tuple[float, int]:
     return seconds, stress.passage.size // POSITIONS
 
 
-def _timed(design: PairDesign, body: str, sizes: MeshSizes, material: Material) -> tuple[LoadedTooth, float]:
+def _measure_time(
+    design: PairDesign, body: str, sizes: MeshSizes, material: Material
+) -> tuple[LoadedTooth, float]:
     seconds, tooth = _cpu(lambda: loaded_tooth(design, body, sizes, material, TEETH))
     return tooth, seconds
 
 
 def _cpu(work: Callable[[], Result]) -> tuple[float, Result]:
-    """On one thread: another that waits for work counts as if it worked."""
+    """CPU seconds of a call on one thread, and its result: a second thread that waits for work counts as if
+    it worked.
+    """
     with threadpool_limits(1):
         start = time.process_time()
         result = work()

@@ -1,6 +1,6 @@
 """Meshes of the benchmark of root stress, and which of their sizes are halved beside each."""
 
-HALVED = {
+HALVED_SIZES = {
     "all": ("profile", "fillet_depth", "second_row", "width", "thickness"),
     "profile and depth": ("profile", "fillet_depth", "second_row"),
     "width": ("width",),

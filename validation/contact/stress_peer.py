@@ -27,14 +27,14 @@ from validation.contact.calculix import run_program
 from validation.contact.line_load import LoadedTooth, loaded_tooth
 
 LEVELS = ("coarse", "medium")
-"""Of the whole face."""
+"""Levels of the whole face."""
 END = 2.1
 """Outer part of the face, in modules, where the gear's fillet is sharpest: small enough for finer meshes."""
 END_LEVELS = {"medium": (0.10, 0.40, 0.40), "fine": (0.05, 0.27, 0.32), "finer": (0.035, 0.27, 0.32)}
 """Sizes of the outer part's meshes, as in `facegear.mesh.sizes.RESOLUTIONS`."""
 
 TEETH = 3
-"""Of the sector, its cut faces free; the middle one is loaded."""
+"""Number of teeth of the sector, its cut faces free; the middle one is loaded."""
 
 ENDS = 0.1
 """Part of the face at each end that is left out: an edge's stress is no element's to give."""
@@ -43,7 +43,24 @@ ENDS = 0.1
 def stress_peer_tables(
     design: PairDesign, materials: tuple[Material, Material], folder: Path, threads: int
 ) -> pd.DataFrame:
-    """`stress_peer_study` of the whole face, then of its outer end on finer meshes."""
+    """Compare the whole face, then its outer end on finer meshes, by `stress_peer_study`.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+    folder : Path
+        Folder for CalculiX's files.
+    threads : int
+        Number of threads of CalculiX.
+
+    Returns
+    -------
+    DataFrame
+        Rows of both parts.
+    """
     m = design.module
     whole = {name: thin_fillet(named_sizes(name, m), name) for name in LEVELS}
     end = {name: thin_fillet(MeshSizes(*(m * size for size in sizes))) for name, sizes in END_LEVELS.items()}
@@ -55,7 +72,18 @@ def stress_peer_tables(
 
 
 def outer_end(design: PairDesign) -> PairDesign:
-    """The outer end of the pair's face alone."""
+    """Return the outer end of the pair's face alone.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+
+    Returns
+    -------
+    PairDesign
+        The cut pair.
+    """
     face = END * design.module
     gear = replace(design.face_gear, inner_radius=design.face_gear.outer_radius - face)
     return replace(design, face_gear=gear, pinion=replace(design.pinion, width=0.75 * face))
@@ -68,11 +96,33 @@ def stress_peer_study(
     folder: Path,
     threads: int,
 ) -> pd.DataFrame:
-    """One row a level and body: largest tension (MPa) below an even line load of 1 kN.
+    """Compare the largest tension (MPa) below an even line load of 1 kN, one row a level and body.
 
     `stress_mpa` ours, `calculix_gauge_mpa` of CalculiX's displacements, `calculix_nodal_mpa` its own; ours
     against both in percent, and against the gauge's in the plane across the face where they differ most.
-    Raises FacegearError if ccx is not installed or fails.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    levels : Mapping[str, MeshSizes]
+        Sizes of the meshes by level.
+    materials : tuple[Material, Material]
+        Materials of pinion and gear.
+    folder : Path
+        Folder for CalculiX's files.
+    threads : int
+        Number of threads of CalculiX.
+
+    Returns
+    -------
+    DataFrame
+        One row for each level and body.
+
+    Raises
+    ------
+    FacegearError
+        If ccx is not installed or fails.
     """
     rows, face = [], design.face_gear.outer_radius - design.face_gear.inner_radius
     for level, sizes in levels.items():
@@ -81,19 +131,19 @@ def stress_peer_study(
             deck = folder / f"stress_{1e3 * face:.3g}_mm_{level}_{body}.inp"
             dof = write_stress_deck(deck, tooth, material)
             run = run_program(deck, threads)
-            ours, read, nodal = along_the_face(tooth, deck.with_suffix(".frd"), material)
+            our_stress, read, nodal = along_the_face(tooth, deck.with_suffix(".frd"), material)
             rows.append(
                 {
                     "face_mm": 1e3 * face,
                     "level": level,
                     "body": body,
                     "dof": dof,
-                    "stress_mpa": 1e-3 * ours.max(),
+                    "stress_mpa": 1e-3 * our_stress.max(),
                     "calculix_gauge_mpa": 1e-3 * read.max(),
                     "calculix_nodal_mpa": 1e-3 * nodal.max(),
-                    "difference_percent": 100.0 * (ours.max() / read.max() - 1.0),
-                    "largest_difference_percent": 100.0 * np.abs(ours / read - 1.0).max(),
-                    "nodal_difference_percent": 100.0 * (ours.max() / nodal.max() - 1.0),
+                    "difference_percent": 100.0 * (our_stress.max() / read.max() - 1.0),
+                    "largest_difference_percent": 100.0 * np.abs(our_stress / read - 1.0).max(),
+                    "nodal_difference_percent": 100.0 * (our_stress.max() / nodal.max() - 1.0),
                     "calculix_seconds": run.seconds,
                     "calculix_memory_gb": run.gigabytes,
                     "calculix_version": run.version,
@@ -103,22 +153,34 @@ def stress_peer_study(
 
 
 def write_stress_deck(path: Path, tooth: LoadedTooth, material: Material) -> int:
-    """Write the deck of a loaded tooth in the middle of its sector; returns its dof.
+    """Write the deck of a loaded tooth in the middle of its sector; lengths in m, stresses in Pa.
 
-    Lengths are in m, stresses in Pa.
+    Parameters
+    ----------
+    path : Path
+        Path of the deck.
+    tooth : LoadedTooth
+        The loaded tooth.
+    material : Material
+        Its material.
+
+    Returns
+    -------
+    int
+        Number of dof.
     """
     mesh = _sector(tooth)
-    held = "bore" if tooth.mesh.body == "pinion" else "rim_back"
+    fixed_group = "bore" if tooth.mesh.body == "pinion" else "rim_back"
     hexes = mesh.hexes[:, SERENDIPITY20]
     title = f"{tooth.mesh.body}: 1 N along a line of the flank"
-    abaqus.write(path, title, mesh.nodes, hexes, {held: np.unique(mesh.faces(held))}, {})
+    abaqus.write(path, title, mesh.nodes, hexes, {fixed_group: np.unique(mesh.faces(fixed_group))}, {})
     labels = mesh.tooth_nodes[TEETH // 2][tooth.side.nodes.ravel()] + 1
     forces = tooth.load.reshape(-1, 3)
     on = np.flatnonzero(forces.any(axis=1))
     with open(path, "a", encoding="ascii") as deck:
         deck.write(f"*MATERIAL, NAME=STEEL\n*ELASTIC\n{material.young_modulus:.10g}, ")
         deck.write(f"{material.poisson_ratio:.10g}\n*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL\n")
-        deck.write(f"*BOUNDARY\n{held.upper()}, 1, 3\n*STEP\n*STATIC\n*CLOAD\n")
+        deck.write(f"*BOUNDARY\n{fixed_group.upper()}, 1, 3\n*STEP\n*STATIC\n*CLOAD\n")
         for node in on:
             deck.writelines(f"{labels[node]}, {axis + 1}, {forces[node, axis]:.12e}\n" for axis in range(3))
         deck.write("*NODE FILE\nU\n*EL FILE\nS\n*END STEP\n")
@@ -126,9 +188,28 @@ def write_stress_deck(path: Path, tooth: LoadedTooth, material: Material) -> int
 
 
 def read_nodes(path: Path, name: str, parts: int) -> dict[int, Array]:
-    """The first `parts` values by node label of block `name` (DISP, STRESS) of CalculiX's result file.
+    """Read the first values by node label of a block (DISP, STRESS) of CalculiX's result file.
 
-    Displacements x, y, z; stresses xx, yy, zz, xy, yz, zx. Raises FacegearError where it holds none.
+    Displacements x, y, z; stresses xx, yy, zz, xy, yz, zx.
+
+    Parameters
+    ----------
+    path : Path
+        Path of the file.
+    name : str
+        Name of the block.
+    parts : int
+        Number of values of each node.
+
+    Returns
+    -------
+    dict of (parts,) array
+        Values by node label, in the unit of the deck.
+
+    Raises
+    ------
+    FacegearError
+        If the file holds none.
     """
     block = re.search(rf"^ -4  {name} .*?^ -3", path.read_text(encoding="ascii"), re.M | re.S)
     if block is None:
@@ -139,29 +220,58 @@ def read_nodes(path: Path, name: str, parts: int) -> dict[int, Array]:
 
 
 def along_the_face(tooth: LoadedTooth, results: Path, material: Material) -> tuple[Array, Array, Array]:
-    """Largest tension (Pa) down the loaded fillet on planes across the face, each (b,).
+    """Return the largest tension down the loaded fillet on planes across the face.
 
-    Ours, of CalculiX's displacements, and of its nodal stresses.
+    Parameters
+    ----------
+    tooth : LoadedTooth
+        The loaded tooth.
+    results : Path
+        Path of CalculiX's result file.
+    material : Material
+        Material of the tooth.
+
+    Returns
+    -------
+    (b,) array, (b,) array, (b,) array
+        Stress, Pa: ours, of CalculiX's displacements, and of its nodal stresses.
     """
     grid = tooth.mesh.surfaces[f"fillet_{fillet_sides(tooth.mesh.body)[0]}"].nodes
     labels = _sector(tooth).tooth_nodes[TEETH // 2][grid] + 1
-    moved = on_grid(read_nodes(results, "DISP", 3), labels)
-    displaced = np.zeros_like(tooth.mesh.nodes)
-    displaced[grid] = moved
-    read = gauges_on(tooth.mesh.nodes, grid, material).normal @ displaced.ravel()
+    grid_displacement = on_grid(read_nodes(results, "DISP", 3), labels)
+    displacement = np.zeros_like(tooth.mesh.nodes)
+    displacement[grid] = grid_displacement
+    read = gauges_on(tooth.mesh.nodes, grid, material).normal @ displacement.ravel()
     nodal = _down(read_nodes(results, "STRESS", 6), labels[:, ::2], tooth.mesh.nodes[grid[:, ::2]])
-    places = tooth.mesh.nodes[grid[:, ::2]], tooth.gauges.position[0]
-    at, own = (_along(tooth.mesh.body, position).mean(axis=0) for position in places)
-    inside = np.abs(own - own.mean()) < (0.5 - ENDS) * np.ptp(own)
-    compared = tooth.stress[0], read.reshape(tooth.stress[0].shape)
-    ours, theirs = (down_the_fillet(values).max(axis=0)[inside] for values in compared)
-    return ours, theirs, np.interp(own[inside], at, down_the_fillet(nodal).max(axis=0))
+    position_grids = tooth.mesh.nodes[grid[:, ::2]], tooth.gauges.position[0]
+    at, gauge_positions = (_along(tooth.mesh.body, position).mean(axis=0) for position in position_grids)
+    inside = np.abs(gauge_positions - gauge_positions.mean()) < (0.5 - ENDS) * np.ptp(gauge_positions)
+    stresses = tooth.stress[0], read.reshape(tooth.stress[0].shape)
+    our_stress, calculix_stress = (down_the_fillet(values).max(axis=0)[inside] for values in stresses)
+    return (
+        our_stress,
+        calculix_stress,
+        np.interp(gauge_positions[inside], at, down_the_fillet(nodal).max(axis=0)),
+    )
 
 
 def on_grid(values: Mapping[int, Array], labels: Integers) -> Array:
-    """Displacements (nu, nv, 3) of a surface, in the middle of each face by the functions of its 8 nodes."""
-    nothing = np.zeros(3)
-    grid = np.array([[values.get(label, nothing) for label in row] for row in labels])
+    """Return the displacements of a surface, in the middle of each face by the functions of its 8 nodes.
+
+    Parameters
+    ----------
+    values : Mapping[int, array]
+        Displacements (3,) by node label, any unit.
+    labels : (nu, nv) array of int
+        Labels of the nodes.
+
+    Returns
+    -------
+    (nu, nv, 3) array
+        Displacements, in the same unit.
+    """
+    zero = np.zeros(3)
+    grid = np.array([[values.get(label, zero) for label in row] for row in labels])
     sides = grid[1::2, :-1:2] + grid[1::2, 2::2] + grid[:-1:2, 1::2] + grid[2::2, 1::2]
     corners = grid[:-1:2, :-1:2] + grid[2::2, :-1:2] + grid[:-1:2, 2::2] + grid[2::2, 2::2]
     grid[1::2, 1::2] = sides / 2.0 - corners / 4.0

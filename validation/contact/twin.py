@@ -1,8 +1,8 @@
-"""The plane-strain twin: two spur gears through the same bodies, influence matrix and contact solver.
+"""Plane-strain twin: two spur gears through the same bodies, influence matrix and contact solver.
 
-The pinion is as in `facegear.geometry.design`, its axis the y axis; the gear is a second pinion body turned
+The pinion is as in `facegear.geometry.design`, its axis the y axis; the gear is a second pinion body rotated
 by half a turn below it, so that both touch with their right sides. Involute flanks only; at any centre
-distance the gear is turned until its backlash is closed on that side.
+distance the gear is rotated until its backlash is closed on that side.
 """
 
 from dataclasses import dataclass, replace
@@ -56,19 +56,39 @@ def twin_model(
     ends: Ends = "ring",
     centre: float | None = None,
 ) -> TwinModel:
-    """Slabs of both gears in plane strain, their whole rings or a sector of `teeth`.
+    """Build slabs of both gears in plane strain, their whole rings or a sector.
 
-    `centre` distance in m, None for that of standard gears.
+    Parameters
+    ----------
+    pinion_design, gear_design : PairDesign
+        Both gears; their own `pinion` counts.
+    sizes : tuple[MeshSizes, MeshSizes]
+        Mesh sizes of both.
+    refinement : Refinement
+        Cuts of the flank layers.
+    materials : tuple[Material, Material]
+        Materials of both.
+    teeth : int or None
+        Number of teeth of a sector, None for whole rings.
+    ends : Ends
+        Support of the cut faces.
+    centre : float or None
+        Centre distance, m; None for that of standard gears.
+
+    Returns
+    -------
+    TwinModel
+        The twin.
     """
     sides, compliances = [], []
     layer = replace(refinement, width=1)
     for design, size, material in zip((pinion_design, gear_design), sizes, materials, strict=True):
         tooth = slab_tooth(design, size)
         elastic, side = elastic_tooth(design, tooth, material, "right")
-        held = elastic.held.copy()
-        held[:, 1] = True
+        is_fixed = elastic.held.copy()
+        is_fixed[:, 1] = True
         number = teeth or design.pinion.teeth
-        compliances.append(flank_compliance(replace(elastic, held=held), layer, number, 2, ends))
+        compliances.append(flank_compliance(replace(elastic, held=is_fixed), layer, number, 2, ends))
         sides.append(side)
     gear = replace(compliances[1], others=compliances[1].others[::-1])
     return TwinModel(
@@ -85,7 +105,20 @@ def twin_model(
 
 
 def slab_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
-    """First layer of elements of a spur tooth along its axis."""
+    """Mesh the first layer of elements of a spur tooth along its axis.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The gear.
+    sizes : MeshSizes
+        Mesh sizes.
+
+    Returns
+    -------
+    FeTooth
+        The tooth.
+    """
     tooth = pinion_tooth(design, sizes)
     planes = tooth.surfaces["flank_right"].nodes.shape[1]
     layers, count = (planes - 1) // 2, len(tooth.nodes) // planes
@@ -105,17 +138,34 @@ def slab_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
 
 
 def analyse_twin(model: TwinModel, positions: Array, line_loads: list[float]) -> list[LoadedPosition]:
-    """Solve all positions (0..1 of a pitch) at all loads (N/m along the line of action).
+    """Solve all positions at all loads; the torques in the results are those of the slab.
 
-    The torques in the results are those of the slab. Raises NotConverged naming position and torque.
+    Parameters
+    ----------
+    model : TwinModel
+        The twin.
+    positions : (n,) array
+        Positions, fraction of a pitch.
+    line_loads : list[float]
+        Loads along the line of action, N/m.
+
+    Returns
+    -------
+    list[LoadedPosition]
+        Results by position, then by load.
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
     """
     thickness = float(np.ptp(model.surface.side.v))
     base = model.pinion.pinion_base_radius
     torques = [load * thickness * base for load in line_loads]
     guess, results = first_turn(torques, base, thickness), []
     for position in positions:
-        solved, guess = solve_position(_TwinAtPosition(model, float(position)), torques, guess)
-        results += solved
+        solutions, guess = solve_position(_TwinAtPosition(model, float(position)), torques, guess)
+        results += solutions
     return results
 
 
@@ -151,12 +201,37 @@ def involute_separation(
     tooth: int,
     centre: float,
 ) -> tuple[Array, Array]:
-    """Gap (n,) m along the normals of pinion points (n, 3), and the gear's roll there (nan: no flank)."""
-    teeth, other = model_pinion.pinion.teeth, model_gear.pinion.teeth
+    """Return the gap along the normals of pinion points, and the gear's roll there.
+
+    Parameters
+    ----------
+    model_pinion, model_gear : PairDesign
+        Both gears.
+    points : (n, 3) array
+        Points of the pinion, m.
+    normals : (n, 3) array
+        Unit normals there, dimensionless.
+    phi1 : float
+        Angle of the pinion, rad.
+    tooth : int
+        Number of the tooth pair.
+    centre : float
+        Centre distance, m.
+
+    Returns
+    -------
+    (n,) array, (n,) array
+        Gap, m (infinite where there is no flank), and roll, rad (nan there).
+    """
+    teeth, gear_teeth = model_pinion.pinion.teeth, model_gear.pinion.teeth
     turn = phi1 + (tooth - 0.5) * 2 * pi / teeth
-    back = phi1 * teeth / other + tooth * 2 * pi / other - _rotary_backlash(model_pinion, model_gear, centre)
-    start, along = turned(points[:, [0, 2]], turn), turned(normals[:, [0, 2]], turn)
-    start, along = (turned(-vector, back) for vector in (start + np.array([0.0, centre]), along))
+    back = (
+        phi1 * teeth / gear_teeth
+        + tooth * 2 * pi / gear_teeth
+        - _rotary_backlash(model_pinion, model_gear, centre)
+    )
+    start, along = rotate(points[:, [0, 2]], turn), rotate(normals[:, [0, 2]], turn)
+    start, along = (rotate(-vector, back) for vector in (start + np.array([0.0, centre]), along))
     low, high = pinion.junction_roll(model_gear), model_gear.pinion_tip_roll
     roll, distance = np.full(len(points), 0.5 * (low + high)), np.zeros(len(points))
     base = model_gear.pinion_base_radius
@@ -173,26 +248,50 @@ def involute_separation(
         roll, distance = np.clip(roll + step, 0.02, high + 0.2), distance + move
         if np.abs(step).max() < 1e-14:
             break
-    facing = np.sum(along * np.stack([nx, nz], axis=1), axis=1) < -0.5
-    on = facing & (roll >= low) & (roll <= high) & (np.abs(step) < 1e-11) & (np.abs(distance) < 1e-3)
+    is_facing = np.sum(along * np.stack([nx, nz], axis=1), axis=1) < -0.5
+    on = is_facing & (roll >= low) & (roll <= high) & (np.abs(step) < 1e-11) & (np.abs(distance) < 1e-3)
     return np.where(on, distance, np.inf), np.where(on, roll, np.nan)
 
 
 def standard_centre(first: PairDesign, second: PairDesign) -> float:
-    """Centre distance (m) of gears without profile shift."""
+    """Return the centre distance of gears without profile shift.
+
+    Parameters
+    ----------
+    first, second : PairDesign
+        Both gears.
+
+    Returns
+    -------
+    float
+        Distance, m.
+    """
     return first.pinion_pitch_radius + second.pinion_pitch_radius
 
 
 def _rotary_backlash(first: PairDesign, second: PairDesign, centre: float) -> float:
     """Turn (rad) of the second gear that closes the gap between the flanks of centred teeth and spaces."""
-    base, other = first.pinion_base_radius, second.pinion_base_radius
-    lost = involute(acos((base + other) / centre))
-    space = pi / first.pinion.teeth - first.pinion_half_base_angle + lost
-    return (base * space - other * (second.pinion_half_base_angle - lost)) / other
+    base, other_base = first.pinion_base_radius, second.pinion_base_radius
+    involute_angle = involute(acos((base + other_base) / centre))
+    space = pi / first.pinion.teeth - first.pinion_half_base_angle + involute_angle
+    return (base * space - other_base * (second.pinion_half_base_angle - involute_angle)) / other_base
 
 
-def turned(vectors: Array, angle: float) -> Array:
-    """x and z of vectors (n, 2) turned as the pinion turns."""
+def rotate(vectors: Array, angle: float) -> Array:
+    """Rotate x and z of vectors as the pinion turns.
+
+    Parameters
+    ----------
+    vectors : (n, 2) array
+        Vectors, any unit.
+    angle : float
+        Angle, rad.
+
+    Returns
+    -------
+    (n, 2) array
+        Rotated vectors, in the same unit.
+    """
     return vectors @ body_rotation("pinion", angle)[np.ix_([0, 2], [0, 2])].T
 
 

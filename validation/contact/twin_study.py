@@ -1,4 +1,4 @@
-"""The twin against brute force: 23/23 and 23/143 teeth, three loads."""
+"""Twin compared with brute force: 23/23 and 23/143 teeth, three loads."""
 
 from dataclasses import replace
 
@@ -15,19 +15,32 @@ from validation.contact.iso import mesh_stiffness
 from validation.contact.twin import analyse_twin, twin_model
 
 TEETH = 13
-"""In both sectors: the loaded teeth next to the middle one must not feel the free cut faces."""
+"""Number of teeth of both sectors: the loaded teeth next to the middle one must not feel the cut faces."""
 POSITIONS = (0.0, 0.3, 0.6)
 LINE_LOADS = (1e5, 3e5, 6e5)
 STEEL = Material(206e9, 0.3)
 CUTS = Refinement(8, 1, 4, 2.0)
 HALVINGS, RADIUS = 3, 0.2
-"""Of brute force's triangles within so many modules of a contact: facets of an eighth of the mesh's."""
+"""Number of halvings of brute force's triangles, and the distance from a contact, in modules, within which
+they apply: facets of an eighth of the mesh's."""
 
 
 def twin_gears(design: PairDesign, teeth: int) -> tuple[PairDesign, PairDesign]:
-    """The design's pinion as a thin slab, and a spur gear of its module with `teeth` teeth.
+    """Return the design's pinion as a thin slab, and a spur gear of its module.
 
     Both are standard gears without backlash: thinning, profile shift, chamfer and reliefs are left out.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    teeth : int
+        Number of teeth of the spur gear.
+
+    Returns
+    -------
+    tuple[PairDesign, PairDesign]
+        Both gears.
     """
     part = design.pinion
     standard = PinionGeometry(
@@ -51,22 +64,42 @@ def twin_study(
     line_loads: tuple[float, ...] = LINE_LOADS,
     sector: int = TEETH,
 ) -> pd.DataFrame:
-    """Average stiffness (N/m per m) of ours and of brute force on meshes with facets of `facets` (modules),
-    halved `HALVINGS` times more where the flanks touch; `sector` teeth of both gears.
+    """Compare the average stiffness of ours and of brute force.
 
-    Difference in percent of the finest brute force, its own last change beside it.
+    Facets are halved `HALVINGS` times more where the flanks touch. Differences are in percent of the
+    finest brute force, whose own last change is given, too.
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    teeth : int
+        Number of teeth of the spur gear.
+    facets : tuple[float, ...]
+        Sizes of brute force's facets, modules.
+    positions : tuple[float, ...]
+        Positions, fractions of a pitch.
+    line_loads : tuple[float, ...]
+        Loads along the line of action, N/m.
+    sector : int
+        Number of teeth of both sectors.
+
+    Returns
+    -------
+    DataFrame
+        One row for each position and load.
     """
     first, second = twin_gears(design, teeth)
     m = design.module
     sizes = MeshSizes(0.05 * m, 0.25 * m, 0.2 * m)
     model = twin_model(first, second, (sizes, sizes), CUTS, (STEEL, STEEL), sector, "free")
-    ours = analyse_twin(model, np.array(positions), list(line_loads))
+    results = analyse_twin(model, np.array(positions), list(line_loads))
     thickness, base = float(np.ptp(model.surface.side.v)), first.pinion_base_radius
     fine = [MeshSizes(size * m, 0.25 * m, 0.4 * m) for size in facets]
     progress = Progress(f"brute force, {teeth} teeth", len(facets) * len(positions))
     brute = [_brute(first, second, size, sector, positions, line_loads, progress) for size in fine]
     rows = []
-    for result, *brute_k in zip(ours, *brute, strict=True):
+    for result, *brute_k in zip(results, *brute, strict=True):
         load = result.torque / base / thickness
         k = result.k_average / thickness
         rows.append(

@@ -21,7 +21,9 @@ from facegear.transmission.machine import Machine
 from validation.dynamics.oscillators import Oscillator
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+"""Local tolerances that are compared, relative."""
 REFERENCE = 1e-13
+"""Tolerance of the reference run of the machine, relative."""
 EXACT_POINTS = (
     (Kind.FOLD, 0.828463984388),
     (Kind.GRAZE, 0.820631087712),
@@ -35,17 +37,24 @@ EXACT_MULTIPLIERS = (1.7871104711, 0.2421112145)
 ERRORS = ((1.0, 1.0), (0.1, 1.2))
 """Factors on the machine's error and on its nominal speed: as it is, and where it stays stable undamped."""
 DAMPING = (1.0, 0.3, 0.1, 0.03, 0.01)
+"""Factors on all damping."""
 TOLERANCE = 1e-8
+"""Tolerance of the runs whose cost is measured, relative."""
 BLOCK = 32
-SETTLED = 1e-6
+"""Mesh periods between two checks of plain running."""
+SETTLED_CHANGE = 1e-6
 """Change over a mesh period, in length scales, at which plain running counts as settled."""
 REPEATS = 5
+"""Number of runs whose time is averaged."""
 MAX_PERIODS = 100_000
+"""Largest number of mesh periods of plain running."""
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A family with the run that follows one branch of it, and an orbit of that branch to look at."""
+    """A family, the run that follows one of its branches, and the parameter value at which an orbit of it is
+    compared.
+    """
 
     name: str
     family: Family
@@ -55,7 +64,13 @@ class Case:
 
 
 def oscillator_case() -> Case:
-    """The oscillator with exact answers."""
+    """Return the oscillator with exact answers.
+
+    Returns
+    -------
+    Case
+        The case.
+    """
     family = Family("W", lambda speed: (Oscillator(0.05, 0.1, 0.05, speed, 0.0, 0.0).system, speed))
     return Case(
         "oscillator",
@@ -67,7 +82,20 @@ def oscillator_case() -> Case:
 
 
 def machine_case(machine: Machine, speed_rpm: float) -> Case:
-    """The branch through the motion at a speed, from 0.9 to 1.3 times that speed."""
+    """Return the branch through the motion at a speed, from 0.9 to 1.3 times that speed.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinion, rpm.
+
+    Returns
+    -------
+    Case
+        The case.
+    """
     model = build_model(machine)
     state = simulate(model, speed_rpm, Settings(tolerance=1e-8)).state
     u = float(np.log(speed_rpm))
@@ -81,20 +109,36 @@ def machine_case(machine: Machine, speed_rpm: float) -> Case:
 
 
 def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
-    """Error against tolerance. Columns case, tolerance, points, seconds, special_points, same_list (whether
-    the kinds of the special points come in the same order as in the reference), fold_error, other_error,
-    graze_error (largest relative error of the parameter), orbit_error (over the length scale) and
-    multiplier_error (of the leading two) of the unstable orbit at one value.
+    """Measure the error against the tolerance.
 
-    The oscillator is held against exact answers, the machine against a run at a tolerance of 1e-13.
+    Columns case, tolerance, points, seconds, special_points, same_list (whether the kinds of the special
+    points come in the same order as in the reference), fold_error, other_error, graze_error (largest relative
+    error of the parameter), orbit_error (over the length scale) and multiplier_error (of the leading two) of
+    the unstable orbit at one value.
+
+    The oscillator is compared with exact answers, the machine with a run at a tolerance of 1e-13.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinion, rpm.
+    step : Callable[[], None]
+        Called after each tolerance.
+
+    Returns
+    -------
+    DataFrame
+        One row for each case and tolerance.
     """
     rows = []
     for case in (oscillator_case(), machine_case(machine, speed_rpm)):
         exact = None if case.name == "machine" else _exact()
-        expected = exact or _found(case, _followed(case, REFERENCE)[0])
+        reference = exact or _read_answers(case, _follow_case(case, REFERENCE)[0])
         for tolerance in TOLERANCES:
-            branch, seconds = _followed(case, tolerance)
-            answers = _found(case, branch)
+            branch, seconds = _follow_case(case, tolerance)
+            answers = _read_answers(case, branch)
             rows.append(
                 {
                     "case": case.name,
@@ -102,7 +146,7 @@ def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lamb
                     "points": len(branch.points),
                     "seconds": seconds,
                     "special_points": len(branch.specials),
-                    **_errors(answers, expected),
+                    **_errors(answers, reference),
                 }
             )
             step()
@@ -111,19 +155,19 @@ def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lamb
 
 @dataclass(frozen=True, eq=False)
 class _Answers:
-    which: list[Kind]
+    kinds: list[Kind]
     values: Array
     state: Array
     multipliers: Array
 
 
 def _exact() -> _Answers:
-    which, values = [kind for kind, _ in EXACT_POINTS], [value for _, value in EXACT_POINTS]
+    kinds, values = [kind for kind, _ in EXACT_POINTS], [value for _, value in EXACT_POINTS]
     state, velocity = EXACT_STATE
-    return _Answers(which, np.array(values), np.array([state, velocity / 0.75]), np.array(EXACT_MULTIPLIERS))
+    return _Answers(kinds, np.array(values), np.array([state, velocity / 0.75]), np.array(EXACT_MULTIPLIERS))
 
 
-def _followed(case: Case, tolerance: float) -> tuple[Branch, float]:
+def _follow_case(case: Case, tolerance: float) -> tuple[Branch, float]:
     period_map = PeriodMap(case.family, 1, tolerance)
     start = case.begin(period_map)
     begin = time.process_time()
@@ -131,52 +175,66 @@ def _followed(case: Case, tolerance: float) -> tuple[Branch, float]:
     return branch, time.process_time() - begin
 
 
-def _found(case: Case, branch: Branch) -> _Answers:
+def _read_answers(case: Case, branch: Branch) -> _Answers:
     orbits = crossings(branch, case.value)
-    chosen = next((orbit for orbit in orbits if not orbit.stable), orbits[0])
+    unstable_orbit = next((orbit for orbit in orbits if not orbit.stable), orbits[0])
     return _Answers(
         [special.kind for special in branch.specials],
         np.array([special.point.value for special in branch.specials]),
-        chosen.z,
-        np.abs(chosen.multipliers[:2]),
+        unstable_orbit.z,
+        np.abs(unstable_orbit.multipliers[:2]),
     )
 
 
-def _errors(answers_found: _Answers, expected: _Answers) -> dict[str, float | bool]:
+def _errors(answers_found: _Answers, reference: _Answers) -> dict[str, float | bool]:
     """Relative errors of each kind in its own order along the branch, whichever end that began at."""
-    errors: dict[str, float | bool] = {"same_list": _in_order(answers_found) == _in_order(expected)}
-    for name, which in (
+    errors: dict[str, float | bool] = {"same_list": _in_order(answers_found) == _in_order(reference)}
+    for name, kinds in (
         ("fold_error", (Kind.FOLD,)),
         ("other_error", (Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)),
         ("graze_error", (Kind.GRAZE,)),
     ):
-        own, two = (_values(answers, which) for answers in (answers_found, expected))
-        same = own.size == two.size > 0
-        errors[name] = float(np.abs(own / two - 1.0).max()) if same else np.nan
-    errors["orbit_error"] = float(np.abs(answers_found.state - expected.state).max())
-    errors["multiplier_error"] = float(np.abs(answers_found.multipliers - expected.multipliers).max())
+        values, exact_values = (_values(answers, kinds) for answers in (answers_found, reference))
+        is_comparable = values.size == exact_values.size > 0
+        errors[name] = float(np.abs(values / exact_values - 1.0).max()) if is_comparable else np.nan
+    errors["orbit_error"] = float(np.abs(answers_found.state - reference.state).max())
+    errors["multiplier_error"] = float(np.abs(answers_found.multipliers - reference.multipliers).max())
     return errors
 
 
 def _in_order(answers: _Answers) -> list[Kind]:
-    return [answers.which[i] for i in np.argsort(answers.values)]
+    return [answers.kinds[i] for i in np.argsort(answers.values)]
 
 
-def _values(answers: _Answers, which: tuple[Kind, ...]) -> Array:
-    return np.sort([v for v, kind in zip(answers.values, answers.which, strict=True) if kind in which])
+def _values(answers: _Answers, kinds: tuple[Kind, ...]) -> Array:
+    return np.sort([v for v, kind in zip(answers.values, answers.kinds, strict=True) if kind in kinds])
 
 
 def costs(machine: Machine, speed_rpm: float, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
-    """An orbit by continuation against settling by integration, where all damping is multiplied by a factor.
+    """Compare the cost of an orbit by continuation with that of settling, where all damping is multiplied by
+    a factor.
 
     Once with the machine's error and once with a tenth of it, where contact is kept; both from the orbit at a
     speed 0.5 % lower, at a local tolerance of 1e-8. Columns error_factor, damping_factor, speed_rpm,
     leading_multiplier, orbit_seconds (the orbit with its multipliers by Newton's method), point_seconds (a
     point of the branch within 2 % of the speed, refused steps and location of special points included),
     settling_periods and settling_seconds (plain running until a period moves it by 1e-6 length scales),
-    settled
-    (whether that happens within 100 000 periods), steady_state_seconds (our own search, which ends with
-    Newton's method), ratio of plain settling to orbit_seconds.
+    settled (whether that happens within 100 000 periods), steady_state_seconds (our own search, which ends
+    with Newton's method), ratio of plain settling to orbit_seconds.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinion, rpm.
+    step : Callable[[], None]
+        Called after each factor.
+
+    Returns
+    -------
+    DataFrame
+        One row for each error factor and damping factor.
     """
     model = build_model(machine)
     rows = []
@@ -186,21 +244,21 @@ def costs(machine: Machine, speed_rpm: float, step: Callable[[], None] = lambda:
         orbits = _orbits(smooth, speed)
         for factor in DAMPING:
             if factor in orbits:
-                damped = replace(smooth, system=_damped(smooth.system, factor))
-                rows.append({"error_factor": error, **_cost(damped, factor, speed, orbits[factor])})
+                damped_model = replace(smooth, system=_scale_damping(smooth.system, factor))
+                rows.append({"error_factor": error, **_cost(damped_model, factor, speed, orbits[factor])})
             step()
     return pd.DataFrame(rows)
 
 
-def _damped(system: System, factor: float) -> System:
+def _scale_damping(system: System, factor: float) -> System:
     return replace(system, damping=factor * system.damping, mesh_damping=factor * system.mesh_damping)
 
 
 def _orbits(model: Model, speed_rpm: float) -> dict[float, State]:
-    """The orbit at a speed, carried on to less and less damping by continuation in the factor."""
+    """Return the orbit at a speed, carried on to less and less damping by continuation in the factor."""
     system, frequency = speed_family(model).at(speed_rpm)
     period_map = PeriodMap(
-        Family("damping_factor", lambda factor: (_damped(system, factor), frequency)), 1, TOLERANCE
+        Family("damping_factor", lambda factor: (_scale_damping(system, factor), frequency)), 1, TOLERANCE
     )
     state = steady_state(system, frequency, Settings(tolerance=TOLERANCE), static_start(model)).state
     start = at_parameter(period_map, period_map.weighted(state, 0.0), 0.0)
@@ -224,11 +282,11 @@ def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[s
     for _ in range(REPEATS):
         orbit = at_parameter(period_map, beside, u)
     orbit_seconds = (time.process_time() - begin) / REPEATS
-    periods, seconds, settled = _plain(period_map, beside, u)
+    periods, seconds, is_settled = _plain(period_map, beside, u)
     begin = time.process_time()
     system, frequency = period_map.family.at(speed_rpm)
     steady_state(system, frequency, Settings(tolerance=TOLERANCE), period_map.state(beside, u))
-    searched = time.process_time() - begin
+    search_seconds = time.process_time() - begin
     return {
         "damping_factor": factor,
         "speed_rpm": speed_rpm,
@@ -237,17 +295,17 @@ def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[s
         "point_seconds": point_seconds,
         "settling_periods": periods,
         "settling_seconds": seconds,
-        "settled": settled,
-        "steady_state_seconds": searched,
-        "ratio": seconds / orbit_seconds if settled else np.nan,
+        "settled": is_settled,
+        "steady_state_seconds": search_seconds,
+        "ratio": seconds / orbit_seconds if is_settled else np.nan,
     }
 
 
 def _plain(period_map: PeriodMap, z: Array, u: float) -> tuple[int, float, bool]:
-    """Periods and seconds of plain running from z until the state hardly changes over a period."""
+    """Count periods and seconds of plain running from z until the state hardly changes over a period."""
     block, begin = period_map.over(BLOCK), time.process_time()
     for count in range(1, MAX_PERIODS // BLOCK + 1):
         z = z + block.gap(z, u)
-        if np.abs(period_map.gap(z, u)).max() < SETTLED:
+        if np.abs(period_map.gap(z, u)).max() < SETTLED_CHANGE:
             return count * BLOCK, time.process_time() - begin, True
     return MAX_PERIODS, time.process_time() - begin, False

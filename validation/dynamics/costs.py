@@ -1,4 +1,4 @@
-"""What a sweep costs against its settings."""
+"""Cost of a sweep against its settings."""
 
 import itertools
 import time
@@ -16,22 +16,40 @@ from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_speeds
 from facegear.transmission.machine import Machine, mesh_frequency
 from validation.dynamics.methods import scipy_method
-from validation.dynamics.problems import Compared, Problem
+from validation.dynamics.problems import ComparedResult, Problem
 
 SPEEDS = 40
+"""Number of speeds of the sweep."""
 TOLERANCES = (1e-3, 1e-4, 3e-5, 1e-6, 1e-8)
+"""Tolerances that are compared, relative."""
 DWELLS = (32, 128)
+"""Mesh periods of settling that are compared."""
 PLAIN_PERIODS = 20
+"""Mesh periods of the shorter run by SciPy."""
 
 
 def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
-    """Settings of a sweep of 40 speeds up against time and the error of the RMS where motions are periodic.
+    """Compare settings of a sweep of 40 speeds up by time and error of the RMS where motions are periodic.
 
     Each periodic motion is run again from its own state at a tight tolerance, so that the error is that of
     the orbit found and not of the branch chosen. Columns tolerance, settle_periods, refine,
     seconds_per_speed, periodic_speeds, not_confirmed (periodic speeds whose class is another one then),
     rms_error (largest of the confirmed, relative to the largest mesh at the speed), rms_error_median,
     plain_seconds_per_speed (SciPy RK45 on NumPy for as many periods as ours ran, from a shorter run).
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    plan : SweepPlan
+        Plan of the sweep.
+    step : Callable[[], None]
+        Called after each row.
+
+    Returns
+    -------
+    DataFrame
+        One row for each setting.
     """
     model = build_model(machine)
     speeds = np.linspace(plan.first_rpm, plan.last_rpm, SPEEDS)
@@ -74,14 +92,27 @@ def _rms_errors(model: Model, piece: Piece, settings: Settings) -> tuple[int, Ar
 
 
 def plain_seconds_per_period(machine: Machine, speeds: Array) -> float:
-    """Time of a mesh period with SciPy's RK45 at 1e-6 on a NumPy right-hand side, mean over three speeds."""
+    """Measure the time of a mesh period with SciPy's RK45 at 1e-6 on a NumPy right-hand side.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speeds : (n,) array
+        Speeds of the sweep, rpm.
+
+    Returns
+    -------
+    float
+        Mean over three speeds, s.
+    """
     model = build_model(machine)
     prepare = scipy_method("RK45", plain=True)
     times = []
     for speed in speeds[[len(speeds) // 4, len(speeds) // 2, -1]]:
         state = simulate(model, float(speed), Settings(settle=32, extensions=0, window=16)).state
         omega = TAU * mesh_frequency(machine.layout, float(speed))
-        problem = Problem("plain", model.system, omega, state, PLAIN_PERIODS, Compared.DEFLECTIONS)
+        problem = Problem("plain", model.system, omega, state, PLAIN_PERIODS, ComparedResult.DEFLECTIONS)
         run = prepare(problem, 1e-6)
         begin = time.process_time()
         run()

@@ -24,17 +24,19 @@ from validation.dynamics.problems import SAMPLES, Problem
 EDGE = 1e-13
 """A deflection this close to an edge, in length scales, stands on it, and its rate decides."""
 NEGLIGIBLE = 1e-13
+"""Entries of the Jacobian below this share of its largest count as 0."""
 MAX_STEPS = 1_000_000
+"""Largest number of steps of a run."""
 APART = 1e-3
 """Relative distance of the starts of a batch, so that its lanes do not step alike."""
 
 
 @dataclass(frozen=True, eq=False)
-class Scaled:
-    """A system in deflections over the length scale and derivatives by mesh phase.
+class ScaledSystem:
+    """System in deflections over the length scale and derivatives by mesh phase.
 
-    unit (n,): one of a coordinate, y = unit u. jacobian (m, n): deflections of u; spread (m, n): minus the
-    accelerations of u by the mesh forces. error (m, 2, harmonics + 1) sine part first, edges (m,). levels
+    unit (n,): unit of each coordinate, y = unit u. jacobian (m, n): deflections of u; spread (m, n): minus
+    the accelerations of u by the mesh forces. error (m, 2, harmonics + 1) sine part first, edges (m,). levels
     (m, L): amounts beyond the edge at which the pieces of the law begin; pieces (m, L, 4, 2, harmonics + 1):
     series of the powers 0 to 3 of the amount since a piece began, forces over the length scale.
     """
@@ -54,8 +56,24 @@ class Scaled:
         return len(self.pieces[0]) == 1 and not self.pieces[:, :, [0, 2, 3]].any()
 
 
-def scaled(system: System) -> Scaled:
-    """Scale a system. Raises ValueError for what the comparison has no use for."""
+def scale_system(system: System) -> ScaledSystem:
+    """Scale a system.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+
+    Returns
+    -------
+    ScaledSystem
+        The scaled system.
+
+    Raises
+    ------
+    ValueError
+        For a system with features that the comparison does not set up.
+    """
     lacking = {
         "stiffness in pieces of the phase": isinstance(system.law, LinearLaw) and bool(system.law.pieces),
         "flanks that only push": system.push_only,
@@ -68,19 +86,19 @@ def scaled(system: System) -> Scaled:
             f"not set up here: {', '.join(name for name, is_there in lacking.items() if is_there)}"
         )
     unit = system.scale / np.abs(system.mesh_jacobian).max(axis=0)
-    kept = np.where(
+    jacobian = np.where(
         np.abs(system.mesh_jacobian) > NEGLIGIBLE * np.abs(system.mesh_jacobian).max(),
         system.mesh_jacobian,
         0.0,
     )
-    closed = system.upper - system.lower <= MIN_CLEARANCE * system.scale
+    has_no_gap = system.upper - system.lower <= MIN_CLEARANCE * system.scale
     levels, pieces = _pieces(system)
-    return Scaled(
+    return ScaledSystem(
         unit=unit,
-        jacobian=kept * unit / system.scale,
-        spread=kept * system.scale / unit,
+        jacobian=jacobian * unit / system.scale,
+        spread=jacobian * system.scale / unit,
         error=system.error[system.error_kind] / system.scale,
-        lower=np.where(closed, system.upper, system.lower) / system.scale,
+        lower=np.where(has_no_gap, system.upper, system.lower) / system.scale,
         upper=system.upper / system.scale,
         levels=levels / system.scale,
         pieces=pieces * system.scale ** np.arange(-1.0, 3.0)[:, None, None],
@@ -112,13 +130,29 @@ class Expressions:
     rates: list[Any]
 
 
-def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
-    """The equations of motion. Parameters of a contact that may open or has pieces, from `width` m on: 1 in
-    contact, the deflection from which its amount counts, and the coefficients of its piece if it has any.
+def expressions(heyoka: Any, problem: Problem, units: ScaledSystem) -> Expressions:
+    """Build the equations of motion.
+
+    Parameters of a contact that may open or has pieces, from `width` m on: 1 in contact, the deflection from
+    which its amount counts, and the coefficients of its piece if it has any.
+
+    Parameters
+    ----------
+    heyoka : module
+        The library.
+    problem : Problem
+        The problem.
+    units : ScaledSystem
+        Its scaled system.
+
+    Returns
+    -------
+    Expressions
+        The equations.
     """
     system, w = problem.system, problem.frequency
     meshes, n = units.jacobian.shape
-    places = [heyoka.make_vars(f"u{k}") for k in range(n)]
+    coordinates = [heyoka.make_vars(f"u{k}") for k in range(n)]
     rates = [heyoka.make_vars(f"v{k}") for k in range(n)]
     width = parameters_of_a_contact(units)
     deflections, deflection_rates, forces = [], [], []
@@ -126,7 +160,7 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
         first = width * m
         error = _series(heyoka, -units.error[m])
         error_rate = _series(heyoka, -_rate(units.error[m]))
-        deflections.append(_weighted(heyoka, units.jacobian[m], places, error))
+        deflections.append(_weighted_sum(heyoka, units.jacobian[m], coordinates, error))
         opens = units.lower[m] < units.upper[m]
         is_touching = heyoka.par[first] if opens else 1.0
         if units.is_linear:
@@ -139,19 +173,21 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
             cubic = [_series_of_parameters(heyoka, units, first + 2, power) for power in range(4)]
             force = ((cubic[3] * beyond + cubic[2]) * beyond + cubic[1]) * beyond + cubic[0]
             force = force / w**2
-        rate = _weighted(heyoka, units.jacobian[m], rates, error_rate)
+        rate = _weighted_sum(heyoka, units.jacobian[m], rates, error_rate)
         damper = 1.0 if system.damping_when_open else is_touching
         deflection_rates.append(rate)
         forces.append(force + damper * (system.mesh_damping[m] / w * rate))
-    equations = list(zip(places, rates, strict=True))
+    equations = list(zip(coordinates, rates, strict=True))
     for k in range(n):
-        own = _series(heyoka, system.load[k] / (w**2 * units.unit[k]))
-        own = own - system.damping[k] / w * rates[k] - system.omega_squared[k] / w**2 * places[k]
-        equations.append((rates[k], _weighted(heyoka, -units.spread[:, k], forces, own)))
+        acceleration = _series(heyoka, system.load[k] / (w**2 * units.unit[k]))
+        acceleration = (
+            acceleration - system.damping[k] / w * rates[k] - system.omega_squared[k] / w**2 * coordinates[k]
+        )
+        equations.append((rates[k], _weighted_sum(heyoka, -units.spread[:, k], forces, acceleration)))
     return Expressions(equations, deflections, deflection_rates)
 
 
-def parameters_of_a_contact(units: Scaled) -> int:
+def parameters_of_a_contact(units: ScaledSystem) -> int:
     """Number of runtime parameters of each contact.
 
     Parameters
@@ -167,8 +203,10 @@ def parameters_of_a_contact(units: Scaled) -> int:
     return 2 if units.is_linear else 2 + units.pieces[0, 0].size
 
 
-def _series_of_parameters(heyoka: Any, units: Scaled, first: int, power: int) -> Any:
-    """A coefficient of the piece that a contact is in, a series of the phase whose numbers are parameters."""
+def _series_of_parameters(heyoka: Any, units: ScaledSystem, first: int, power: int) -> Any:
+    """Return a coefficient of the piece that a contact is in, a series of the phase whose numbers are
+    parameters.
+    """
     harmonics = units.pieces.shape[-1]
     sine, cosine = first + 2 * harmonics * power, first + 2 * harmonics * power + harmonics
     terms = [heyoka.par[cosine]]
@@ -178,9 +216,9 @@ def _series_of_parameters(heyoka: Any, units: Scaled, first: int, power: int) ->
     return heyoka.sum(terms)
 
 
-def _weighted(heyoka: Any, weights: Array, values: list[Any], constant: Any) -> Any:
-    used = [float(weights[i]) * values[i] for i in np.flatnonzero(weights)]
-    return heyoka.sum([*used, constant])
+def _weighted_sum(heyoka: Any, weights: Array, values: list[Any], constant: Any) -> Any:
+    terms = [float(weights[i]) * values[i] for i in np.flatnonzero(weights)]
+    return heyoka.sum([*terms, constant])
 
 
 def _series(heyoka: Any, row: Array) -> Any:
@@ -199,7 +237,7 @@ def _rate(row: Array) -> Array:
     return np.array([-j * row[1], j * row[0]])
 
 
-def contact_states(heyoka: Any, units: Scaled, motion: Expressions) -> Callable[..., Array]:
+def contact_states(heyoka: Any, units: ScaledSystem, motion: Expressions) -> Callable[..., Array]:
     """Compile the state of each contact. On an edge or level the rate decides.
 
     On a linear law these are its two parameters, else the number of the piece that it is in: 0 open, p on its
@@ -245,7 +283,7 @@ def contact_states(heyoka: Any, units: Scaled, motion: Expressions) -> Callable[
     return heyoka.cfunc(states, vars=[variable for variable, _ in motion.equations])
 
 
-def parameters_of_pieces(units: Scaled) -> Array:
+def parameters_of_pieces(units: ScaledSystem) -> Array:
     """Parameters of every contact in every piece of a load-dependent law.
 
     Parameters
@@ -305,11 +343,11 @@ class Integrator:
     adaptive: Any
     start: Array
     switch: Switch | None
-    units: Scaled
+    units: ScaledSystem
     lanes: int
 
     def reset(self) -> None:
-        """Back to the start at phase zero."""
+        """Return to the start at phase zero."""
         if self.lanes:
             self.adaptive.set_time(0.0)
         else:
@@ -321,7 +359,7 @@ class Integrator:
                 self.switch(self.adaptive, 0, lane)
 
 
-def _switches(units: Scaled) -> list[tuple[int, float]]:
+def _switches(units: ScaledSystem) -> list[tuple[int, float]]:
     """Contacts and deflections at which a contact opens, closes or changes the piece of its law."""
     switches = []
     for m, levels in enumerate(units.levels):
@@ -331,15 +369,33 @@ def _switches(units: Scaled) -> list[tuple[int, float]]:
     return switches
 
 
-def compiled(
+def compile_integrator(
     heyoka: Any, problem: Problem, tolerance: float, tangents: bool = False, lanes: int = 0
 ) -> Integrator:
     """Compile for a problem and tolerance, nothing taken from the caches of earlier runs.
 
     Tangents (`var_ode_sys` in the 2 n coordinates and rates) are compiled in compact mode, as the tutorial
     advises: unrolled they take minutes. The lanes of a batch start a little apart.
+
+    Parameters
+    ----------
+    heyoka : module
+        The library.
+    problem : Problem
+        The problem.
+    tolerance : float
+        Absolute tolerance, relative to the length scale.
+    tangents : bool
+        Whether to integrate the tangents, too.
+    lanes : int
+        Number of trajectories of a batch, 0 for a single trajectory.
+
+    Returns
+    -------
+    Integrator
+        The integrator at its start.
     """
-    units = scaled(problem.system)
+    units = scale_system(problem.system)
     expressions_of_problem = expressions(heyoka, problem, units)
     switches = _switches(units)
     switch = None
@@ -371,10 +427,21 @@ def compiled(
 
 
 def trajectory(heyoka: Any) -> Callable[[Problem, float], Callable[[], Array]]:
-    """Coordinates (samples, n) from heyoka.py's dense output."""
+    """Return a method that gives coordinates (samples, n) from heyoka.py's dense output.
+
+    Parameters
+    ----------
+    heyoka : module
+        The library.
+
+    Returns
+    -------
+    callable
+        From problem and relative tolerance to a run, whose array (samples, n) is in the problem's unit.
+    """
 
     def prepare(problem: Problem, tolerance: float) -> Callable[[], Array]:
-        integrator = compiled(heyoka, problem, tolerance)
+        integrator = compile_integrator(heyoka, problem, tolerance)
         phases = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
 
         def run() -> Array:
@@ -389,10 +456,23 @@ def trajectory(heyoka: Any) -> Callable[[Problem, float], Callable[[], Array]]:
 
 
 def batch(heyoka: Any, lanes: int) -> Callable[[Problem, float], Callable[[], Array]]:
-    """Coordinates (samples, n) of the first of as many trajectories as a batch has lanes."""
+    """Return a method that gives coordinates of the first of as many trajectories as a batch has lanes.
+
+    Parameters
+    ----------
+    heyoka : module
+        The library.
+    lanes : int
+        Number of trajectories.
+
+    Returns
+    -------
+    callable
+        From problem and relative tolerance to a run, whose array (samples, n) is in the problem's unit.
+    """
 
     def prepare(problem: Problem, tolerance: float) -> Callable[[], Array]:
-        integrator = compiled(heyoka, problem, tolerance, lanes=lanes)
+        integrator = compile_integrator(heyoka, problem, tolerance, lanes=lanes)
         phases = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
         grid = np.tile(phases[:, None], lanes)
 
@@ -409,10 +489,22 @@ def batch(heyoka: Any, lanes: int) -> Callable[[Problem, float], Callable[[], Ar
 
 
 def tangents(heyoka: Any) -> Callable[[Problem, float], Callable[[], Array]]:
-    """Derivatives (2 n, 2 n) of coordinates and rates by phase after the periods by those at the start."""
+    """Return a method that gives derivatives of coordinates and rates by phase after the periods by those at
+    the start.
+
+    Parameters
+    ----------
+    heyoka : module
+        The library.
+
+    Returns
+    -------
+    callable
+        From problem and relative tolerance to a run, whose array (2 n, 2 n) is in the problem's unit.
+    """
 
     def prepare(problem: Problem, tolerance: float) -> Callable[[], Array]:
-        integrator = compiled(heyoka, problem, tolerance, tangents=True)
+        integrator = compile_integrator(heyoka, problem, tolerance, tangents=True)
         size = 2 * problem.system.size
         unit = np.tile(integrator.units.unit, 2)
 

@@ -1,5 +1,5 @@
-"""The integrators that are compared; each gives coordinates (samples, n) at SAMPLES phases of every period,
-or the tangents' matrix.
+"""Integrators that are compared. Each gives coordinates (samples, n) at SAMPLES phases of every period, or
+the tangents' matrix.
 
 Each is prepared first (memory, compiling for this problem), then run as often as its time is taken.
 """
@@ -18,21 +18,25 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.side_by_side import WIDTH, run_many
 from facegear.dynamics.steady_state.orbits import monodromy
 from validation.dynamics import heyoka_peer
-from validation.dynamics.problems import SAMPLES, Compared, Problem
+from validation.dynamics.problems import SAMPLES, ComparedResult, Problem
 from validation.dynamics.right_side import compiled_right_side, fixed_rk4, plain_right_side
 
 Solve = Callable[[], Array]
 Prepare = Callable[[Problem, float], Solve]
+"""Function of problem and tolerance (or steps a period) that returns a run."""
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
+"""Tolerances that are compared, relative."""
 PATIENCE, PATIENCE_IRREGULAR = 2.0, 6.0
+"""Largest CPU time of a run of a regular and of an irregular motion, s."""
 STEPS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
+"""Steps a period of the method with fixed steps."""
 
 
 @dataclass(frozen=True)
 class Method:
     """A name, how to prepare a run of it, and its settings: tolerances, or steps a period.
 
-    A run takes `together` trajectories at once, of which the first is returned.
+    A run integrates `together` trajectories at once, of which the first is returned.
     """
 
     name: str
@@ -41,33 +45,87 @@ class Method:
     together: int = 1
 
 
-def prepared(problem: Problem, tolerance: float = 1e-2) -> tuple[Integrator, Array]:
-    """Our integrator and the start (2, n): coordinates, and rates by phase."""
+def make_integrator(problem: Problem, tolerance: float = 1e-2) -> tuple[Integrator, Array]:
+    """Return our integrator and the start.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    tolerance : float
+        Local tolerance, relative.
+
+    Returns
+    -------
+    Integrator, (2, n) array
+        Integrator; coordinates, and rates by phase, in the problem's unit.
+    """
     integrator = Integrator(problem.system, problem.frequency, tolerance)
     return integrator, integrator.by_phase(problem.start)
 
 
-def limited(derivative: Callable[[float, Array], Array], problem: Problem) -> Callable[[float, Array], Array]:
-    """The same right-hand side, which raises TimeoutError once the patience with a run is over."""
-    patience = PATIENCE_IRREGULAR if problem.compared is Compared.RMS else PATIENCE
+def limit_time(
+    derivative: Callable[[float, Array], Array], problem: Problem
+) -> Callable[[float, Array], Array]:
+    """Return a right-hand side that raises TimeoutError once the patience with a run is over.
+
+    Parameters
+    ----------
+    derivative : callable
+        Right-hand side: derivative (2 n,) at a phase in rad and a state (2 n,), in the problem's unit.
+    problem : Problem
+        The problem, which decides the patience.
+
+    Returns
+    -------
+    callable
+        The same function of phase and state (2 n,), in the problem's unit.
+    """
+    patience = PATIENCE_IRREGULAR if problem.compared_result is ComparedResult.RMS else PATIENCE
     end = time.process_time() + patience
 
-    def checked(s: float, z: Array) -> Array:
+    def timed_derivative(s: float, z: Array) -> Array:
         if time.process_time() > end:
             raise TimeoutError(f"longer than {patience:g} s of CPU time")
         return derivative(s, z)
 
-    return checked
+    return timed_derivative
 
 
-def ours(problem: Problem, tolerance: float) -> Array:
-    """Taylor steps with located contact switches, prepared and run."""
+def run_ours(problem: Problem, tolerance: float) -> Array:
+    """Prepare and run Taylor steps with located contact switches.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    tolerance : float
+        Local tolerance, relative.
+
+    Returns
+    -------
+    (samples, n) array
+        Coordinates, in the problem's unit.
+    """
     return prepare_ours(problem, tolerance)()
 
 
 def prepare_ours(problem: Problem, tolerance: float) -> Solve:
-    """Taylor steps with located contact switches."""
-    integrator, start = prepared(problem, tolerance)
+    """Prepare Taylor steps with located contact switches.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    tolerance : float
+        Local tolerance, relative.
+
+    Returns
+    -------
+    Solve
+        The run.
+    """
+    integrator, start = make_integrator(problem, tolerance)
 
     def run() -> Array:
         return integrator.run(start, problem.periods, samples=SAMPLES).samples
@@ -76,8 +134,22 @@ def prepare_ours(problem: Problem, tolerance: float) -> Solve:
 
 
 def beside_others(problem: Problem, tolerance: float) -> Solve:
-    """The first of as many trajectories as run side by side, which start as those of heyoka.py's batch."""
-    integrator, start = prepared(problem, tolerance)
+    """Prepare the first of as many trajectories as run side by side, which start as those of heyoka.py's
+    batch.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    tolerance : float
+        Local tolerance, relative.
+
+    Returns
+    -------
+    Solve
+        The run.
+    """
+    integrator, start = make_integrator(problem, tolerance)
     starts = [start * (1.0 + heyoka_peer.APART * i) for i in range(WIDTH)]
 
     def run() -> Array:
@@ -87,8 +159,22 @@ def beside_others(problem: Problem, tolerance: float) -> Solve:
 
 
 def our_tangents(problem: Problem, tolerance: float) -> Solve:
-    """Our tangents: derivatives (2 n, 2 n) of coordinates and rates after the periods by the first ones."""
-    integrator, start = prepared(problem, tolerance)
+    """Prepare our tangents: derivatives (2 n, 2 n) of coordinates and rates after the periods by the first
+    ones.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    tolerance : float
+        Local tolerance, relative.
+
+    Returns
+    -------
+    Solve
+        The run.
+    """
+    integrator, start = make_integrator(problem, tolerance)
 
     def run() -> Array:
         return monodromy(integrator, start, problem.periods)[0]
@@ -97,8 +183,21 @@ def our_tangents(problem: Problem, tolerance: float) -> Solve:
 
 
 def rk4(problem: Problem, steps: float) -> Solve:
-    """Fixed steps with compiled accelerations, no event location."""
-    integrator, start = prepared(problem)
+    """Prepare fixed steps with compiled accelerations, no event location.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    steps : float
+        Number of steps a period.
+
+    Returns
+    -------
+    Solve
+        The run.
+    """
+    integrator, start = make_integrator(problem)
     per_sample = round(steps) // SAMPLES
 
     def run() -> Array:
@@ -109,10 +208,23 @@ def rk4(problem: Problem, steps: float) -> Solve:
 
 
 def scipy_method(name: str, plain: bool = False) -> Prepare:
-    """SciPy's solve_ivp on the compiled right-hand side, or on plain NumPy."""
+    """Return SciPy's solve_ivp on the compiled right-hand side, or on plain NumPy.
+
+    Parameters
+    ----------
+    name : str
+        Name of SciPy's method.
+    plain : bool
+        Whether the right-hand side is plain NumPy.
+
+    Returns
+    -------
+    Prepare
+        The method.
+    """
 
     def prepare(problem: Problem, tolerance: float) -> Solve:
-        integrator, state = prepared(problem)
+        integrator, state = make_integrator(problem)
         start = state.ravel()
         derivative = compiled_right_side(integrator)
         if plain:
@@ -121,7 +233,7 @@ def scipy_method(name: str, plain: bool = False) -> Prepare:
 
         def run() -> Array:
             solution = solve_ivp(
-                limited(derivative, problem),
+                limit_time(derivative, problem),
                 (0.0, TAU * problem.periods),
                 start,
                 name,
@@ -139,17 +251,33 @@ def scipy_method(name: str, plain: bool = False) -> Prepare:
 
 
 def cvode(method: str) -> Prepare:
-    """SUNDIALS CVODE through scikit-sundae. Raises ImportError where it is not installed."""
+    """Return SUNDIALS CVODE through scikit-sundae.
+
+    Parameters
+    ----------
+    method : str
+        `BDF` or `Adams`.
+
+    Returns
+    -------
+    Prepare
+        The method.
+
+    Raises
+    ------
+    ImportError
+        If scikit-sundae is not installed.
+    """
     from sksundae.cvode import CVODE
 
     def prepare(problem: Problem, tolerance: float) -> Solve:
-        integrator, state = prepared(problem)
+        integrator, state = make_integrator(problem)
         start = state.ravel()
-        compiled = compiled_right_side(integrator)
+        right_side = compiled_right_side(integrator)
         times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
 
         def run() -> Array:
-            inside = limited(compiled, problem)
+            inside = limit_time(right_side, problem)
 
             def derivative(s: float, y: Array, out: Array) -> None:
                 out[:] = inside(s, np.array(y))
@@ -172,9 +300,17 @@ def cvode(method: str) -> Prepare:
 
 
 def heyoka_methods() -> list[Method]:
-    """heyoka.py with its own event handling, alone and in a batch as wide as ours.
+    """Return heyoka.py with its own event handling, alone and in a batch as wide as ours.
 
-    Raises ImportError where it is not installed.
+    Returns
+    -------
+    list[Method]
+        Both methods.
+
+    Raises
+    ------
+    ImportError
+        If heyoka.py is not installed.
     """
     import heyoka
 
@@ -185,14 +321,33 @@ def heyoka_methods() -> list[Method]:
 
 
 def heyoka_tangents() -> Method:
-    """heyoka.py's variational equations. Raises ImportError where it is not installed."""
+    """Return heyoka.py's variational equations.
+
+    Returns
+    -------
+    Method
+        The method.
+
+    Raises
+    ------
+    ImportError
+        If heyoka.py is not installed.
+    """
     import heyoka
 
     return Method("heyoka.py", heyoka_peer.tangents(heyoka), TOLERANCES)
 
 
 def all_methods() -> list[Method]:
-    """Ours first. CVODE and heyoka.py are left out where they are not installed (no wheel for a platform)."""
+    """List all methods, ours first.
+
+    CVODE and heyoka.py are left out where they are not installed (no wheel for a platform).
+
+    Returns
+    -------
+    list[Method]
+        The methods.
+    """
     methods = [
         Method("facegear", prepare_ours, TOLERANCES),
         Method(f"facegear, each of {WIDTH}", beside_others, TOLERANCES, WIDTH),
@@ -209,7 +364,13 @@ def all_methods() -> list[Method]:
 
 
 def tangent_methods() -> list[Method]:
-    """Those that carry tangents, ours first."""
+    """List the methods that carry tangents, ours first.
+
+    Returns
+    -------
+    list[Method]
+        The methods.
+    """
     methods = [Method("facegear", our_tangents, TOLERANCES)]
     with contextlib.suppress(ImportError):
         methods.append(heyoka_tangents())

@@ -12,7 +12,18 @@ from facegear.mesh_law.linear import LinearLaw
 
 
 def compiled_right_side(integrator: Integrator) -> Callable[[float, Array], Array]:
-    """f(s, z) with accelerations from the kernels of an integrator."""
+    """Return f(s, z) with accelerations from the kernels of an integrator.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        The integrator.
+
+    Returns
+    -------
+    callable
+        Derivative (2 n,) by phase at a phase in rad and a state (2 n,), in the integrator's unit.
+    """
     n = integrator.size
 
     def derivative(s: float, z: Array) -> Array:
@@ -58,14 +69,41 @@ def fixed_rk4(integrator: Integrator, state: Array, per_sample: int, width: floa
 
 
 def linear(system: System) -> LinearLaw:
-    """The law of a system. Raises ValueError for any but the linear one."""
+    """Return the law of a system.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+
+    Returns
+    -------
+    LinearLaw
+        Its linear law.
+
+    Raises
+    ------
+    ValueError
+        For any but the linear one.
+    """
     if not isinstance(system.law, LinearLaw):
         raise ValueError("only the linear law is set up here")
     return system.law
 
 
 def plain_forces(system: System) -> Callable[[float, Array], Array]:
-    """Elastic forces (m,) at a phase and the deflections (m,) beyond the edges, in NumPy."""
+    """Return elastic forces at a phase and the deflections beyond the edges, in NumPy.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+
+    Returns
+    -------
+    callable
+        Forces (m,), N, at a phase in rad and deflections (m,), m.
+    """
     law = system.law
     if not isinstance(law, LinearLaw):
         return lambda s, gap: law.force(np.array([s / TAU]), gap[None])[0]
@@ -79,7 +117,20 @@ def plain_forces(system: System) -> Callable[[float, Array], Array]:
 
 
 def plain_right_side(system: System, frequency: float) -> Callable[[float, Array], Array]:
-    """f(s, z) in NumPy as people write it."""
+    """Return f(s, z) in NumPy as people write it.
+
+    Parameters
+    ----------
+    system : System
+        The system.
+    frequency : float
+        Mesh frequency, rad/s.
+
+    Returns
+    -------
+    callable
+        Derivative (2 n,) by phase at a phase in rad and a state (2 n,), in the system's unit.
+    """
     n = system.size
     elastic = plain_forces(system)
     always = system.damping_when_open | (system.lower >= system.upper)
@@ -93,13 +144,13 @@ def plain_right_side(system: System, frequency: float) -> Callable[[float, Array
             error[:, 0] @ (order_e * np.cos(order_e * s)) - error[:, 1] @ (order_e * np.sin(order_e * s))
         )
         order_f = np.arange(load.shape[2])
-        applied = load[:, 0] @ np.sin(order_f * s) + load[:, 1] @ np.cos(order_f * s)
+        external_load = load[:, 0] @ np.sin(order_f * s) + load[:, 1] @ np.cos(order_f * s)
         d = system.mesh_jacobian @ displacement - e
         gap = np.where(d > system.upper, d - system.upper, np.where(d < system.lower, d - system.lower, 0.0))
         damper = np.where(always | (gap != 0.0), system.mesh_damping, 0.0)
         force = elastic(s, gap) + damper * (system.mesh_jacobian @ velocity - e_rate)
         acceleration = (
-            applied
+            external_load
             - system.damping * velocity
             - system.omega_squared * displacement
             - system.mesh_jacobian.T @ force

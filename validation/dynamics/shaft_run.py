@@ -17,7 +17,18 @@ WEIGHTLESS = 1e-6
 
 
 def rotor(shaft: dict) -> tuple[ross.Rotor, int]:
-    """ROSS' rotor with the pinion as a disc, and the pinion's node."""
+    """Return ROSS' rotor with the pinion as a disc, and the pinion's node.
+
+    Parameters
+    ----------
+    shaft : dict
+        Data of the shaft.
+
+    Returns
+    -------
+    ross.Rotor, int
+        Rotor and index of the node.
+    """
     shear = shaft["young"] / (2.0 * (1.0 + shaft["poisson"]))
     steel = ross.Material(name="steel", rho=WEIGHTLESS, E=shaft["young"], G_s=shear)
     marks = np.cumsum([0.0, *(segment[0] for segment in shaft["segments"])])
@@ -43,33 +54,89 @@ def rotor(shaft: dict) -> tuple[ross.Rotor, int]:
     return ross.Rotor(elements, [disc], bearings), pinion
 
 
-def compliance(built: ross.Rotor, pinion: int) -> list[list[float]]:
-    """Static, in x, y, z, tilt_x, tilt_y: coordinates of a node in ROSS' order, but for the torsion."""
-    own = 6 * pinion + np.arange(5)
-    return np.linalg.inv(fixed(built))[np.ix_(own, own)].tolist()
+def compliance(assembly: ross.Rotor, pinion: int) -> list[list[float]]:
+    """Return the static compliance in x, y, z, tilt_x, tilt_y: a node's coordinates in ROSS' order without
+    torsion.
+
+    Parameters
+    ----------
+    assembly : ross.Rotor
+        The rotor.
+    pinion : int
+        Index of the pinion's node.
+
+    Returns
+    -------
+    list[list[float]]
+        Compliance, 5 rows, SI units.
+    """
+    coordinates = 6 * pinion + np.arange(5)
+    return np.linalg.inv(stiffness_without_torsion(assembly))[np.ix_(coordinates, coordinates)].tolist()
 
 
-def whirling(built: ross.Rotor, pinion: int, speed: float) -> list[float]:
-    """The four frequencies (Hz) at a speed (rad/s) that a pinion on a weightless shaft has across it."""
-    own = 6 * pinion + np.array([0, 1, 3, 4])
-    stiffness = np.linalg.inv(np.linalg.inv(fixed(built))[np.ix_(own, own)])
-    mass, turning = built.M(0.0)[np.ix_(own, own)], speed * built.G()[np.ix_(own, own)]
-    inverse, none = np.linalg.inv(mass), np.zeros((4, 4))
-    system = np.block([[none, np.eye(4)], [-inverse @ stiffness, -inverse @ turning]])
+def whirling_frequencies(assembly: ross.Rotor, pinion: int, speed: float) -> list[float]:
+    """Return the four frequencies that a pinion on a weightless shaft has across it.
+
+    Parameters
+    ----------
+    assembly : ross.Rotor
+        The rotor.
+    pinion : int
+        Index of the pinion's node.
+    speed : float
+        Speed, rad/s.
+
+    Returns
+    -------
+    list[float]
+        Frequencies, Hz.
+    """
+    coordinates = 6 * pinion + np.array([0, 1, 3, 4])
+    stiffness = np.linalg.inv(
+        np.linalg.inv(stiffness_without_torsion(assembly))[np.ix_(coordinates, coordinates)]
+    )
+    mass, turning = (
+        assembly.M(0.0)[np.ix_(coordinates, coordinates)],
+        speed * assembly.G()[np.ix_(coordinates, coordinates)],
+    )
+    inverse, zero = np.linalg.inv(mass), np.zeros((4, 4))
+    system = np.block([[zero, np.eye(4)], [-inverse @ stiffness, -inverse @ turning]])
     roots = np.linalg.eigvals(system).imag
     return (np.sort(roots[roots > 0.0]) / (2.0 * np.pi)).tolist()
 
 
-def fixed(built: ross.Rotor) -> np.ndarray:
-    """Stiffness with torsion held."""
-    stiffness = built.K(0.0)
+def stiffness_without_torsion(assembly: ross.Rotor) -> np.ndarray:
+    """Return the stiffness with torsion held.
+
+    Parameters
+    ----------
+    assembly : ross.Rotor
+        The rotor.
+
+    Returns
+    -------
+    (dof, dof) array
+        Stiffness, SI units.
+    """
+    stiffness = assembly.K(0.0)
     torsion = 6 * np.arange(len(stiffness) // 6) + 5
     stiffness[torsion, torsion] += 1.0
     return stiffness
 
 
-def swinging(chain: dict) -> list[float]:
-    """Frequencies (Hz) of masses on torsional springs in a row, without the zero."""
+def torsional_frequencies(chain: dict) -> list[float]:
+    """Return the frequencies of masses on torsional springs in a row, without the zero.
+
+    Parameters
+    ----------
+    chain : dict
+        Inertias and stiffnesses.
+
+    Returns
+    -------
+    list[float]
+        Frequencies, Hz.
+    """
     count = len(chain["stiffness"])
     springs = [opentorsion.Shaft(i, i + 1, k=chain["stiffness"][i], I=0.0) for i in range(count)]
     discs = [opentorsion.Disk(i, inertia) for i, inertia in enumerate(chain["inertia"])]
@@ -79,9 +146,9 @@ def swinging(chain: dict) -> list[float]:
 
 problem = json.loads(Path("problem.json").read_text(encoding="utf-8"))
 shafts = []
-for given in problem["shafts"]:
-    made, at = rotor(given)
-    frequencies = [whirling(made, at, speed) for speed in given["speeds"]]
-    shafts.append({"compliance": compliance(made, at), "frequencies": frequencies})
-result = {"shafts": shafts, "chains": [swinging(chain) for chain in problem["chains"]]}
+for shaft_data in problem["shafts"]:
+    assembly, at = rotor(shaft_data)
+    frequencies = [whirling_frequencies(assembly, at, speed) for speed in shaft_data["speeds"]]
+    shafts.append({"compliance": compliance(assembly, at), "frequencies": frequencies})
+result = {"shafts": shafts, "chains": [torsional_frequencies(chain) for chain in problem["chains"]]}
 Path("result.json").write_text(json.dumps(result), encoding="utf-8")

@@ -20,7 +20,9 @@ from facegear.transmission.machine import Machine
 from validation.dynamics.convergence import exact
 
 COUNT = 20
+"""Number of random machines."""
 REPEATS = 3
+"""Number of runs whose median time is taken."""
 MORE_CYCLES = 10
 """Times the cycles over which the averages of irregular motion are taken again."""
 
@@ -37,18 +39,33 @@ class RandomMachine:
 
 
 def random_machines(machine: Machine, count: int, seed: int = 1) -> Iterator[RandomMachine]:
-    """Machines between a quarter of the torque and twice as much, at 1000 to 15 000 rpm."""
+    """Draw machines between a quarter of the torque and twice as much, at 1000 to 15 000 rpm.
+
+    Parameters
+    ----------
+    machine : Machine
+        The original.
+    count : int
+        Number of machines.
+    seed : int
+        Seed of the random numbers.
+
+    Yields
+    ------
+    RandomMachine
+        One machine.
+    """
     random = np.random.default_rng(seed)
     for _ in range(count):
         torque = float(np.exp(random.uniform(np.log(0.25), np.log(2.0))))
         error, backlash = random.uniform(0.2, 1.2), random.uniform(0.5, 1.5)
-        changed = replace(
+        variant = replace(
             machine,
             torques=torque * machine.torques,
             half_backlash=backlash * machine.half_backlash,
             error=machine.error.scaled(error),
         )
-        yield RandomMachine(changed, random.uniform(1e3, 15e3), torque, backlash, error)
+        yield RandomMachine(variant, random.uniform(1e3, 15e3), torque, backlash, error)
 
 
 def sharing_costs(
@@ -58,20 +75,40 @@ def sharing_costs(
     count: int = COUNT,
     step: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """One row for each random machine: its factors and speed_rpm, motion, motions_from_starts, periods_run,
-    seconds (median CPU time of warm runs with all starts), seconds_together (the same where all machines run
-    side by side, over their number), mean, error, chance, motion_exact.
+    """Measure time and error of load sharing over random machines.
+
+    Columns: factors and speed_rpm, motion, motions_from_starts, periods_run, seconds (median CPU time of warm
+    runs with all starts), seconds_together (the same where all machines run side by side, over their number),
+    mean, error, chance, motion_exact.
 
     error: largest change of a group's mean coefficient, which lies between one and the number of paths, when
     a periodic motion is run again from its own state at 1e-10 and 4096 samples, or an irregular one for ten
     times as long at a hundredth of the tolerance. chance: what of that the 95 % intervals of both explain.
     mean is that of the group with the largest error.
+
+    Parameters
+    ----------
+    machine : Machine
+        The original.
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Options of load sharing.
+    count : int
+        Number of machines.
+    step : Callable[[], None]
+        Called after each machine.
+
+    Returns
+    -------
+    DataFrame
+        One row for each random machine.
     """
     rows, machines = [], list(random_machines(machine, count))
     cases = [(case.machine, case.speed_rpm) for case in machines]
-    together, _ = _timed(partial(load_sharing_of_many, cases, settings, options))
+    together, _ = _measure_time(partial(load_sharing_of_many, cases, settings, options))
     for case in machines:
-        seconds, (sharing,) = _timed(
+        seconds, (sharing,) = _measure_time(
             partial(load_sharing_of_many, [(case.machine, case.speed_rpm)], settings, options)
         )
         finer = _again(case, sharing, settings, options)
@@ -94,8 +131,8 @@ def sharing_costs(
     return pd.DataFrame(rows)
 
 
-def _timed(run: Callable[[], list[Sharing]]) -> tuple[float, list[Sharing]]:
-    """Median processor time of REPEATS calls, s, and what they give."""
+def _measure_time(run: Callable[[], list[Sharing]]) -> tuple[float, list[Sharing]]:
+    """Return the median processor time of REPEATS calls, s, and their result."""
     times, sharings = [], []
     for _ in range(REPEATS):
         begin = time.process_time()
@@ -105,7 +142,7 @@ def _timed(run: Callable[[], list[Sharing]]) -> tuple[float, list[Sharing]]:
 
 
 def _again(case: RandomMachine, sharing: Sharing, settings: Settings, options: SharingOptions) -> SteadyState:
-    """The motion once more from where it was left, far finer."""
+    """Run the motion once more from where it was left, far finer."""
     model, state = build_model(case.machine), sharing.response.state
     if sharing.response.motion is Motion.PERIODIC:
         return simulate(model, case.speed_rpm, exact(settings), state)
@@ -120,7 +157,7 @@ def _again(case: RandomMachine, sharing: Sharing, settings: Settings, options: S
 
 
 def _error(sharing: Sharing, finer: SteadyState, options: SharingOptions) -> dict[str, float]:
-    """Of the group whose mean coefficient changes most."""
+    """Mean, error and chance of the group whose mean coefficient changes most."""
     fine = densely_sampled(finer)
     pairs: list[tuple[Average, Average]] = [
         (group.average, group_average(fine, group.group, options.confidence)[2]) for group in sharing.groups
@@ -134,7 +171,18 @@ def _error(sharing: Sharing, finer: SteadyState, options: SharingOptions) -> dic
 
 
 def sharing_summary(table: pd.DataFrame) -> str:
-    """Times and errors of periodic and of irregular motions in words."""
+    """Summarise times and errors of periodic and of irregular motions in words.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `sharing_costs`.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     periodic = table["motion"].str.startswith("period-")
     times = 1e3 * table["seconds"]
     within = (table["error"] <= table["chance"])[~periodic].sum()

@@ -35,7 +35,7 @@ from facegear.tooth_layer.sector import SIZES
 STEEL, DENSITY = Material(206e9, 0.3), 7850.0
 LAST_ORDER = 6
 FINENESSES = (1.0, 1.5)
-"""Of the meshes: how many times smaller their elements are than those of the fit."""
+"""Fineness of the meshes: ratio of the fit's element size to theirs."""
 
 
 @dataclass(frozen=True)
@@ -50,25 +50,55 @@ class Gear:
 
     @property
     def rim(self) -> Rim:
-        """From the back to the root land."""
+        """Rim from the back to the root land."""
         gear = self.pair.face_gear
         return Rim(gear.inner_radius, gear.outer_radius, self.rim_back, gear.rim_thickness)
 
     def section(self, layer: Layer | None = None) -> Section:
-        """As Fourier elements know it, bore held."""
+        """Return the section for Fourier elements, bore held.
+
+        Parameters
+        ----------
+        layer : Layer or None
+            Layer of the teeth, None without teeth.
+
+        Returns
+        -------
+        Section
+            The section.
+        """
         corners = wheel(self.hub, self.web, self.rim)
         inside = np.isclose(corners[:, 0], self.hub.bore_radius)
-        held = tuple((inside & np.roll(inside, -1)).tolist())
-        return Section(corners, held, (self.rim.inner_radius, self.rim.outer_radius), STEEL, DENSITY, layer)
+        is_fixed = tuple((inside & np.roll(inside, -1)).tolist())
+        return Section(
+            corners, is_fixed, (self.rim.inner_radius, self.rim.outer_radius), STEEL, DENSITY, layer
+        )
 
     def layer(self, density: float) -> Layer:
-        """The layer of the teeth with the fractions of every gear."""
+        """Return the layer of the teeth with the fractions of every gear.
+
+        Parameters
+        ----------
+        density : float
+            Density of the layer over that of steel, fraction.
+
+        Returns
+        -------
+        Layer
+            The layer.
+        """
         rim, top = self.rim, self.pair.gear_tip_plane - self.pair.gear_back_plane
         return Layer(rim.inner_radius, rim.outer_radius, rim.front, top, density)
 
 
 def paper() -> Gear:
-    """The paper's teeth on the section of docs/explanation/bodies.md."""
+    """Return the paper's teeth on the section of docs/explanation/bodies.md.
+
+    Returns
+    -------
+    Gear
+        The gear.
+    """
     module = 3.75e-3
     pair = PairDesign(
         module=module,
@@ -81,7 +111,13 @@ def paper() -> Gear:
 
 
 def second() -> Gear:
-    """Fewer and larger teeth of 20 degrees, on a thinner rim and a flat web."""
+    """Return a gear with fewer and larger teeth of 20 degrees, on a thinner rim and a flat web.
+
+    Returns
+    -------
+    Gear
+        The gear.
+    """
     module = 5e-3
     pair = PairDesign(
         module=module,
@@ -95,20 +131,37 @@ def second() -> Gear:
 
 @dataclass(frozen=True, eq=False)
 class CyclicSector:
-    """Nodes (n, 3) and bricks (e, 27) of one pitch; the nodes of its two cuts in pairs, and the held ones."""
+    """Nodes (n, 3) in m and bricks (e, 27) of one pitch (rad).
+
+    `left` and `right`: nodes of its two cuts in pairs; `fixed_nodes`: the nodes that are held.
+    """
 
     nodes: Array
     bricks: Integers
     left: Integers
     right: Integers
-    held: Integers
+    fixed_nodes: Integers
     pitch: float
 
 
 def flat_section(gear: Gear, size: float, across: int, top: float) -> tuple[Array, Integers]:
-    """Nodes (n, 2) and quadrilaterals of nine nodes (q, 9) of the section up to the height `top`.
+    """Mesh the section up to a height with quadrilaterals of nine nodes.
 
-    size: of the elements, m; across: their number along the rim's radius.
+    Parameters
+    ----------
+    gear : Gear
+        The gear.
+    size : float
+        Size of the elements, m.
+    across : int
+        Number of elements along the rim's radius.
+    top : float
+        Height, m.
+
+    Returns
+    -------
+    (n, 2) array, (q, 9) array of int
+        Nodes, m, and indices of the nodes of each quadrilateral.
     """
     hub, rim = gear.hub, gear.rim
     (hub_low, hub_high), (rim_low, rim_high) = web_ends(hub, gear.web, rim)
@@ -128,7 +181,7 @@ def flat_section(gear: Gear, size: float, across: int, top: float) -> tuple[Arra
             corners = np.array([(inner, low), (outer, low), (outer, high), (inner, high)])
             parts.append(_lattice(corners, columns, count))
     starts = np.cumsum([0, *(len(nodes) for nodes, _ in parts)])
-    nodes, quads = _merged(
+    nodes, quads = _merge_nodes(
         np.concatenate([nodes for nodes, _ in parts]),
         np.concatenate([quads + start for (_, quads), start in zip(parts, starts, strict=False)]),
     )
@@ -136,24 +189,39 @@ def flat_section(gear: Gear, size: float, across: int, top: float) -> tuple[Arra
 
 
 def _lattice(corners: Array, columns: int, rows: int) -> tuple[Array, Integers]:
-    """A block between four corners, cut into columns and rows of quadrilaterals of nine nodes."""
+    """Cut a block between four corners into columns and rows of quadrilaterals of nine nodes."""
     s, t = (grid[..., None] for grid in np.meshgrid(*(np.linspace(0, 1, 2 * n + 1) for n in (columns, rows))))
     lower, upper = corners[0] + s * (corners[1] - corners[0]), corners[3] + s * (corners[2] - corners[3])
     nodes = (lower + t * (upper - lower)).reshape(-1, 2)
     row = 2 * columns + 1
     first = (2 * row * np.arange(rows)[:, None] + 2 * np.arange(columns)).ravel()
-    own = (row * np.arange(3)[:, None] + np.arange(3)).ravel()
-    return nodes, first[:, None] + own
+    offsets = (row * np.arange(3)[:, None] + np.arange(3)).ravel()
+    return nodes, first[:, None] + offsets
 
 
-def _merged(nodes: Array, elements: Integers) -> tuple[Array, Integers]:
-    """Nodes that stand at one point to 1 nm are one."""
-    _, kept, number = np.unique(np.round(1e9 * nodes), axis=0, return_index=True, return_inverse=True)
-    return nodes[kept], number.ravel()[elements]
+def _merge_nodes(nodes: Array, elements: Integers) -> tuple[Array, Integers]:
+    """Merge nodes that stand at one point to 1 nm."""
+    _, first_index, number = np.unique(np.round(1e9 * nodes), axis=0, return_index=True, return_inverse=True)
+    return nodes[first_index], number.ravel()[elements]
 
 
 def cyclic_sector(gear: Gear, sizes: MeshSizes, size: float) -> CyclicSector:
-    """One tooth on its part of the body."""
+    """Mesh one tooth on its part of the body.
+
+    Parameters
+    ----------
+    gear : Gear
+        The gear.
+    sizes : MeshSizes
+        Sizes of the tooth's elements.
+    size : float
+        Size of the body's elements, m.
+
+    Returns
+    -------
+    CyclicSector
+        The sector.
+    """
     tooth = gear_tooth(gear.pair, sizes)
     back = np.unique(tooth.faces["rim_back"])
     drop = tooth.nodes[back, 2].mean()
@@ -162,25 +230,57 @@ def cyclic_sector(gear: Gear, sizes: MeshSizes, size: float) -> CyclicSector:
     radii = np.unique(np.round(r[back], 9))
     stations = np.stack([np.sort(angle[back[np.abs(r[back] - radius) < 1e-8]]) for radius in radii])
     flat, quads = flat_section(gear, size, (len(radii) - 1) // 2, 0.0)
-    below, bricks = revolved(flat, quads, radii, stations)
-    whole, elements = _merged(
+    below, bricks = revolve(flat, quads, radii, stations)
+    whole, elements = _merge_nodes(
         np.concatenate([nodes, below]), np.concatenate([tooth.hexes, bricks + len(nodes)])
     )
     return _cut(whole, elements, gear.pair.face_gear.teeth, gear.hub.bore_radius)
 
 
 def bare_sector(gear: Gear, columns: int, size: float) -> CyclicSector:
-    """The same without its tooth, in `columns` elements round the pitch."""
+    """Mesh one pitch of the body without its tooth.
+
+    Parameters
+    ----------
+    gear : Gear
+        The gear.
+    columns : int
+        Number of elements round the pitch.
+    size : float
+        Size of the elements, m.
+
+    Returns
+    -------
+    CyclicSector
+        The sector.
+    """
     rim, teeth = gear.rim, gear.pair.face_gear.teeth
     across = max(2, round((rim.outer_radius - rim.inner_radius) / size))
     flat, quads = flat_section(gear, size, across, rim.front)
     stations = np.linspace(-np.pi, np.pi, 2 * columns + 1) / teeth
-    nodes, bricks = revolved(flat, quads, np.array([1.0]), stations[None])
+    nodes, bricks = revolve(flat, quads, np.array([1.0]), stations[None])
     return _cut(nodes, bricks, teeth, gear.hub.bore_radius)
 
 
-def revolved(flat: Array, quads: Integers, radii: Array, stations: Array) -> tuple[Array, Integers]:
-    """A section turned to the angles stations (radii, 2 k + 1), rad, of the nearest of the radii."""
+def revolve(flat: Array, quads: Integers, radii: Array, stations: Array) -> tuple[Array, Integers]:
+    """Revolve a section into bricks of 27 nodes.
+
+    Parameters
+    ----------
+    flat : (n, 2) array
+        Nodes of the section, m.
+    quads : (q, 9) array of int
+        Indices of the nodes of each quadrilateral.
+    radii : (radii,) array
+        Radii at which the angles are given, m; the nearest counts.
+    stations : (radii, 2 k + 1) array
+        Angles of the nodes, rad.
+
+    Returns
+    -------
+    (m, 3) array, (e, 27) array of int
+        Nodes, m, and indices of the nodes of each brick.
+    """
     angle = stations[np.abs(flat[:, :1] - radii).argmin(axis=1)]
     r, height = flat[:, :1], np.broadcast_to(flat[:, 1:], angle.shape)
     nodes = np.stack([r * np.sin(angle), r * np.cos(angle), height], axis=-1)
@@ -205,7 +305,22 @@ def _cut(nodes: Array, bricks: Integers, teeth: int, bore: float) -> CyclicSecto
 
 
 def frequencies(sector: CyclicSector, orders: Sequence[int], count: int = 1) -> Array:
-    """First `count` frequencies (orders, count), Hz, of the whole gear in each order."""
+    """Compute the first frequencies of the whole gear in each order.
+
+    Parameters
+    ----------
+    sector : CyclicSector
+        One pitch of the gear.
+    orders : Sequence[int]
+        Numbers of nodal diameters.
+    count : int
+        Number of frequencies in each order.
+
+    Returns
+    -------
+    (orders, count) array
+        Frequencies, Hz.
+    """
     mesh, number = hex_mesh(sector.nodes, sector.bricks)
     basis = Basis(mesh, ElementVector(ElementHex2()), intorder=5)
     stiffness = asm(linear_elasticity(*lame_parameters(STEEL.young_modulus, STEEL.poisson_ratio)), basis)
@@ -222,19 +337,20 @@ def _order(
     count: int,
 ) -> Array:
     size = len(number)
-    free = np.setdiff1d(np.arange(size), np.concatenate([sector.right, sector.held]))
+    free = np.setdiff1d(np.arange(size), np.concatenate([sector.right, sector.fixed_nodes]))
     column = np.full(size, -1)
     column[free] = np.arange(free.size)
-    moved = np.flatnonzero(column[sector.left] >= 0)
-    own = sp.csr_matrix((np.ones(free.size), (number[free], np.arange(free.size))), (size, free.size))
+    moving_nodes = np.flatnonzero(column[sector.left] >= 0)
+    selection = sp.csr_matrix((np.ones(free.size), (number[free], np.arange(free.size))), (size, free.size))
     cut = sp.csr_matrix(
-        (np.ones(moved.size), (number[sector.right[moved]], column[sector.left[moved]])), (size, free.size)
+        (np.ones(moving_nodes.size), (number[sector.right[moving_nodes]], column[sector.left[moving_nodes]])),
+        (size, free.size),
     )
     c, s = np.cos(sector.pitch), np.sin(sector.pitch)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])  # angles grow from y towards x
-    joined = sp.kron(own, np.eye(3)) + np.exp(-1j * order * sector.pitch) * sp.kron(cut, turn)
-    joined = joined.tocsr()
-    left, right = ((joined.conj().T @ matrix @ joined).tocsc() for matrix in (stiffness, mass))
+    constraint = sp.kron(selection, np.eye(3)) + np.exp(-1j * order * sector.pitch) * sp.kron(cut, turn)
+    constraint = constraint.tocsr()
+    left, right = ((constraint.conj().T @ matrix @ constraint).tocsc() for matrix in (stiffness, mass))
     factor = splu(left, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     inverse = LinearOperator(left.shape, matvec=factor.solve, dtype=complex)
     start = np.ones(left.shape[0], complex)
@@ -243,18 +359,46 @@ def _order(
 
 
 def fourier(gear: Gear, layer: Layer | None, mesh: BodyMesh) -> Array:
-    """First frequency (orders,), Hz, of every order by the Fourier elements of facegear."""
+    """Compute the first frequency of every order by the Fourier elements of facegear.
+
+    Parameters
+    ----------
+    gear : Gear
+        The gear.
+    layer : Layer or None
+        Layer of the teeth, None without teeth.
+    mesh : BodyMesh
+        Mesh of the section.
+
+    Returns
+    -------
+    (orders,) array
+        Frequencies, Hz.
+    """
     body = body_matrices(gear.section(layer), mesh)
     orders = range(LAST_ORDER + 1)
     return np.array([order_modes(body, order, np.inf, expected=1).frequencies[0] for order in orders])
 
 
 def peer_table(gears: Sequence[Gear], finenesses: Sequence[float]) -> pd.DataFrame:
-    """One row for each gear, mesh and nodal diameter: sector and Fourier elements, with and without teeth."""
-    return pd.concat([_compared(gear, fine) for gear in gears for fine in finenesses], ignore_index=True)
+    """Compare sector and Fourier elements, with and without teeth.
+
+    Parameters
+    ----------
+    gears : Sequence[Gear]
+        Gears to compare.
+    finenesses : Sequence[float]
+        Fineness of each mesh of the sector, ratio.
+
+    Returns
+    -------
+    DataFrame
+        One row for each gear, mesh and nodal diameter.
+    """
+    return pd.concat([_compare(gear, fine) for gear in gears for fine in finenesses], ignore_index=True)
 
 
-def _compared(gear: Gear, fine: float) -> pd.DataFrame:
+def _compare(gear: Gear, fine: float) -> pd.DataFrame:
     module, orders = gear.pair.module, range(LAST_ORDER + 1)
     size = 0.5 * (gear.web.rim_thickness - 1e-3) / fine
     sizes = MeshSizes(*(part * module / fine for part in SIZES))
@@ -263,10 +407,10 @@ def _compared(gear: Gear, fine: float) -> pd.DataFrame:
     bare = frequencies(bare_sector(gear, 2, size), orders)[:, 0]
     cpu = process_time() - start
     common = gear.layer(Layer.density)
-    filled, centre = tooth_fill(gear.pair)
-    own = replace(common, density=filled, taper=6.0 * (0.5 - centre))
-    fitted = fitted_teeth(gear.section(own), gear.pair).layer
-    assert fitted is not None
+    fill_density, centre = tooth_fill(gear.pair)
+    layer = replace(common, density=fill_density, taper=6.0 * (0.5 - centre))
+    fitted_layer = fitted_teeth(gear.section(layer), gear.pair).layer
+    assert fitted_layer is not None
     mesh = body_mesh(gear.section(common))
     return pd.DataFrame(
         {
@@ -275,13 +419,13 @@ def _compared(gear: Gear, fine: float) -> pd.DataFrame:
             "nodal_diameters": orders,
             "sector_hz": toothed,
             "sector_without_teeth_hz": bare,
-            "fitted_hz": fourier(gear, fitted, mesh),
+            "fitted_hz": fourier(gear, fitted_layer, mesh),
             "common_hz": fourier(gear, common, mesh),
             "without_teeth_hz": fourier(gear, None, body_mesh(gear.section())),
-            "density": fitted.density,
-            "taper": fitted.taper,
-            "hoop": fitted.hoop,
-            "shear": fitted.shear,
+            "density": fitted_layer.density,
+            "taper": fitted_layer.taper,
+            "hoop": fitted_layer.hoop,
+            "shear": fitted_layer.shear,
             "sector_cpu_seconds": cpu,
         }
     )

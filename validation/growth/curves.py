@@ -1,4 +1,4 @@
-"""What is measured against what: each curve prepares points of several sizes."""
+"""Curves of time and memory against size: each prepares points of several sizes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -19,16 +19,16 @@ from facegear.dynamics.sweeps.sweep import run_speeds
 from facegear.gear_body.body import SolvedBody, solve_body
 from facegear.gear_body.reduction import reduced_body
 from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 from validation.contact.benchmark import Level, compliances, level
-from validation.growth.machines import PERIODS, Running, bending, resized, shipped
+from validation.growth.machines import PERIODS, Running, bending, resized, shipped_machine
 
 Call = Callable[[], Any]
-Prepared = tuple[float | None, Call]
+PreparedPoint = tuple[float | None, Call]
 """The size of a point, or None if the call itself returns it, and the call to be measured."""
 LEVEL, COARSER = "coarse_1x1x1", 1.5
 """Resolution of the contact, and by what its elements are larger: growth shows at any."""
-SWEPT, TIGHT = 3e-5, 1e-8
+SWEEP_QUANTITIES, TIGHT = 3e-5, 1e-8
 """Tolerances of sweeps, and of periods with bodies that bend."""
 MODES_TO_HZ = 5000.0
 
@@ -40,9 +40,9 @@ class Curve:
     """
 
     size: str
-    timed: str
+    timed_task: str
     values: Sequence[Any]
-    prepare: Callable[[Any], Prepared]
+    prepare: Callable[[Any], PreparedPoint]
     bent_by: str
     times: int = 1
 
@@ -57,8 +57,8 @@ def _pair() -> tuple[Any, Level, Any]:
 
 def _finer(base: Level, factor: float) -> Level:
     """The level with its element sizes times a factor."""
-    given = {name: size for name, size in vars(base.sizes).items() if size is not None}
-    return replace(base, sizes=replace(base.sizes, **{name: factor * size for name, size in given.items()}))
+    machine = {name: size for name, size in vars(base.sizes).items() if size is not None}
+    return replace(base, sizes=replace(base.sizes, **{name: factor * size for name, size in machine.items()}))
 
 
 def _contact(positions: int, torques: int) -> Call:
@@ -73,18 +73,18 @@ def _bodies(design: Any, base: Level, materials: Any) -> Call:
     return lambda: compliances(design, base, materials)
 
 
-def _teeth(teeth: int) -> Prepared:
+def _teeth(teeth: int) -> PreparedPoint:
     """The gear alone grows, with its radii."""
     design, base, materials = _pair()
     gear, scale = design.face_gear, teeth / design.face_gear.teeth
     radii = {name: scale * getattr(gear, name) for name in ("inner_radius", "outer_radius")}
     middle = 0.5 * (radii["inner_radius"] + radii["outer_radius"])
     half = 0.5 * (gear.outer_radius - gear.inner_radius)
-    grown = replace(gear, teeth=teeth, inner_radius=middle - half, outer_radius=middle + half)
-    return teeth, _bodies(replace(design, face_gear=grown), base, materials)
+    new_teeth = replace(gear, teeth=teeth, inner_radius=middle - half, outer_radius=middle + half)
+    return teeth, _bodies(replace(design, face_gear=new_teeth), base, materials)
 
 
-def _width(millimetres: float) -> Prepared:
+def _width(millimetres: float) -> PreparedPoint:
     """Both faces, about the gear's mean radius."""
     design, base, materials = _pair()
     gear, half = design.face_gear, 0.5e-3 * millimetres
@@ -95,20 +95,20 @@ def _width(millimetres: float) -> Prepared:
     return millimetres, _bodies(replace(design, face_gear=wider, pinion=pinion), base, materials)
 
 
-def _elements(factor: float) -> Prepared:
+def _elements(factor: float) -> PreparedPoint:
     design, base, materials = _pair()
     return 1.0 / factor**3, _bodies(design, _finer(base, factor), materials)
 
 
-def _pinions(count: int) -> Prepared:
-    return count, Running(resized(shipped("config/paper.yaml"), count, 5), SWEPT)
+def _pinions(count: int) -> PreparedPoint:
+    return count, Running(resized(shipped_machine("config/paper.yaml"), count, 5), SWEEP_QUANTITIES)
 
 
-def _harmonics(count: int) -> Prepared:
-    return count, Running(resized(shipped("config/paper.yaml"), 5, count), SWEPT)
+def _harmonics(count: int) -> PreparedPoint:
+    return count, Running(resized(shipped_machine("config/paper.yaml"), 5, count), SWEEP_QUANTITIES)
 
 
-def _solved(max_frequency: float, diameters: int) -> tuple[SolvedBody, Any, Any]:
+def _solve_gear_body(max_frequency: float, diameters: int) -> tuple[SolvedBody, Any, Any]:
     values = load_config("config/flexible.yaml").model_dump(mode="json")
     teeth = ToothPair.of_config(values["tooth_pair"])
     section = BodySection.of_config(values["transmission"]["face_gear"]["body"])
@@ -116,32 +116,32 @@ def _solved(max_frequency: float, diameters: int) -> tuple[SolvedBody, Any, Any]
     return body, section, contact_patch(section, teeth)
 
 
-def _coordinates(max_frequency: float | None) -> Prepared:
-    """Of the whole machine; None: rigid gears."""
+def _coordinates(max_frequency: float | None) -> PreparedPoint:
+    """Prepare the whole machine, with rigid gears for None."""
     body = None
     if max_frequency is not None:
-        solved, section, patch = _solved(max_frequency, 12)
-        body = reduced_body(solved, patch, *section.damping)
+        solution, section, patch = _solve_gear_body(max_frequency, 12)
+        body = reduced_body(solution, patch, *section.damping)
     running = Running(bending(body), TIGHT)
     return running.integrator.size, running
 
 
-def _body_modes(max_frequency: float) -> Prepared:
+def _body_modes(max_frequency: float) -> PreparedPoint:
     def count() -> int:
-        return sum(modes.frequencies.size for modes in _solved(max_frequency, 8)[0].orders)
+        return sum(modes.frequencies.size for modes in _solve_gear_body(max_frequency, 8)[0].orders)
 
     return None, count
 
 
-def _diameters(last: int) -> Prepared:
-    return last, lambda: _solved(MODES_TO_HZ, last)
+def _diameters(last: int) -> PreparedPoint:
+    return last, lambda: _solve_gear_body(MODES_TO_HZ, last)
 
 
-def _samples(count: int) -> Prepared:
+def _samples(count: int) -> PreparedPoint:
     import facegear
 
     tolerances = load_config("config/tolerances.yaml").model_dump(mode="json")
-    given = facegear.load("config/harmonics_only.yaml", results=None).with_values(
+    inputs = facegear.load("config/harmonics_only.yaml", results=None).with_values(
         {
             "transmission.mesh_kinematics": "geometric",
             "transmission.face_gear.mesh_radius_mm": None,
@@ -156,15 +156,15 @@ def _samples(count: int) -> Prepared:
             },
         }
     )
-    sampled = SampledMachine.of_stage(**given._chain.arguments("tolerances_chunk"))
-    chunk_of(sampled, "samples", 512, 520)
-    return count, lambda: chunk_of(sampled, "samples", 0, count - 1)
+    sampled_machine = SampledMachine.of_stage(**inputs._chain.arguments("tolerances_chunk"))
+    chunk_of(sampled_machine, "samples", 512, 520)
+    return count, lambda: chunk_of(sampled_machine, "samples", 0, count - 1)
 
 
-def _speeds(count: int) -> Prepared:
-    model = build_model(shipped("config/paper.yaml"))
+def _speeds(count: int) -> PreparedPoint:
+    model = build_model(shipped_machine("config/paper.yaml"))
     speeds = np.linspace(6000.0, 12000.0, count)
-    settings = Settings(tolerance=SWEPT, extensions=0)
+    settings = Settings(tolerance=SWEEP_QUANTITIES, extensions=0)
     list(run_speeds(model, speeds[:1], settings, None))
     return count, lambda: list(run_speeds(model, speeds, settings, None))
 

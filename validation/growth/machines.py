@@ -19,11 +19,28 @@ from facegear.transmission.layout import Layout, Role
 from facegear.transmission.machine import Machine, OpenFlanks, balanced_torques, mesh_frequency
 
 SPEED_RPM = 7500.0
+"""Speed of the pinion, rpm."""
 PERIODS = 400
+"""Mesh periods of a run."""
 
 
 def resized(machine: Machine, count: int, harmonics: int) -> Machine:
-    """The machine with `count` pinions evenly spread, half of them driving, and as many harmonics of k."""
+    """Return a machine with another number of pinions, evenly spread, half of them driving.
+
+    Parameters
+    ----------
+    machine : Machine
+        The original.
+    count : int
+        Number of pinions.
+    harmonics : int
+        Number of harmonics of k.
+
+    Returns
+    -------
+    Machine
+        The machine.
+    """
     old = machine.layout
     pinions = tuple(
         replace(
@@ -40,7 +57,7 @@ def resized(machine: Machine, count: int, harmonics: int) -> Machine:
         machine,
         layout=layout,
         torques=balanced_torques(layout, torque),
-        stiffness=falling(machine.stiffness, harmonics),
+        stiffness=decaying_harmonics(machine.stiffness, harmonics),
         error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
         half_backlash=np.full(len(layout.meshes), machine.half_backlash.max()),
         imperfections=perfect(layout),
@@ -48,27 +65,67 @@ def resized(machine: Machine, count: int, harmonics: int) -> Machine:
     )
 
 
-def falling(stiffness: Harmonics, harmonics: int) -> Harmonics:
-    """Mean and first amplitude of a series, and so many harmonics that fall with their number's square."""
+def decaying_harmonics(stiffness: Harmonics, harmonics: int) -> Harmonics:
+    """Return mean and first amplitude of a series, with harmonics that fall with their number's square.
+
+    Parameters
+    ----------
+    stiffness : Harmonics
+        The series.
+    harmonics : int
+        Number of harmonics.
+
+    Returns
+    -------
+    Harmonics
+        The new series.
+    """
     size = np.r_[0.0, stiffness.amplitudes[1:].max() / np.arange(1, harmonics + 1) ** 2]
     return Harmonics(size, np.r_[stiffness.mean, np.zeros(harmonics)])
 
 
-def shipped(config: str, changes: Mapping[str, Any] | None = None) -> Machine:
-    """The machine of a config with changes, rigid, with five harmonics of mesh stiffness."""
+def shipped_machine(config: str, changes: Mapping[str, Any] | None = None) -> Machine:
+    """Return the machine of a config, rigid, with five harmonics of mesh stiffness.
+
+    Parameters
+    ----------
+    config : str
+        Path of the config.
+    changes : Mapping[str, Any] or None
+        Changes of its keys.
+
+    Returns
+    -------
+    Machine
+        The machine.
+    """
     values = load_config("config/harmonics_only.yaml").model_dump(mode="json")
-    given = Harmonics(np.r_[0.0, 2e7], np.r_[values["mesh_stiffness"]["mean_n_per_m"], 0.0])
+    stiffness = Harmonics(np.r_[0.0, 2e7], np.r_[values["mesh_stiffness"]["mean_n_per_m"], 0.0])
     return MachineInputs.of_config(
-        load_config(config, changes).model_dump(mode="json"), falling(given, 5)
+        load_config(config, changes).model_dump(mode="json"), decaying_harmonics(stiffness, 5)
     ).build()
 
 
 def bending(body: ReducedBody | None) -> Machine:
-    """The machine of config/flexible.yaml with both gears of one body, or rigid, and 20 harmonics of k."""
-    machine = shipped("config/flexible.yaml", {"transmission": {"transmission_error": {"amplitude_um": 2.0}}})
+    """Return the machine of config/flexible.yaml with both gears of one body, or rigid, and 20 harmonics of
+    k.
+
+    Parameters
+    ----------
+    body : ReducedBody or None
+        Reduced body of both gears, None for rigid gears.
+
+    Returns
+    -------
+    Machine
+        The machine.
+    """
+    machine = shipped_machine(
+        "config/flexible.yaml", {"transmission": {"transmission_error": {"amplitude_um": 2.0}}}
+    )
     machine = replace(
         machine,
-        stiffness=falling(machine.stiffness, 20),
+        stiffness=decaying_harmonics(machine.stiffness, 20),
         imperfections=perfect(machine.layout),
         damping=replace(machine.damping, open_flanks=OpenFlanks.CONTACT_ONLY),
     )

@@ -18,20 +18,31 @@ LONG = 2.0
 REPEATS, TOGETHER = 4, 1.0
 """How often at least, and for how many seconds together."""
 PROCESSES, SHORT = 3, 0.5
-"""Of a point whose calls take no more seconds than this: the memory that a process is given decides up to a
-third of their time.
-"""
+"""Number of processes for a point whose calls take no more seconds than SHORT: the memory that a process is
+given decides up to a third of their time."""
 COLUMNS = ["curve", "size", "seconds", "seconds_largest", "peak_mb", "own_mb", "load"]
 NEGLIGIBLE_MB = 10.0
 """Memory below this cannot be distinguished from what the process itself takes."""
 ONE_THREAD = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "MKL", "OPENBLAS")}
 
 
-def measured(name: str, number: int) -> dict[str, float]:
-    """Point `number` of a curve, in this process: size, seconds, peak_mb of the process, own_mb of the call,
-    and `called_s` that the longest call took.
+def measure_point(name: str, number: int) -> dict[str, float]:
+    """Measure a point of a curve in this process.
 
     The time is the least of a few calls, the first of which loads libraries; the memory that of the last.
+
+    Parameters
+    ----------
+    name : str
+        Name of the curve.
+    number : int
+        Index of the point.
+
+    Returns
+    -------
+    dict[str, float]
+        size, seconds, peak_mb of the process, own_mb of the call, and `called_s`, the s that the longest call
+        took.
     """
     from validation.growth.curves import CURVES
 
@@ -65,10 +76,22 @@ def _memory_mb(name: str) -> float:
 
 
 def growth_table(sizes: Mapping[str, int], step: Callable[[], None] = lambda: None) -> pd.DataFrame:
-    """All points of the curves, `sizes` of each, one process after the other.
+    """Measure all points of the curves, one process after the other.
 
     Columns curve, size, seconds (of a processor, one thread, the least of the processes), seconds_largest (of
     the processes), peak_mb, own_mb, load (processes that waited for a processor, mean of the minute before).
+
+    Parameters
+    ----------
+    sizes : Mapping[str, int]
+        Number of points of each curve.
+    step : Callable[[], None]
+        Called after each point.
+
+    Returns
+    -------
+    DataFrame
+        One row for each point.
     """
     rows = []
     for name, count in sizes.items():
@@ -96,8 +119,20 @@ def _in_a_process(name: str, number: int) -> dict[str, float]:
 
 
 def exponents(table: pd.DataFrame) -> pd.DataFrame:
-    """One row a curve: from, to (sizes), seconds_from, seconds_to, exponent over all sizes and over the last
-    two, peak_mb_to, memory_exponent of what the call itself takes (empty where that is little).
+    """Fit the exponents of each curve, one row a curve.
+
+    Columns from, to (sizes), seconds_from, seconds_to, exponent over all sizes and over the last two,
+    peak_mb_to, memory_exponent of the call's own memory (empty where that is little).
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `growth_table`.
+
+    Returns
+    -------
+    DataFrame
+        One row for each curve.
     """
     rows = []
     for name, curve in table.groupby("curve", sort=False):
@@ -119,18 +154,42 @@ def exponents(table: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def rounded(fitted: pd.DataFrame) -> pd.DataFrame:
-    """The table with numbers of three digits."""
-    numbers = fitted.select_dtypes("number").columns
-    return fitted.assign(**{name: [float(f"{value:.3g}") for value in fitted[name]] for name in numbers})
+def round_numbers(table: pd.DataFrame) -> pd.DataFrame:
+    """Round the numbers of a table to three digits.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Any table.
+
+    Returns
+    -------
+    DataFrame
+        The rounded table.
+    """
+    numbers = table.select_dtypes("number").columns
+    return table.assign(**{name: [float(f"{value:.3g}") for value in table[name]] for name in numbers})
 
 
 def slope(size: Array, amount: Array) -> float:
-    """Exponent of a power law fitted by least squares of logarithms; NaN for fewer than two sizes."""
+    """Fit the exponent of a power law by least squares of logarithms.
+
+    Parameters
+    ----------
+    size : (n,) array
+        Sizes, any unit.
+    amount : (n,) array
+        Amounts, any unit.
+
+    Returns
+    -------
+    float
+        Exponent, dimensionless; NaN for fewer than two sizes.
+    """
     if size.size < 2:
         return float("nan")
     return float(np.polyfit(np.log(size), np.log(amount), 1)[0])
 
 
 if __name__ == "__main__":
-    print(json.dumps(measured(sys.argv[1], int(sys.argv[2]))))
+    print(json.dumps(measure_point(sys.argv[1], int(sys.argv[2]))))

@@ -15,9 +15,21 @@ BUILDERS = {"pinion": pinion_tooth, "face_gear": gear_tooth}
 
 
 def growth_table(design: PairDesign, repeats: int = 3) -> pd.DataFrame:
-    """One row per body and level: counts, smallest scaled Jacobian, volume, best time of `repeats` to build.
+    """Measure how meshes grow: counts, smallest scaled Jacobian, volume, best time to build.
 
     growth_exponent is the slope of log time over log nodes against the level before (0 on the first).
+
+    Parameters
+    ----------
+    design : PairDesign
+        The pair.
+    repeats : int
+        Number of builds whose best time counts.
+
+    Returns
+    -------
+    DataFrame
+        One row per body and level.
     """
     rows = []
     for body, build in BUILDERS.items():

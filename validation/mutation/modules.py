@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 TESTS = "tests/unit/"
-EXPLAINED = Path(__file__).with_name("survivors.csv")
+EXPLANATIONS = Path(__file__).with_name("survivors.csv")
 """Survivors that no test can or should notice: file, before, after, and the reason in one line."""
 TABLE = Path(__file__).parents[2] / "docs/measured/mutation.csv"
 COLUMNS = ("module", "file", "mutants", "line", "operator", "occurrence", "before", "after", "end", "reason")
-"""Of the table: one row a mutant; `mutants`: how many the module has, of which the table holds a sample."""
-SURVIVED, KILLED, ENDLESS = "survived", "killed", "endless"
+"""Columns of the table: one row a mutant; `mutants`: how many the module has, of which the table holds a
+sample."""
+SURVIVED, KILLED_END, ENDLESS = "survived", "killed", "endless"
 """How a mutant ends: no test fails, one does, or the tests take far longer than usual."""
 
 
@@ -53,25 +54,48 @@ MODULES = {
 
 
 def reasons() -> dict[tuple[str, str, str], str]:
-    """Why survivors may survive, by file and the line before and after."""
-    with EXPLAINED.open(newline="", encoding="utf-8") as stream:
+    """Read why survivors may survive.
+
+    Returns
+    -------
+    dict[tuple[str, str, str], str]
+        Reason by file and the line before and after.
+    """
+    with EXPLANATIONS.open(newline="", encoding="utf-8") as stream:
         return {(row["file"], row["before"], row["after"]): row["reason"] for row in csv.DictReader(stream)}
 
 
 def rows() -> list[dict[str, str]]:
-    """The stored table."""
+    """Read the stored table.
+
+    Returns
+    -------
+    list[dict[str, str]]
+        Values by column, one dict a row.
+    """
     with TABLE.open(newline="", encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
 
 
 def mutation_tables(table: list[dict[str, str]]) -> str:
-    """Markdown: how the mutants of each module ended, and all survivors with their reasons."""
-    ends = (KILLED, ENDLESS, SURVIVED)
+    """Write how the mutants of each module ended, and all survivors with their reasons.
+
+    Parameters
+    ----------
+    table : list[dict[str, str]]
+        Rows of the table.
+
+    Returns
+    -------
+    str
+        Two tables of Markdown.
+    """
+    ends = (KILLED_END, ENDLESS, SURVIVED)
     lines = ["| module | mutants | tried | " + " | ".join(ends) + " |", "|---" * (3 + len(ends)) + "|"]
     for name in MODULES:
-        own = [row for row in table if row["module"] == name]
-        counts = [str(sum(row["end"] == end for row in own)) for end in ends]
-        lines.append(f"| {name} | {own[0]['mutants']} | {len(own)} | {' | '.join(counts)} |")
+        module_rows = [row for row in table if row["module"] == name]
+        counts = [str(sum(row["end"] == end for row in module_rows)) for end in ends]
+        lines.append(f"| {name} | {module_rows[0]['mutants']} | {len(module_rows)} | {' | '.join(counts)} |")
     lines += ["", "| survivor | changed to | why no test notices it |", "|---|---|---|"]
     for row in table:
         if row["end"] == SURVIVED:

@@ -18,7 +18,7 @@ import pytest
 from hypothesis import Phase, settings
 
 LIBRARIES = ("numpy", "scipy.linalg", "scipy.optimize", "scipy.sparse.linalg", "pandas", "pydantic")
-FAILED = (pytest.ExitCode.TESTS_FAILED, pytest.ExitCode.INTERRUPTED)
+FAILURE_CODES = (pytest.ExitCode.TESTS_FAILED, pytest.ExitCode.INTERRUPTED)
 LONGER, START = 3.0, 6.0
 """Tests may take this many times the processor time that they take without a mutant, and so many s more."""
 WITHOUT_MUTANT = 600.0
@@ -26,14 +26,27 @@ WITHOUT_MUTANT = 600.0
 
 
 def attempt(tests: list[str], limit: float) -> tuple[str, float]:
-    """How the tests end in a forked process, and after how much processor time (s)."""
+    """Run the tests in a forked process.
+
+    Parameters
+    ----------
+    tests : list[str]
+        Options and names of the tests for pytest.
+    limit : float
+        Largest processor time, s.
+
+    Returns
+    -------
+    str, float
+        How the tests end, and their processor time, s.
+    """
     child = get_context("fork").Process(target=_run, args=(tests, limit))
     child.start()
-    _, status, used = os.wait4(child.pid or 0, 0)
-    code, seconds = os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime
+    _, status, usage = os.wait4(child.pid or 0, 0)
+    code, seconds = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
     if code == -signal.SIGXCPU:
         return "endless", seconds
-    if code not in (0, *FAILED) and code >= 0:
+    if code not in (0, *FAILURE_CODES) and code >= 0:
         raise SystemExit(f"pytest ended with {code}: " + Path("tests.log").read_text(encoding="utf-8"))
     return ("killed" if code else "survived"), seconds
 

@@ -15,10 +15,24 @@ TITLES = {"mean": "Mean stiffness", "amplitude_1": "First harmonic"}
 
 
 def speed_against_error(table: pd.DataFrame, growth: pd.DataFrame, default: str) -> Figure:
-    """Errors of mean and first harmonic (worst torque) of every resolution against its whole time.
+    """Draw the errors of mean and first harmonic (worst torque) of every resolution against its whole time.
 
     And the time of contact against the number of positions and of loads. Letters stand for the levels, the
     quickest first; the level `default` is drawn larger.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of levels with errors.
+    growth : DataFrame
+        Times of contact against numbers of positions and loads.
+    default : str
+        Name of the default level.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     levels = table.groupby("level").first().sort_values("total_s")
     exact = levels["mean_error_percent"] == 0.0
@@ -37,8 +51,8 @@ def speed_against_error(table: pd.DataFrame, growth: pd.DataFrame, default: str)
                 minor_formatter=NullFormatter(),
             )
             axis.set(xlabel="Whole time (s)", ylabel=f"Error against {finest} (%)", title=title)
-        for varied, rows in growth.groupby("varied", sort=False):
-            axes[2].plot(rows[varied], rows["contact_s"], "o-", label=f"{varied}")
+        for quantity, rows in growth.groupby("varied", sort=False):
+            axes[2].plot(rows[quantity], rows["contact_s"], "o-", label=f"{quantity}")
         axes[2].set(xlabel="Number", ylabel="Contact (s)", title="Growth with positions and loads")
         axes[2].set(xlim=(0, None), ylim=(0, None))
         axes[2].legend()

@@ -19,18 +19,31 @@ SPAN = 4.0
 
 
 def growth_figure(table: pd.DataFrame, texts: Mapping[str, tuple[str, str]]) -> Figure:
-    """One panel for each curve of a growth table: CPU time (left scale), memory of the process (right scale).
+    """Draw one panel for each curve of a growth table: CPU time (left scale), memory of the process (right
+    scale).
 
-    texts: what the sizes of each curve are, and what is timed. The dashed line is the fitted power law.
+    The dashed line is the fitted power law.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `growth_table`.
+    texts : Mapping[str, tuple[str, str]]
+        Meaning of the sizes of each curve, and of its time.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
-    fitted = exponents(table).set_index("curve")
-    curves = list(fitted.index)
+    fits = exponents(table).set_index("curve")
+    curves = list(fits.index)
     rows = -(-len(curves) // COLUMNS)
     with styled():
         figure, axes = plt.subplots(rows, COLUMNS, figsize=(7.5, 2.7 * rows), squeeze=False)
         for axis, name in zip(axes.flat, curves, strict=False):
-            curve, (size, timed) = table[table["curve"] == name], texts[name]
-            exponent = fitted.loc[name, "exponent"]
+            curve, (size, task) = table[table["curve"] == name], texts[name]
+            exponent = fits.loc[name, "exponent"]
             unit, factor = ("us", 1e6) if curve["seconds"].max() < BRIEF else ("s", 1.0)
             times = factor * curve["seconds"]
             middle = times.prod() ** (1 / len(curve))
@@ -41,7 +54,7 @@ def growth_figure(table: pd.DataFrame, texts: Mapping[str, tuple[str, str]]) -> 
             )
             low, high = axis.get_ylim()
             axis.set_ylim(min(low, middle / SPAN**0.5), max(high, middle * SPAN**0.5))
-            axis.set(xlabel=size, title=f"{timed}\nexponent {exponent:.2f}")
+            axis.set(xlabel=size, title=f"{task}\nexponent {exponent:.2f}")
             axis.set_ylabel(f"CPU time ({unit})", color="C0")
             for scale in (axis.xaxis, axis.yaxis):
                 _plain(scale)

@@ -11,7 +11,18 @@ MARKERS = "osv^<>Dp*Xh"
 
 
 def work_precision_diagram(table: pd.DataFrame) -> Figure:
-    """Error against time in logarithms, one panel for each problem and one curve for each method."""
+    """Draw error against time in logarithms, one panel for each problem and one curve for each method.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Table of `work_precision`.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     problems = list(dict.fromkeys(table["problem"]))
     methods = list(dict.fromkeys(table["method"]))
     columns = 2
@@ -21,16 +32,16 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
         for axis, problem in zip(axes.flat, problems, strict=False):
             chance = table.loc[table["problem"] == problem, "interval"].median()
             for method, curve in table[table["problem"] == problem].groupby("method", sort=False):
-                known = curve.dropna(subset="error")
-                number, own = methods.index(method), method.startswith("facegear")
+                has_error = curve.dropna(subset="error")
+                number, is_ours = methods.index(method), method.startswith("facegear")
                 axis.loglog(
-                    known["error"].clip(lower=1e-15),
-                    known["seconds"],
+                    has_error["error"].clip(lower=1e-15),
+                    has_error["seconds"],
                     MARKERS[number % len(MARKERS)],
                     # Chance decides on the order of the errors where motion is irregular.
                     linestyle="" if chance > 0.0 else "-" if number == 0 else "--",
-                    color="black" if own else f"C{number}",
-                    lw=2 if own else 1,
+                    color="black" if is_ours else f"C{number}",
+                    lw=2 if is_ours else 1,
                     ms=4,
                     label=method,
                 )

@@ -27,9 +27,23 @@ FARTHER = 1.3
 def frozen_reactions(
     model: ContactModel, torque: float, positions: int, options: ContactOptions
 ) -> tuple[Array, Array]:
-    """Means over a pitch of gap_p . f and of f . C_p f / 2, (3,) each, by offset, axial shift, shaft angle.
+    """Return the means over a pitch of gap_p . f and of f . C_p f / 2, by offset, axial shift, shaft angle.
 
-    N and N m, of a pair under a torque (N m) on its pinion.
+    Parameters
+    ----------
+    model : ContactModel
+        Contact of the pair.
+    torque : float
+        Torque on the pinion, N m.
+    positions : int
+        Number of positions in a pitch.
+    options : ContactOptions
+        Options of contact.
+
+    Returns
+    -------
+    (3,) array, (3,) array
+        Both means, N, N and N m.
     """
     results = loaded_contact(model, even_positions(positions), [torque], options)
     phi1 = pinion_angle(model.design, [result.position for result in results])
@@ -38,18 +52,24 @@ def frozen_reactions(
     for row, result in enumerate(results):
         placement = float(phi1[row]), float(phi2[row])
         for number, (name, step) in enumerate(STEPS.items()):
-            models = [_moved(model, name, sign * step) for sign in (1.0, -1.0)]
-            seen = [_candidates(moved, result, placement, options) for moved in models]
+            models = [_displace_pinion(model, name, sign * step) for sign in (1.0, -1.0)]
+            candidates = [
+                _candidates(displaced_model, result, placement, options) for displaced_model in models
+            ]
             after, before = (
-                _energies(moved, result, own, [_numbered(pair) for pair in other], options)
-                for moved, own, other in zip(models, seen, seen[::-1], strict=True)
+                _energies(
+                    displaced_model, result, pairs, [_row_by_hat(pair) for pair in opposite_pairs], options
+                )
+                for displaced_model, pairs, opposite_pairs in zip(
+                    models, candidates, candidates[::-1], strict=True
+                )
             )
             parts[row, :, number] = (after - before) / (2.0 * step)
-    along, giving = parts.mean(axis=0)
-    return along, giving
+    along, compliance_part = parts.mean(axis=0)
+    return along, compliance_part
 
 
-def _moved(model: ContactModel, name: str, step: float) -> ContactModel:
+def _displace_pinion(model: ContactModel, name: str, step: float) -> ContactModel:
     errors: AssemblyErrors = model.design.assembly
     return model.assembled(replace(errors, **{name: getattr(errors, name) + step}))
 
@@ -57,18 +77,18 @@ def _moved(model: ContactModel, name: str, step: float) -> ContactModel:
 def _candidates(
     model: ContactModel, result: LoadedPosition, placement: tuple[float, float], options: ContactOptions
 ) -> list[Candidates]:
-    """Those of the teeth that are loaded at a position, one for each of its spots."""
+    """Find the candidates of the teeth that are loaded at a position, one for each of its spots."""
     teeth = np.array([spot.tooth for spot in result.spots])
     limit = FARTHER * (result.ste - result.unloaded) / model.design.pinion_base_radius
     pairs = find_candidates(model.flanks, placement, teeth, limit, options)
-    seen = {pair.tooth: pair for pair in pairs}
-    return [seen[spot.tooth] for spot in result.spots]
+    by_tooth = {pair.tooth: pair for pair in pairs}
+    return [by_tooth[spot.tooth] for spot in result.spots]
 
 
 def _energies(
     model: ContactModel,
     result: LoadedPosition,
-    seen: list[Candidates],
+    candidates: list[Candidates],
     also: list[dict[tuple[int, int], int]],
     options: ContactOptions,
 ) -> Array:
@@ -77,17 +97,17 @@ def _energies(
     Loads on hats that the placement on the other side does not have, at the end of a tooth, are left out.
     """
     pairs, forces = [], []
-    for spot, pair, others in zip(result.spots, seen, also, strict=True):
-        there = _numbered(pair)
-        kept = {
-            there[key]: force
-            for key, force in zip(_counted(spot.hats.tolist()), spot.force, strict=True)
-            if key in there and key in others
+    for spot, pair, other_rows in zip(result.spots, candidates, also, strict=True):
+        row_by_hat = _row_by_hat(pair)
+        force_by_row = {
+            row_by_hat[key]: force
+            for key, force in zip(_number_hats(spot.hats.tolist()), spot.force, strict=True)
+            if key in row_by_hat and key in other_rows
         }
         keep = np.zeros(len(pair.hats), bool)
-        keep[list(kept)] = True
+        keep[list(force_by_row)] = True
         pairs.append(pair.only(keep))
-        forces.append(np.array([kept[row] for row in sorted(kept)]))
+        forces.append(np.array([force_by_row[row] for row in sorted(force_by_row)]))
     force = np.concatenate(forces)
     assert force.sum() > 0.99 * sum(spot.force.sum() for spot in result.spots)
     gap = np.concatenate([pair.gap for pair in pairs])
@@ -95,15 +115,15 @@ def _energies(
     return np.array([gap @ force, 0.5 * force @ matrix @ force])
 
 
-def _numbered(pair: Candidates) -> dict[tuple[int, int], int]:
-    return {key: row for row, key in enumerate(_counted(pair.hats.tolist()))}
+def _row_by_hat(pair: Candidates) -> dict[tuple[int, int], int]:
+    return {key: row for row, key in enumerate(_number_hats(pair.hats.tolist()))}
 
 
-def _counted(hats: list[int]) -> list[tuple[int, int]]:
+def _number_hats(hats: list[int]) -> list[tuple[int, int]]:
     """Each hat with how often it came before: hats of a flank and of an edge may share a node."""
-    seen: dict[int, int] = {}
+    counts: dict[int, int] = {}
     keys = []
     for hat in hats:
-        keys.append((hat, seen.get(hat, 0)))
-        seen[hat] = seen.get(hat, 0) + 1
+        keys.append((hat, counts.get(hat, 0)))
+        counts[hat] = counts.get(hat, 0) + 1
     return keys

@@ -25,10 +25,15 @@ from facegear.poses.surface import SURFACE_ARRAYS
 from facegear.stages.pose_surface import pose_surface, quantities
 from validation.poses.frozen import STEPS, frozen_reactions
 
-HERE = Path(__file__).parent
-SURFACE, LOADED = HERE / "concentric_surface.npz", HERE / "loaded.csv"
-TILTING, TOUCHING, FROZEN = HERE / "tilting_surface.npz", HERE / "touching.csv", HERE / "frozen.csv"
+FOLDER = Path(__file__).parent
+SURFACE, LOADED_CONTACT = FOLDER / "concentric_surface.npz", FOLDER / "loaded.csv"
+TILTING, TOUCHING_REACTIONS, FROZEN_REACTIONS = (
+    FOLDER / "tilting_surface.npz",
+    FOLDER / "touching.csv",
+    FOLDER / "frozen.csv",
+)
 TORQUE = 550.0
+"""Torque on the pinion, N m."""
 TORQUES = (80.0, 420.0, TORQUE, 930.0)
 ASSEMBLIES = {
     "nominal": AssemblyErrors(),
@@ -48,39 +53,53 @@ def main() -> None:
 
 
 def store_reactions(arrays) -> None:  # type: ignore[no-untyped-def]
-    """What the energy's derivatives are held against, from the arrays of both bodies."""
+    """Compute and store the references for the energy's derivatives.
+
+    Parameters
+    ----------
+    arrays
+        Arrays of both bodies.
+    """
     config = facegear.load("config/concentric.yaml", results=None).config
     teeth, flanks = pair(config.tooth_pair), (from_arrays(arrays[0]), from_arrays(arrays[1]))
     plan = replace(contact_plan(config.contact), torques=TORQUES, root_stress=False)
-    frozen = []
+    rows_frozen = []
     for torque in (420.0, 930.0):
         model = contact_model(teeth.design, *flanks)
-        along, giving = frozen_reactions(model, torque, plan.positions, plan.options)
-        rows = zip(STEPS, along, giving, strict=True)
-        frozen += [(torque, name, first, second) for name, first, second in rows]
+        along, compliance_part = frozen_reactions(model, torque, plan.positions, plan.options)
+        rows = zip(STEPS, along, compliance_part, strict=True)
+        rows_frozen += [(torque, name, first, second) for name, first, second in rows]
     columns = ["torque_n_m", "error", "along_normals", "giving_way"]
-    pd.DataFrame(frozen, columns=columns).to_csv(FROZEN, index=False)
-    posed = posed_contacts(teeth.design, teeth.materials, flanks, plan, list(ASSEMBLIES.values()))
-    touching = [
-        contact.reactions.assign(assembly=name) for name, contact in zip(ASSEMBLIES, posed, strict=True)
+    pd.DataFrame(rows_frozen, columns=columns).to_csv(FROZEN_REACTIONS, index=False)
+    contacts = posed_contacts(teeth.design, teeth.materials, flanks, plan, list(ASSEMBLIES.values()))
+    tables = [
+        contact.reactions.assign(assembly=name) for name, contact in zip(ASSEMBLIES, contacts, strict=True)
     ]
-    pd.concat(touching).to_csv(TOUCHING, index=False)
+    pd.concat(tables).to_csv(TOUCHING_REACTIONS, index=False)
     contact = config.contact.model_copy(update={"root_stress": False})
-    made = pose_surface(arrays[0], arrays[1], config.tooth_pair, contact, 663.8, tilting=True)
-    kept = {name: part for name, part in made.content["surface"].items() if name in SURFACE_ARRAYS}
-    np.savez_compressed(TILTING, **kept)
+    outcome = pose_surface(arrays[0], arrays[1], config.tooth_pair, contact, 663.8, tilting=True)
+    surface_arrays = {
+        name: part for name, part in outcome.content["surface"].items() if name in SURFACE_ARRAYS
+    }
+    np.savez_compressed(TILTING, **surface_arrays)
 
 
 def store_loaded(flanks) -> None:  # type: ignore[no-untyped-def]
-    """Contact in ASSEMBLIES with the flanks of both bodies."""
+    """Solve and store contact in ASSEMBLIES.
+
+    Parameters
+    ----------
+    flanks
+        Flanks of both bodies.
+    """
     config = facegear.load("config/concentric.yaml", results=None).config
     teeth, plan = pair(config.tooth_pair), replace(contact_plan(config.contact), torques=(TORQUE,))
     rows = []
-    posed = posed_contacts(teeth.design, teeth.materials, flanks, plan, list(ASSEMBLIES.values()))
-    for name, contact in zip(ASSEMBLIES, posed, strict=True):
-        known = {key: float(value[0]) for key, value in quantities(teeth.design, flanks, contact).items()}
-        rows.append({"assembly": name, **known, "ste_mean_m": 1e-6 * contact.ltca["ste_um"].mean()})
-    pd.DataFrame(rows).to_csv(LOADED, index=False)
+    contacts = posed_contacts(teeth.design, teeth.materials, flanks, plan, list(ASSEMBLIES.values()))
+    for name, contact in zip(ASSEMBLIES, contacts, strict=True):
+        values = {key: float(value[0]) for key, value in quantities(teeth.design, flanks, contact).items()}
+        rows.append({"assembly": name, **values, "ste_mean_m": 1e-6 * contact.ltca["ste_um"].mean()})
+    pd.DataFrame(rows).to_csv(LOADED_CONTACT, index=False)
 
 
 if __name__ == "__main__":

@@ -36,8 +36,8 @@ def main() -> None:
     sizes = MeshSizes(*(module * size for size in LEVELS[LEVEL]))
     with tempfile.TemporaryDirectory() as folder:
         table = posed_peer_study(teeth.design, teeth.materials, torque, OFFSETS, RADIUS, sizes, Path(folder))
-    kept = table.drop(columns=["level", "cpu_seconds", "memory_gb"])
-    kept.round(DIGITS).to_csv(TABLE, index=False)
+    values = table.drop(columns=["level", "cpu_seconds", "memory_gb"])
+    values.round(DIGITS).to_csv(TABLE, index=False)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.config.dynamics import SWEPT
+from facegear.config.dynamics import SWEEP_ACCURACY
 from validation.ratios.points import EXAMPLE, ROOT
 from validation.ratios.run import BASELINE, Job, is_regular, read_answers, relative_change
 from validation.ratios.trees import Tree, checked_out, present
@@ -126,7 +126,7 @@ class Case:
     @property
     def accuracy(self) -> dict[str, Any]:
         """Changes by which the choice of the steps moves no digit that counts."""
-        sweep = {**SWEPT.model_dump(), "tolerance": STEP_TOLERANCE}
+        sweep = {**SWEEP_ACCURACY.model_dump(), "tolerance": STEP_TOLERANCE}
         return {"dynamics.accuracy.tolerance": STEP_TOLERANCE, "dynamics.sweep.accuracy": sweep}
 
     def job(self, tree: Tree) -> dict[str, Any]:

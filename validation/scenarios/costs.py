@@ -1,4 +1,4 @@
-"""What a sample costs: time of a core, bytes on disk, memory of a job."""
+"""Cost of a sample: time of a core, bytes on disk, memory of a job."""
 
 import resource
 import time
@@ -10,29 +10,41 @@ import pandas as pd
 
 from facegear.io import columnar
 from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 
 MODELS = ("quasi_static", "dynamic")
-WANTED, CORES = 10_000, 2
+SAMPLES_EXTRAPOLATED, CORES = 10_000, 2
 FEWER = 40
 
 
 def costs(machine: SampledMachine, samples: int) -> pd.DataFrame:
-    """One row a model, from `samples` of them in this process, compiled before; a fortieth of them where each
-    has a contact analysis of its own.
+    """Measure the cost of samples, one row a model.
 
-    `minutes_extrapolated` is what WANTED samples would take on CORES idle cores, start-up of the jobs left
-    out.
+    They are computed in this process, compiled before; a fortieth of them where each has a contact analysis
+    of its own. `minutes_extrapolated` is the time of WANTED samples on CORES idle cores, start-up of the jobs
+    left out.
+
+    Parameters
+    ----------
+    machine : SampledMachine
+        The machine and its tolerances.
+    samples : int
+        Number of samples.
+
+    Returns
+    -------
+    DataFrame
+        One row for each model.
     """
     rows, samples = [], samples if machine.pair is None else max(samples // FEWER, 1)
     for model in MODELS:
-        given = replace(machine, tolerances={**machine.tolerances, "model": model})
-        chunk_of(given, "samples", samples, samples)
+        arguments = replace(machine, tolerances={**machine.tolerances, "model": model})
+        chunk_of(arguments, "samples", samples, samples)
         start = time.process_time()
-        chunk = chunk_of(replace(given), "samples", 0, samples - 1).content["chunk"]
+        chunk = chunk_of(replace(arguments), "samples", 0, samples - 1).content["chunk"]
         seconds = (time.process_time() - start) / samples
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-        minutes = seconds * WANTED / CORES / 60.0
+        minutes = seconds * SAMPLES_EXTRAPOLATED / CORES / 60.0
         rows.append((model, samples, 1e3 * seconds, minutes, _bytes(chunk) / samples, memory))
     return pd.DataFrame(
         rows,

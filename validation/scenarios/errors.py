@@ -11,13 +11,25 @@ from facegear.scenarios.sampling import Cause, Population, index_samples, sample
 from facegear.scenarios.statistics import percentile, sobol_indices
 
 WEIGHTS = np.array([4.0, 3.0, 2.0, 1.0, 0.5, 0.25])
+"""Weights of the causes in the linear machine."""
 SEEDS = range(6)
+"""Seeds of the samples."""
 
 
 def statistics_errors(sizes: Sequence[int]) -> pd.DataFrame:
-    """RMS over seeds: percentiles (share of the spread above the mean), total indices (of the largest one).
+    """Compute the RMS over seeds of errors: percentiles (share of the spread above the mean), total indices.
 
-    `sizes`: samples, and blocks of the design for indices, powers of two.
+    Errors of total indices are relative to the largest one.
+
+    Parameters
+    ----------
+    sizes : Sequence[int]
+        Numbers of samples, and of blocks of the design for indices, powers of two.
+
+    Returns
+    -------
+    DataFrame
+        One row for each size.
     """
     spread = float(np.linalg.norm(WEIGHTS))
     exact = WEIGHTS**2 / spread**2
@@ -28,8 +40,8 @@ def statistics_errors(sizes: Sequence[int]) -> pd.DataFrame:
             population = _population(seed)
             values = samples(population, 0, size) @ WEIGHTS
             for level in (95, 99):
-                closed = spread * NormalDist().inv_cdf(level / 100.0)
-                estimates[f"p{level}"].append(percentile(values, level / 100.0).value / closed - 1.0)
+                exact_value = spread * NormalDist().inv_cdf(level / 100.0)
+                estimates[f"p{level}"].append(percentile(values, level / 100.0).value / exact_value - 1.0)
             design = index_samples(population, 0, size * (WEIGHTS.size + 2)) @ WEIGHTS
             indices = sobol_indices(design, WEIGHTS.size, resamples=1)
             estimates["total_index"].append(indices.total[0].value / exact[0] - 1.0)

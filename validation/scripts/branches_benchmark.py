@@ -10,10 +10,10 @@ from validation.dynamics.branches import DAMPING, ERRORS, TOLERANCES, accuracy, 
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = machine_inputs({**params.machine, "harmonics": harmonics}).build()
-    errors = accuracy(built, params.speed_rpm, Progress("tolerances", 2 * len(TOLERANCES)).step)
-    prices = costs(built, params.speed_rpm, Progress("dampings", len(ERRORS) * len(DAMPING)).step)
+    machine = machine_inputs({**params.machine, "harmonics": harmonics}).build()
+    errors = accuracy(machine, params.speed_rpm, Progress("tolerances", 2 * len(TOLERANCES)).step)
+    prices = costs(machine, params.speed_rpm, Progress("dampings", len(ERRORS) * len(DAMPING)).step)
     tables.write(snakemake.output.table, errors)
     tables.write(snakemake.output.costs, prices)
-    settled = prices[prices["settled"]]
-    run.summary(f"an orbit costs down to 1/{settled['ratio'].max():.0f} of settling by integration")
+    is_settled = prices[prices["settled"]]
+    run.summary(f"an orbit costs down to 1/{is_settled['ratio'].max():.0f} of settling by integration")

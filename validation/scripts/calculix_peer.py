@@ -1,4 +1,4 @@
-"""The same contact by CalculiX, or a message where it is not installed."""
+"""Contact by CalculiX on the same pair, or a message where it is not installed."""
 
 from pathlib import Path
 

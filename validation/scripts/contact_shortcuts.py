@@ -1,4 +1,4 @@
-"""What the usual shortcuts do to mean and first harmonic of the mesh stiffness."""
+"""Effect of the usual shortcuts on mean and first harmonic of the mesh stiffness."""
 
 import pandas as pd
 

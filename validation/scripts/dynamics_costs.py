@@ -11,8 +11,8 @@ from validation.dynamics.costs import sweep_costs
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = machine_inputs({**params.machine, "harmonics": harmonics}).build()
-    costs = sweep_costs(built, sweep_plan(Sweep.of_config(params.sweep)), Progress("settings", 20).step)
+    machine = machine_inputs({**params.machine, "harmonics": harmonics}).build()
+    costs = sweep_costs(machine, sweep_plan(Sweep.of_config(params.sweep)), Progress("settings", 20).step)
     tables.write(snakemake.output.sweep, costs)
     ratio = (costs["plain_seconds_per_speed"] / costs["seconds_per_speed"]).max()
     run.summary(

@@ -21,16 +21,16 @@ from validation.plots.work_precision import work_precision_diagram
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = machine_inputs({**params.machine, "harmonics": harmonics}).build()
+    machine = machine_inputs({**params.machine, "harmonics": harmonics}).build()
     load_dependent = facegear.example()._machine()
     problems = [
-        *machine_problems(built, params.speed_rpm),
+        *machine_problems(machine, params.speed_rpm),
         oscillator_problem(),
-        *law_problems(built, load_dependent, params.speed_rpm),
+        *law_problems(machine, load_dependent, params.speed_rpm),
     ]
     comparisons = [(problems, all_methods()), (tangent_problems(problems), tangent_methods())]
     step = Progress("methods", sum(len(first) * len(second) for first, second in comparisons)).step
-    table = pd.concat([work_precision(*both, Budget(), step) for both in comparisons])
+    table = pd.concat([work_precision(*comparison, Budget(), step) for comparison in comparisons])
     tables.write(output.table, table)
     save_drawn(work_precision_diagram(table), output.svg, output.png)
     gains = [gain(table, problem, methods) for problems, methods in comparisons for problem in problems]

@@ -1,10 +1,10 @@
-"""What samples cost, and the error of their statistics against their number."""
+"""Cost of samples, and the error of their statistics against their number."""
 
 from facegear.contact.gear_flank import STORED
 from facegear.io import arrays, tables
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 from validation.scenarios.costs import costs
 from validation.scenarios.errors import statistics_errors
 
@@ -12,8 +12,8 @@ with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     flanks = [arrays.read(path, STORED) for path in snakemake.input.flanks]
-    sampled = SampledMachine.of_stage(harmonics=harmonics, flanks=flanks, **params.chunk)
-    table = costs(sampled, params.samples)
+    sampled_machine = SampledMachine.of_stage(harmonics=harmonics, flanks=flanks, **params.chunk)
+    table = costs(sampled_machine, params.samples)
     tables.write(snakemake.output.costs, table)
     tables.write(snakemake.output.errors, statistics_errors([2**power for power in range(7, 14)]))
     text = ", ".join(f"{row.model} {row.ms_a_sample:.3g} ms" for row in table.itertuples())

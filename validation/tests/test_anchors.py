@@ -11,7 +11,7 @@ from validation.anchors import (
     CONFIGS,
     KRANTZ,
     LARGEST_SHARE,
-    MEASURED,
+    TABLE,
     clocking_rows,
     clocking_window,
     published_rows,
@@ -21,7 +21,7 @@ from validation.anchors import (
 
 
 def stored():
-    return pd.read_csv(MEASURED, dtype=str, keep_default_na=False)
+    return pd.read_csv(TABLE, dtype=str, keep_default_na=False)
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in CONFIGS.glob("*.yaml")))

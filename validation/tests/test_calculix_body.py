@@ -9,7 +9,7 @@ from references import against, agrees
 
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.section import section_properties
-from validation.gear_body.calculix import frequencies_of, revolved, section
+from validation.gear_body.calculix import frequencies_of, revolve, section
 
 MEASURED = Path(__file__).parents[2] / "docs" / "measured" / "calculix_body.csv"
 SIGNS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]])
@@ -18,7 +18,7 @@ SIGNS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1]])
 def test_bricks_fill_the_volume_of_the_section_and_hold_its_bore():
     """By the determinant in the middle of every brick of straight edges."""
     shape = section()
-    bricks = revolved(body_mesh(shape, 1, 2.0), 48)
+    bricks = revolve(body_mesh(shape, 1, 2.0), 48)
     corners = bricks.points[bricks.bricks[:, :8]]
     local = np.concatenate([SIGNS, SIGNS * [1, 1, -1]]) / 8.0
     volumes = 8.0 * np.linalg.det(np.einsum("ni,bnj->bij", local, corners))
@@ -32,7 +32,7 @@ def test_bricks_fill_the_volume_of_the_section_and_hold_its_bore():
         np.testing.assert_allclose(bricks.points[bricks.bricks[:, middle]], ends, atol=1e-12)
     r = np.hypot(*bricks.points[bricks.bricks[:, 16:]].T[:2])
     np.testing.assert_allclose(r, np.hypot(*bricks.points[bricks.bricks[:, :4]].T[:2]), atol=1e-12)
-    assert np.allclose(np.hypot(*bricks.points[bricks.held].T[:2]), 0.12)
+    assert np.allclose(np.hypot(*bricks.points[bricks.fixed_points].T[:2]), 0.12)
 
 
 def test_frequencies_are_read_from_what_calculix_writes():

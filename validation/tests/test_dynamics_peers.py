@@ -12,8 +12,8 @@ from references import against, agrees
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.transmission.machine import FlankTables
 from facegear.transmission.teeth import GEOMETRIC
-from validation.dynamics.heyoka_peer import batch, scaled, trajectory
-from validation.dynamics.methods import all_methods, ours, rk4, tangent_methods
+from validation.dynamics.heyoka_peer import batch, scale_system, trajectory
+from validation.dynamics.methods import all_methods, rk4, run_ours, tangent_methods
 from validation.dynamics.problems import (
     SAMPLES,
     law_problems,
@@ -56,7 +56,7 @@ def test_compiled_and_plain_right_hand_sides_agree(problems):
 
 def test_every_method_converges_to_ours(problems):
     problem = problems[3]
-    exact = ours(problem, 1e-14)
+    exact = run_ours(problem, 1e-14)
     assert exact.shape == (problem.periods * SAMPLES, 1)
     for method in all_methods():
         setting = 1024 if method.name.startswith("RK4") else 1e-6
@@ -67,7 +67,7 @@ def test_fixed_steps_lose_their_order_where_contact_switches(problems):
     kept, lost = problems[0], problems[1]
 
     def gain(problem, coarsest):
-        exact = ours(problem, 1e-14)
+        exact = run_ours(problem, 1e-14)
         steps = coarsest * 2 ** np.arange(4)
         errors = [np.abs(rk4(problem, count)() - exact).max() for count in steps]
         return np.mean(np.log2(np.divide(errors[:-1], errors[1:])))
@@ -115,7 +115,7 @@ def test_heyoka_follows_the_same_motion_on_other_laws(number):
     loaded = replace(make_machine(layout, 700.0, 0.0), tables=2 * (FlankTables(table, table),))
     problem = replace(law_problems(make_machine(), loaded, 7500.0)[number], periods=4)
     system = problem.system
-    amounts = ours(problem, 1e-13) @ system.mesh_jacobian.T - system.upper
+    amounts = run_ours(problem, 1e-13) @ system.mesh_jacobian.T - system.upper
     beyond = (amounts[:, :, None] > system.law.levels.T).any(axis=1)
     assert beyond.any(axis=0)[: max(len(system.law.levels) - 1, 1)].all(), "all levels but the last are met"
     error, _ = error_of(problem, trajectory(heyoka)(problem, 1e-10)(), reference(problem))
@@ -138,7 +138,7 @@ def test_heyoka_carries_the_same_tangents(problems):
 
 def test_heyoka_is_refused_what_its_setup_leaves_out(problems):
     with pytest.raises(ValueError, match="flanks that only push"):
-        scaled(replace(problems[1].system, push_only=True))
+        scale_system(replace(problems[1].system, push_only=True))
 
 
 def test_an_rms_counts_as_right_only_where_every_finer_setting_is_right_too():

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.growth.curves import CURVES
-from validation.growth.machines import falling, shipped
-from validation.growth.measure import exponents, measured
+from validation.growth.machines import decaying_harmonics, shipped_machine
+from validation.growth.measure import exponents, measure_point
 
 
 @given(st.floats(-1.0, 3.0), st.floats(1e-6, 1e3), st.floats(-0.5, 2.0))
@@ -43,13 +43,13 @@ def test_curves_go_over_several_sizes_and_say_what_bends_them():
 
 
 def test_a_point_is_measured_with_its_size_time_and_memory():
-    point = measured("harmonics", 1)
+    point = measure_point("harmonics", 1)
     assert point["size"] == CURVES["harmonics"].values[1]
     assert point["seconds"] > 0.0 and point["peak_mb"] > point["own_mb"] >= 0.0
 
 
 def test_harmonics_that_are_added_leave_mean_and_first_amplitude_of_the_stiffness():
-    given_series = shipped("config/paper.yaml").stiffness
-    more = falling(given_series, 40)
+    given_series = shipped_machine("config/paper.yaml").stiffness
+    more = decaying_harmonics(given_series, 40)
     assert more.order == 40 and more.mean == given_series.mean
     assert more.amplitudes[1] == pytest.approx(given_series.amplitudes[1])

@@ -19,7 +19,7 @@ def cut_out():
 
 
 def volumes(nodes, cubes):
-    """Of hexahedra (c, 8), by the six pyramids from each one's middle over its faces."""
+    """Volumes of hexahedra (c, 8), by the six pyramids from each one's middle over its faces."""
     corner = nodes[cubes]
     centre = corner.mean(axis=1)
     faces = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -59,10 +59,10 @@ def test_only_the_supports_are_moved_and_the_pinions_turns_about_its_axis_toward
     pinion, gear = cut_out.teeth.values()
     count = len(pinion.nodes)
     held = np.concatenate([held_nodes(pinion), count + held_nodes(gear)])
-    assert (np.flatnonzero(~np.isnan(bodies.moved[:, 0])) == np.sort(held)).all()
-    assert (bodies.moved[count + held_nodes(gear)] == 0.0).all()
+    assert (np.flatnonzero(~np.isnan(bodies.support_displacement[:, 0])) == np.sort(held)).all()
+    assert (bodies.support_displacement[count + held_nodes(gear)] == 0.0).all()
     x, _, z = bodies.nodes[held_nodes(pinion)].T
-    u, v, w = bodies.moved[held_nodes(pinion)].T
+    u, v, w = bodies.support_displacement[held_nodes(pinion)].T
     np.testing.assert_allclose(x * u + z * w, 0.0, atol=1e-12)
     np.testing.assert_allclose(np.hypot(u, w), TURN * np.hypot(x, z), rtol=1e-12)
     assert (v == 0.0).all()
@@ -76,7 +76,7 @@ def test_only_the_supports_are_moved_and_the_pinions_turns_about_its_axis_toward
 
 @pytest.mark.parametrize("body", ["pinion", "face_gear"])
 def test_a_small_rigid_motion_stresses_no_fillet_and_a_growing_body_does(cut_out, body):
-    points = cut_out.placed(body)
+    points = cut_out.node_positions(body)
     rigid = 1e-6 * np.array([1.0, -2.0, 3.0]) + np.cross([1e-4, 2e-4, -3e-4], points)
     assert abs(cut_out.root_stress(body, rigid)) < 1e-4 * STEEL.young_modulus * 1e-4
     grown = cut_out.root_stress(body, 1e-4 * points)

@@ -8,7 +8,7 @@ import pytest
 from facegear._kernels import VARIABLE
 from validation.platforms import (
     CASES,
-    MEASURED,
+    DIFFERENCES,
     OUTCOMES,
     PLATFORMS,
     TESTS,
@@ -46,7 +46,7 @@ def test_a_process_that_a_signal_ended_says_which():
 
 
 def test_the_page_has_a_row_for_each_platform_that_was_measured():
-    measured = pd.read_csv(MEASURED)
+    measured = pd.read_csv(DIFFERENCES)
     _, *others = PLATFORMS
     names = measured["platform"].drop_duplicates().tolist()
     assert names == [name for name in others if name in names]

@@ -1,4 +1,4 @@
-"""What load sharing costs, and how far its means are off."""
+"""Cost of load sharing, and error of its means."""
 
 import numpy as np
 import pytest

@@ -16,7 +16,7 @@ from facegear.provenance.fingerprint import loaded_modules
 from facegear.results.base import Result
 from validation.references import (
     COLUMNS,
-    DECLARED,
+    DECLARED_COLUMNS,
     INDEPENDENT,
     METHOD_TITLES,
     NO_LESS,
@@ -69,8 +69,10 @@ def test_a_capability_that_is_checked_is_a_stage_or_a_method():
 def test_the_stored_references_are_those_that_the_tests_declare(stored):
     """Otherwise `make verification` stores them anew."""
     assert tuple(stored.columns) == COLUMNS
-    declared = {tuple(getattr(one, key) for key in ("test", *DECLARED)) for one in DECLARATIONS.values()}
-    assert {tuple(row) for row in stored[["test", *DECLARED]].itertuples(index=False)} == declared
+    declared = {
+        tuple(getattr(one, key) for key in ("test", *DECLARED_COLUMNS)) for one in DECLARATIONS.values()
+    }
+    assert {tuple(row) for row in stored[["test", *DECLARED_COLUMNS]].itertuples(index=False)} == declared
 
 
 def test_stored_values_lie_within_their_tolerances(stored):

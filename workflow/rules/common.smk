@@ -15,7 +15,7 @@ if imported is not None and not Path(imported.__file__).is_relative_to(ROOT):
         del sys.modules[name]
 
 from facegear.config.cases import expand_cases
-from facegear.config.load import extended, load_config
+from facegear.config.load import base_path, load_config
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.pipeline.needs import require_section, resolved_needs, shared_sources, value_at

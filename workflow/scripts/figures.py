@@ -16,11 +16,11 @@ with stage(snakemake) as run:
     stages = import_module("facegear.pipeline.table").STAGES  # as in stage.py
     paths = list(zip(snakemake.output.svg, snakemake.output.json, strict=True))
     for name in snakemake.params.stages:
-        drawn = stages[name].figures
-        inputs = {key.removeprefix(f"{name}__"): given for key, given in snakemake.input.items()}
-        draw = load(drawn.draw)
+        figure_row = stages[name].figures
+        inputs = {key.removeprefix(f"{name}__"): path for key, path in snakemake.input.items()}
+        draw = load(figure_row.draw)
         needs = typed_arguments(draw, snakemake.params.needs[name])
-        for figure in draw(**read_all(drawn.upstream, inputs, stages), **needs):
+        for figure in draw(**read_all(figure_row.upstream, inputs, stages), **needs):
             save(figure, *paths.pop(0))
     if paths:
         raise ValueError(f"not drawn: {paths}")

@@ -26,10 +26,10 @@ with stage(snakemake) as run:
     view, loads = None, None
     if snakemake.input.loads:
         loads = arrays.read(snakemake.input.loads[0], PRESSURE_ARRAYS)
-        given = snakemake.input.stress
-        stress = arrays.read(given[0], ROOT_STRESS_ARRAYS) if given else None
-        given = snakemake.input.friction
-        friction = arrays.read(given[0], LOCAL_ARRAYS) if given else None
+        paths = snakemake.input.stress
+        stress = arrays.read(paths[0], ROOT_STRESS_ARRAYS) if paths else None
+        paths = snakemake.input.friction
+        friction = arrays.read(paths[0], LOCAL_ARRAYS) if paths else None
         design = tooth_pair(ToothPair.of_config(snakemake.params.values["tooth_pair"])).design
         view = pair_view(design, loads, frames["ltca"], stress, friction)
     bodies = None
@@ -38,8 +38,8 @@ with stage(snakemake) as run:
         bodies = body_view(modes, arrays.read(snakemake.input.shapes[0], {}))
     values = snakemake.params.values
     base = Base(*snakemake.params.base) if snakemake.params.base else None
-    said = notes({**values, "reproduction": values["reproduction"] or None})
-    page = case_report(values, frames, pictures, manifests, pair, view, bodies, base, said, loads)
+    statements = notes({**values, "reproduction": values["reproduction"] or None})
+    page = case_report(values, frames, pictures, manifests, pair, view, bodies, base, statements, loads)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(f"{len(pictures)} pictures, {len(frames)} tables, {len(page) / 1e6:.1f} MB")

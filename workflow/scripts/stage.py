@@ -17,10 +17,10 @@ with job(snakemake):
     wildcards = {name: snakemake.wildcards[name] for name in row.wildcards}
     for part in parts_of(snakemake):
         with recorded(part) as run:
-            given = {**read_all(row.upstream, part.input, stages), **part.params["needs"]}
+            arguments = {**read_all(row.upstream, part.input, stages), **part.params["needs"]}
             partial = Path(part.output[row.resumable]).with_suffix(".partial") if row.resumable else None
-            resumed = {"partial": partial, "code": code} if partial else {}
-            outcome = call(row, given, **row.typed(wildcards), **resumed)
+            resume_options = {"partial": partial, "code": code} if partial else {}
+            outcome = call(row, arguments, **row.typed(wildcards), **resume_options)
             write_stage(row, outcome.content, part.output)
             if partial:
                 partial.unlink()

@@ -90,14 +90,14 @@ def other_starts(integrator: Integrator, start: Array, aside: float, first: Sett
 def wandering(integrator: Integrator, settled: Settled, period: int) -> int:
     """Count the periods of a run before the last change over a period that is not small.
 
-    They are 0 if there are but few. Of a run so long that its first states are not kept any more, nobody can
-    say that it went straight to its orbit: it counts as wandering until its record begins.
+    They are 0 if there are but few. Of a run so long that its first states are not kept any more, what counts
+    is when it was seen for the last time to be near no periodic motion.
     """
     large = _large(integrator, settled, period)
     if large.sum() > WANDERED:
         quiet = int(large[::-1].argmax())
         return max(settled.periods_run - quiet, 0)
-    return max(settled.periods_run - len(settled.ends), 0)
+    return settled.aperiodic_until if settled.periods_run > len(settled.ends) else 0
 
 
 def _large(integrator: Integrator, settled: Settled, period: int) -> Mask:

@@ -9,7 +9,7 @@ from facegear.dynamics.courses import Course, alone
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
+from facegear.dynamics.steady_state.closing import SMALL, TREND, VERY_SMALL, Closing, closed, closing
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.orbits import (
     MATRICES,
@@ -47,7 +47,8 @@ class Settled:
     """Where a run came to rest: state (2, n) by phase, period (0: none found), residual over it, periods run.
 
     ends (periods, 2, n): the last states at the end of a period. orbit: with its multipliers, if refined.
-    known: whether it is the orbit that was known before.
+    known: whether it is the orbit that was known before. aperiodic_until: periods after which the run was
+    seen for the last time to be near no periodic motion.
     """
 
     state: Array
@@ -57,6 +58,7 @@ class Settled:
     periods_run: int
     ends: Array
     known: bool = False
+    aperiodic_until: int = 0
 
 
 def settle(
@@ -107,7 +109,7 @@ class SettlingRun:
         if ends is not None:
             self.passed.room_for(len(ends))[:] = ends
         self.known = len(self.ends)
-        self.periods_run = self.kicks = self.newton_cost = 0
+        self.periods_run = self.kicks = self.newton_cost = self.aperiodic_until = 0
         self.orbit: Orbit | None = None
         self.orbit_at = 0
         self.tried: dict[int, float] = {}
@@ -128,6 +130,8 @@ class SettlingRun:
                 continue
             last = self.periods_run >= self.settings.settle
             near = closing(self.integrator, self.ends, self.settings)
+            if near.residual > SMALL:
+                self.aperiodic_until = self.periods_run
             result = self._refined(near, last) if self.settings.refine else None
             if result is None and len(self.ends):
                 result = self._by_itself(near, last)
@@ -259,7 +263,9 @@ class SettlingRun:
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> Settled:
         state = self.state if orbit is None else orbit.state
         residual = residual if orbit is None else orbit.residual
-        return Settled(state, period, residual, orbit, self.periods_run, self.ends)
+        return Settled(
+            state, period, residual, orbit, self.periods_run, self.ends, aperiodic_until=self.aperiodic_until
+        )
 
 
 def _blocks(integrator: Integrator, settings: Settings) -> tuple[int, int]:

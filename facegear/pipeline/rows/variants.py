@@ -10,7 +10,7 @@ SAMPLED: Needs = {
     **SHARING,
     "tolerances": CAUSES,
     "pair": Computed(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
-    "lubricated": Computed(asked.lubricated_samples, ("lubrication", "tooth_pair")),
+    "lubrication_sections": Computed(asked.lubricated_samples, ("lubrication", "tooth_pair")),
     "solid": SOLID,
 }
 SAMPLED_FROM = {

@@ -42,7 +42,7 @@ def test_good_files_options_and_targets_after_a_dash_pass():
 
 @pytest.mark.parametrize("profile", ["default", "local", "slurm"])
 def test_every_profile_asks(tmp_path, profile):
-    """As Snakemake does it: the profile is a template, whose definitions are run when it is read."""
+    """Read the profile like Snakemake: it is a template, whose definitions are run when it is read."""
     path = ROOT / "workflow" / "profiles" / profile / "config.yaml"
     code = (
         "import sys, yte; sys.argv = ['snakemake', '--configfile', 'none.yaml']; "

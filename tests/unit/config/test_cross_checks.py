@@ -1,4 +1,4 @@
-"""What the sections of a config demand of one another, told before any work."""
+"""Demands of the sections of a config on one another, told before any work."""
 
 from copy import deepcopy
 from pathlib import Path
@@ -10,7 +10,7 @@ from facegear.config.cases import expand_cases
 from facegear.config.contact import contact_plan
 from facegear.config.load import load_config
 from facegear.config.mesh import mesh_sizes
-from facegear.config.model import Config, resolved
+from facegear.config.model import Config, resolved_values
 from facegear.config.notes import notes
 from facegear.config.tooth_pair import pair_design
 from facegear.contact.resolution import estimated_memory
@@ -160,9 +160,9 @@ def test_single_teeth_that_deviate_are_reported_when_a_run_starts():
 
 def test_the_dynamics_take_the_backlash_of_the_teeth_as_assembled():
     """The pair of docs/tutorials/second_machine.md: 120 um of thinning, moved apart by assembly errors."""
-    found = resolved(parse(Config, changed(TWO, transmission__backlash_um=None, studies=[])))
+    found = resolved_values(parse(Config, changed(TWO, transmission__backlash_um=None, studies=[])))
     assert found["transmission"]["backlash_um"] == pytest.approx(130.518, abs=0.01)
-    nominal = resolved(parse(Config, changed(QUICK, transmission__backlash_um=None, studies=[])))
+    nominal = resolved_values(parse(Config, changed(QUICK, transmission__backlash_um=None, studies=[])))
     assert nominal["transmission"]["backlash_um"] == 100.0
 
 
@@ -174,8 +174,8 @@ def test_a_study_of_the_teeth_moves_the_backlash_of_the_dynamics_with_them():
 
 
 def test_a_tooth_pair_alone_is_a_config():
-    """Some twenty keys of the transmission had to be invented by whoever wanted tooth contact only."""
-    found = resolved(parse(Config, {"case": "teeth", "tooth_pair": QUICK["tooth_pair"]}))
+    """Whoever wanted tooth contact only had to invent some twenty keys of the transmission."""
+    found = resolved_values(parse(Config, {"case": "teeth", "tooth_pair": QUICK["tooth_pair"]}))
     assert found["transmission"] is None
     assert found["mesh_stiffness"]["torque_n_m"] == found["contact"]["torques_n_m"][-1]
 

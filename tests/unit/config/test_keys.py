@@ -1,4 +1,4 @@
-"""What a computation refuses in its own words is printed with the key of the config."""
+"""Refusals of a computation in its own words are printed with the key of the config."""
 
 import json
 from pathlib import Path

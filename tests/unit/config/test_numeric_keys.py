@@ -8,7 +8,7 @@ import pytest
 
 from facegear.config.base import parse
 from facegear.config.load import load_config
-from facegear.config.model import Config, resolved
+from facegear.config.model import Config, resolved_values
 from facegear.config.reference import reference
 from facegear.errors import ConfigErrors
 
@@ -79,7 +79,7 @@ def test_an_absurd_number_is_used_or_refused_in_clear_lines_wherever_it_stands(n
     """Sizes of 1e300 ended in an OverflowError."""
     for values, path, _ in places().values():
         try:
-            resolved(parse(Config, changed(values, path, number)))
+            resolved_values(parse(Config, changed(values, path, number)))
         except ConfigErrors as error:
             assert error.lines and all("\n" not in line for line in error.lines), path
 
@@ -89,7 +89,7 @@ def test_a_number_at_its_bound_is_used_or_refused_in_clear_lines(end):
     for values, path, form in places().values():
         bound = form.get(end, form.get(f"exclusive{end.title()}"))
         try:
-            resolved(parse(Config, changed(values, path, bound)))
+            resolved_values(parse(Config, changed(values, path, bound)))
         except ConfigErrors as error:
             assert error.lines and all("\n" not in line for line in error.lines), path
 

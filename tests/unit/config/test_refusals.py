@@ -1,4 +1,4 @@
-"""What no machine can be is refused before any work: every mistake at once, each line saying what must be."""
+"""Impossible machines are refused before any work: every mistake at once, each line saying what must be."""
 
 import shutil
 from pathlib import Path
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import facegear
 from facegear.__main__ import main
-from facegear.config.base import RENAMED, parse
+from facegear.config.base import NEW_KEYS, parse
 from facegear.config.cases import expand_cases, set_key
 from facegear.config.load import load_config
 from facegear.config.model import Config
@@ -73,7 +73,7 @@ def place_of(key, values):
     return None
 
 
-@pytest.mark.parametrize(("old", "new"), sorted(RENAMED.items()))
+@pytest.mark.parametrize(("old", "new"), sorted(NEW_KEYS.items()))
 def test_a_key_of_an_earlier_version_is_refused_with_its_name_of_today(old, new):
     """In the file itself, and as the dotted key of a change or of a study."""
     shipped = [load_config(CONFIG / f"{name}.yaml").model_dump(mode="json") for name in RENAMED_IN]

@@ -9,7 +9,7 @@ from three_pinions import STIFFNESS, TEETH, TEXT
 
 import facegear
 from facegear.config.base import parse
-from facegear.config.changes import movable, moved
+from facegear.config.changes import add_changes, movable
 from facegear.config.lumped_model import machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
@@ -80,7 +80,7 @@ def test_turning_masses_go_to_the_pinions_of_a_role_and_to_the_output():
 def test_a_stiffness_of_a_bearing_may_vary_from_machine_to_machine():
     key = "transmission.shafts.input.bearings.0.radial_n_per_m"
     values = {"transmission": section(shafts={"input": shaft()})}
-    softer = moved(movable(values, [key]), {key: -0.5e8})["transmission"]
+    softer = add_changes(movable(values, [key]), {key: -0.5e8})["transmission"]
     found = machine(Transmission.of_config(softer), TEETH, STIFFNESS).layout.pinions[0].body.bearing[0]
     assert found == pytest.approx(1.0 / (1.0 / 2.170162e8 + (7 / 12) ** 2 * (1e-8 - 1.0 / 1.5e8)), rel=1e-6)
 

@@ -11,7 +11,7 @@ from three_pinions import STIFFNESS, TEETH, TEXT
 import facegear
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable, require_room
-from facegear.config.changes import movable, moved
+from facegear.config.changes import add_changes, movable
 from facegear.config.lumped_model import machine
 from facegear.config.notes import notes
 from facegear.config.transmission import Transmission
@@ -170,7 +170,7 @@ def test_a_tolerance_adds_to_a_clearance_that_is_given_from_side_to_side(key, cl
     body, key = {**section()["pinion"], "clearance_diametral_um": 40}, f"transmission.{key}"
     given = section(pinion=body, single_pinions={"one": {"clearance_diametral_um": 30}})
     start = movable({"transmission": parse(Transmission, given).model_dump(mode="json")}, [key])
-    sample = parse(Transmission, moved(start, {key: 5.0})["transmission"])
+    sample = parse(Transmission, add_changes(start, {key: 5.0})["transmission"])
     found = machine(sample, TEETH, STIFFNESS).imperfections.bearing_clearance
     np.testing.assert_allclose(found, 1e-6 * np.array(clearance_um))
 
@@ -180,7 +180,7 @@ def test_a_sample_shares_with_the_nominal_machine_what_it_does_not_change_and_le
     keys = [f"transmission.single_pinions.{name}.clearance_um" for name in ("one", "two")]
     start = movable({"transmission": parse(Transmission, given).model_dump(mode="json")}, keys)
     before = deepcopy(start)
-    sample = moved(start, {keys[0]: 5.0, keys[1]: -5.0})
+    sample = add_changes(start, {keys[0]: 5.0, keys[1]: -5.0})
     assert start == before
     own = sample["transmission"]["single_pinions"]
     assert own["one"]["clearance_um"] == 35.0

@@ -3,7 +3,7 @@
 import pytest
 
 from facegear.config.base import parse
-from facegear.config.cases import numbered, study_points
+from facegear.config.cases import find_numeric_axis, study_points
 from facegear.config.studies import Study
 
 WEB = "transmission.face_gear.body.web"
@@ -37,7 +37,7 @@ def points(*changes):
     ],
 )
 def test_points_stand_over_the_number_that_all_of_them_change(axis, key, numbers):
-    one = numbered(study(axis))
+    one = find_numeric_axis(study(axis))
     assert one.key == key
     assert [value for value, _ in one.points.values()] == numbers
     assert list(one.points) == list(study_points(study(axis)))
@@ -50,7 +50,7 @@ def test_the_points_of_the_other_axis_have_curves_of_their_own():
         "values": ["constant_load", "load_dependent"],
     }
     both = study(law, {"label": "web", "key": WEB, "values": [8, 10, 12]})
-    one = numbered(both)
+    one = find_numeric_axis(both)
     assert {beside for _, beside in one.points.values()} == {
         "mesh law = constant_load",
         "mesh law = load_dependent",
@@ -69,4 +69,4 @@ def test_the_points_of_the_other_axis_have_curves_of_their_own():
     ],
 )
 def test_words_switches_and_two_points_make_no_curve(axis):
-    assert numbered(study(axis)) is None
+    assert find_numeric_axis(study(axis)) is None

@@ -1,4 +1,4 @@
-"""What the finite elements of both bodies answer to the contact's forces."""
+"""Response of the finite elements of both bodies to the contact's forces."""
 
 from dataclasses import replace
 from math import pi

@@ -1,4 +1,4 @@
-"""What may touch: no hat that could carry load is left out, however few the solution is sought among."""
+"""Candidates of contact: no hat that could carry load is left out, however few the solver searches."""
 
 from dataclasses import replace
 

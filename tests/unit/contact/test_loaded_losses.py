@@ -14,14 +14,14 @@ from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pressure import flank_pressure
 from facegear.contact.tables import pressure_arrays
 from facegear.geometry.placement import mirrored
+from facegear.lubrication.contact_points import contact_points, loaded_contacts, stored_lines
 from facegear.lubrication.excitation import friction_ratios
 from facegear.lubrication.friction import BenedictKelley, Constant, Doleschel, Schlenk, Xu
 from facegear.lubrication.heat import TooHot, running
 from facegear.lubrication.kinematics import slip, spins
 from facegear.lubrication.loss import hat_slip, loss_factors
 from facegear.lubrication.machine_loss import LoadedPair, MeshLoads, machine_loss
-from facegear.lubrication.places import loaded_contacts, places, stored_lines
-from facegear.lubrication.reduction import Condition, ReducedPair, reduced
+from facegear.lubrication.reduction import Condition, ReducedPair, reduce_contacts
 from facegear.lubrication.request import STEEL as HEATED
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication
 
@@ -44,7 +44,7 @@ def loaded(model_of):
     arrays, unloaded = stored(model, 32, TORQUES)
     lines = stored_lines(model.design, arrays, unloaded)
     hats = hat_slip(model.design, arrays)
-    contacts = loaded_contacts(places(model.design, arrays, lines, MODULUS), hats)
+    contacts = loaded_contacts(contact_points(model.design, arrays, lines, MODULUS), hats)
     return model.design, hats, {contact.torque: contact for contact in contacts}
 
 
@@ -101,7 +101,7 @@ def test_power_in_less_power_out_is_the_friction_and_the_closing_work(loaded):
             point = one.point[at]
             taken = pinion.torque(point, force) * pinion.speed
             given = gear.torque(point, force) * gear.speed
-            closing = float((one.force * one.closing)[at].sum())
+            closing = float((one.force * one.normal_velocity)[at].sum())
             lost = mu * factor.at[0, number] * torque
             agrees("power lost, W per rad/s", taken - given, lost + closing, absolute=1e-12 * torque)
 
@@ -146,12 +146,13 @@ def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
 def test_largest_flash_and_thinnest_film_are_the_reference_s(
     loaded, torque, largest, place, thinnest, kept, ratio
 ):
-    """Those of the default mesh; here planes lie closer, so that the hottest place lies nearer to an edge.
+    """The reference is of the default mesh; here planes lie closer, so that the hottest place lies nearer to
+    an edge.
 
     The thinnest film at 1000 N m lies in a plane whose fillet touches in this pair without backlash.
     """
     design, _, contacts = loaded
-    one = contacts[torque].places
+    one = contacts[torque].points
     state = running(contacts[torque], SPEED, lubrication(design, Constant(0.05)))
     hottest = np.flatnonzero(one.inside)[state.flash[one.inside].argmax()]
     agrees("largest flash temperature, K", state.flash[hottest], largest, relative=0.04)
@@ -228,11 +229,11 @@ def test_the_loads_that_friction_follows_carry_the_whole_force_of_every_line(loa
     """The smoothed ones carry 98 %, so that coefficients came out 0.4 % low."""
     _, _, contacts = loaded
     for one in contacts.values():
-        spots, hats = one.places, one.hats
+        spots, hats = one.points, one.hats
         for position, tooth in np.unique(np.stack([spots.position, spots.tooth], axis=1), axis=0):
             on = (spots.position == position) & (spots.tooth == tooth)
             force = hats.force[(hats.position == position) & (hats.tooth == tooth)].sum()
-            assert (spots.carried * spots.length)[on].sum() == pytest.approx(force, rel=1e-12)
+            assert (spots.scaled_load * spots.length)[on].sum() == pytest.approx(force, rel=1e-12)
         assert (spots.line_load * spots.length).sum() < 0.995 * hats.force.sum()
 
 
@@ -273,8 +274,8 @@ def test_few_places_lose_heat_and_thin_out_as_all_places_of_the_contact_do(loade
         rise = (0.618 * number) % 1.0 * (known.oil.flash_point - known.oil_temperature)
         warm = bulk.temperature if isinstance(bulk, GivenBulk) else known.oil_temperature + rise
         conditions.append(Condition(SPEED * (0.9 + 0.2 * draw()), known, warm))
-    few = reduced(pair, conditions)
-    assert few.weights.size < 0.05 * sum(one.places.plane.size for one in pair)
+    few = reduce_contacts(pair, conditions)
+    assert few.weights.size < 0.05 * sum(one.points.plane.size for one in pair)
     assert (few.weights > 0.0).all()
     for _ in range(2):
         known, speed = varied(start, draw(3)), SPEED * (0.9 + 0.2 * draw())
@@ -290,10 +291,10 @@ def test_a_hat_takes_the_value_of_its_own_plane_or_the_nearest_of_its_line(loade
     one = contacts[1000.0]
     near = one.nearest >= 0
     assert near.mean() > 0.99
-    stages = one.at_hats(one.places.position + 10.0 * one.places.tooth)[near]
+    stages = one.at_hats(one.points.position + 10.0 * one.points.tooth)[near]
     assert stages == pytest.approx((one.hats.position + 10.0 * one.hats.tooth)[near], abs=1e-12)
-    planes = one.at_hats(one.places.plane.astype(float))[near]
-    keys = set(zip(one.places.position, one.places.tooth, one.places.plane, strict=True))
+    planes = one.at_hats(one.points.plane.astype(float))[near]
+    keys = set(zip(one.points.position, one.points.tooth, one.points.plane, strict=True))
     own = zip(one.hats.position[near], one.hats.tooth[near], one.hats.plane[near], strict=True)
     known = np.array([key in keys for key in own])
     assert known.mean() > 0.9
@@ -301,7 +302,7 @@ def test_a_hat_takes_the_value_of_its_own_plane_or_the_nearest_of_its_line(loade
 
 
 def test_the_back_flank_is_the_mirror_image_in_loss_and_in_friction_s_force(loaded):
-    """Of a pair out of place: what the drive flank does, seen in a mirror and turning the same way."""
+    """A pair out of place: the drive flank, seen in a mirror and turning the same way."""
     design, hats, _ = loaded
     moved = replace(design, assembly=replace(design.assembly, offset=3e-4))
     hats = at(hats, hats.torque == 1000.0)
@@ -309,7 +310,7 @@ def test_the_back_flank_is_the_mirror_image_in_loss_and_in_friction_s_force(load
     for pair, mirror in ((moved, np.ones(3)), (mirrored(moved), np.array([-1.0, 1.0, 1.0]))):
         point, normal = hats.point * mirror, hats.normal * mirror
         velocity, closing = slip(*spins(pair), point, normal)
-        seen = replace(hats, point=point, normal=normal, velocity=velocity, closing=closing)
+        seen = replace(hats, point=point, normal=normal, velocity=velocity, normal_velocity=closing)
         flanks.append(
             (loss_factors(seen).mean[0], friction_ratios(pair, seen, np.full(point.shape[0], 0.05)))
         )

@@ -29,12 +29,12 @@ TORQUES = [100.0, 600.0]
 
 
 def misaligned(model, **errors):
-    """The same elastic bodies in another assembly."""
+    """Return the same elastic bodies in another assembly."""
     return model.assembled(AssemblyErrors(**errors))
 
 
 def redesigned(model, design):
-    """The same elastic bodies with other flanks, a few micrometres away."""
+    """Return the same elastic bodies with other flanks, a few micrometres away."""
     pinion, gear = (replace(flank, design=design) for flank in (model.flanks.pinion, model.flanks.gear))
     return replace(model, flanks=FlankPair(pinion, gear))
 

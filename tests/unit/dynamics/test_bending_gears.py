@@ -139,8 +139,10 @@ def test_multipliers_of_gears_that_bend_are_those_of_the_whole_matrices(running)
     module="facegear.dynamics.steady_state.simulate",
 )
 def test_steady_motion_of_gears_that_bend_balances_power_reactions_and_torques(running):
-    """What the transmission error brings in goes into flanks, bearings and steel; turning steel may take
-    power from the rotation. Mean reactions of bearings and bodies hold the mean flank forces.
+    """Power from the transmission error goes into flanks, bearings and steel.
+
+    Rotating steel may take power from the rotation. Mean reactions of bearings and bodies hold the mean flank
+    forces.
     """
     bent, model, response = running
     linear, w = bent.linear, OMEGA

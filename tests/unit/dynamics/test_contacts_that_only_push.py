@@ -33,7 +33,7 @@ def oscillator(push_only, damping=DAMPING):
 
 
 def by_pieces(start, end, push_only):
-    """The same by SciPy's DOP853, stopped and started again at each of its own events; the largest pull."""
+    """Run by SciPy's DOP853, stopped and started again at each of its own events; the largest pull."""
 
     def push(t, z):
         side = np.sign(z[0])

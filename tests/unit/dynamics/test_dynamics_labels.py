@@ -12,7 +12,7 @@ from references import against, agrees
 from facegear.config.dynamics import SECOND_LOOKS
 from facegear.config.load import load_config
 from facegear.config.machines import MachineInputs
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.dynamics.courses import alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
@@ -157,7 +157,7 @@ def paper_machine():
 
 @pytest.mark.parametrize("refine", [True, False])
 def test_steps_that_alternate_do_not_make_a_motion_of_twice_its_period(refine):
-    """Some 170 steps a period at 1e-4, chosen by the motion itself, once made this period-2 at 200 rpm."""
+    """At 200 rpm some 170 steps a period at 1e-4, chosen by the motion itself, once made this period-2."""
     model = build_model(paper_machine())
     coarse = Settings(tolerance=1e-4, periodic_residual=1e-5, settle=128, samples=32, refine=refine)
     found = simulate(model, 200.0, coarse)
@@ -181,7 +181,7 @@ def test_a_short_window_does_not_take_a_torus_for_chaos():
         np.array([0.0, 3.0997e7, -3.841e6, -3.383e6]), np.array([4.32232e8, 3.2811e7, 1.0362e7, -5.75e5])
     )
     example = Path(__file__).parents[3] / "examples" / "machines" / "unequal_inputs.yaml"
-    model = build_model(MachineInputs.of_config(resolved(load_config(example)), stiffness).build())
+    model = build_model(MachineInputs.of_config(resolved_values(load_config(example)), stiffness).build())
     settings = Settings(tolerance=1e-6, settle=100, window=50)
     assert simulate(model, 5000.0, settings).motion is Motion.QUASI_PERIODIC
 

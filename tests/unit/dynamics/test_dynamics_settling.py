@@ -1,4 +1,4 @@
-"""What is called a steady state, and what is not."""
+"""Motions that are called a steady state, and motions that are not."""
 
 import itertools
 from dataclasses import replace

@@ -26,7 +26,7 @@ from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.dynamics.symmetries import mesh_images
 from facegear.io import arrays
 from facegear.plots.campbell import campbell
-from validation.dynamics.convergence import Watched, convergence_table, not_converged, watched_longer
+from validation.dynamics.convergence import LongRuns, convergence_table, not_converged, watched_longer
 
 AS_THEY_ARE = np.arange(10)[None]
 """Images of a machine without symmetries."""
@@ -249,8 +249,8 @@ def test_convergence_names_the_speeds_that_moved_or_changed_class(model, whole):
     ac_rms[first] *= 1.02
     period[second], period[third] = 7, 0
     watched = {
-        second: Watched(("period-1",) * 4, 1, piece.deflection_ac_rms[second] * 1.0001),
-        third: Watched(("period-1", "period-1", "chaotic", "period-1"), None, ac_rms[third]),
+        second: LongRuns(("period-1",) * 4, 1, piece.deflection_ac_rms[second] * 1.0001),
+        third: LongRuns(("period-1", "period-1", "chaotic", "period-1"), None, ac_rms[third]),
     }
     finer = replace(piece, deflection_ac_rms=ac_rms, period=period)
     table = convergence_table("up", piece, finer, watched, mesh_images(model.system))
@@ -281,7 +281,7 @@ def test_a_class_that_changes_is_judged_by_what_four_long_runs_agree_on(
     piece = whole["up"].piece.part(slice(0, 1))
     named = "periodic" if period else label
     piece = replace(piece, motion=np.array([named]), period=np.array([period]))
-    watched = Watched(("any",) * 4, in_all_four, piece.deflection_ac_rms[0])
+    watched = LongRuns(("any",) * 4, in_all_four, piece.deflection_ac_rms[0])
     finer = replace(piece, period=np.array([in_all_four or 5]))
     assert convergence_table("up", piece, finer, {0: watched}, AS_THEY_ARE)["verdict"][0] == verdict
 

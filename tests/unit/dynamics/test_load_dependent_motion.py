@@ -237,7 +237,7 @@ def test_the_work_of_the_moving_phase_closes_the_balance_of_energy():
 
 @pytest.mark.parametrize("load", [0.3, 0.55, 1.0])
 def test_a_slow_motion_follows_the_transmission_error_under_its_load_the_nearer_the_slower(load):
-    """What is left is the damper's, which is proportional to the speed."""
+    """The rest is the damper's, which is proportional to the speed."""
     law = power_table_law(200, 0.2, 1e-3)
     resting = (load / (1.0 + 0.2 * np.cos(2.0 * np.pi * np.arange(64) / 64))) ** (2.0 / 3.0)
     errors = []

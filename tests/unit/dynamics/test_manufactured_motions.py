@@ -55,7 +55,7 @@ def slope(depth, swings):
 
 
 def exact_matrix(depth, swings):
-    """What PERIODS make of a disturbance (z, z') at phase zero, where r' = 0; (2, 2)."""
+    """Matrix (2, 2) by which PERIODS map a disturbance (z, z') at phase zero, where r' = 0."""
     psi, r = TAU * PERIODS * swings, (1.0 + depth) / (swings * np.sqrt(1.0 - depth**2))
     turn = np.array([[np.cos(psi), r * np.sin(psi)], [-np.sin(psi) / r, np.cos(psi)]])
     undamped = np.array([[1.0, 0.0], [0.5 * DAMPING, 1.0]])

@@ -152,9 +152,9 @@ def test_disturbances_of_rubbing_flanks_are_differences_and_keep_their_volume(op
     module="facegear.dynamics.integrator.integrator",
 )
 def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_energy():
-    """Of the whole machine that turns evenly, along a motion that parts and strikes back.
+    """The balance is that of the whole machine at even rotation, along a motion that parts and strikes back.
 
-    What the varying stiffness and the error bring in is the work of the even rotation on them.
+    The work of the even rotation on the varying stiffness and on the error counts as power in.
     """
     machine = rubbing_machine(torque=60.0, backlash=20e-6, open_flanks=OpenFlanks.CONTACT_ONLY)
     model = build_model(machine)

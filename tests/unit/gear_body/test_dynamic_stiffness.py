@@ -11,7 +11,7 @@ from facegear.gear_body.matrices import around
 from facegear.gear_body.modes import held_solver, order_modes
 
 LAG = 1e-11
-"""What is left out of the damping is this times the frequency: next to nothing."""
+"""Damping that is left out, over the frequency: next to nothing."""
 AS_LIGHT = np.sqrt(7850.0)
 """How many times faster all is than in steel: the disc has 1 kg/m3."""
 TURNING, W = 150.0 * AS_LIGHT, 2 * np.pi * 2900.0 * AS_LIGHT
@@ -37,7 +37,7 @@ def of_matrices(disc, order):
 
 
 def of_modes(disc, order, up_to):
-    """The same from modes up to a frequency and what they leave out at rest."""
+    """Dynamic stiffness from modes up to a frequency and their static remainder."""
     solve = held_solver(disc, order)
     modes = order_modes(disc, order, up_to, solve)
     squared = np.diag((2 * np.pi * modes.frequencies) ** 2)
@@ -58,7 +58,7 @@ def of_modes(disc, order, up_to):
 )
 @pytest.mark.parametrize("order", [1, 4])
 def test_modes_and_the_static_rest_answer_a_load_in_space_as_the_whole_turning_body(disc, order):
-    """What is left out of inertia falls at least with the square of the frequency up to which modes go."""
+    """The inertia left out falls at least with the square of the frequency up to which modes go."""
     exact = of_matrices(disc, order)
     size = np.abs(exact[:2, :2]).max()
     off = [

@@ -1,4 +1,4 @@
-"""What the stage writes of a machine whose face gears bend."""
+"""Tables and arrays that the stage writes for a machine whose face gears bend."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -146,7 +146,7 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
     said = stage._fitted(bodies, stage._solved(bodies, FLEXIBLE.tooth_pair))
     assert said == "; upper: teeth fitted, 0.5237 of the ring, 0.0300 of E and 0.1000 of G round the axis"
     for section in bodies.values():
-        varied_bodies._solved(section, FLEXIBLE.tooth_pair)
+        varied_bodies._solve_body(section, FLEXIBLE.tooth_pair)
     assert solved == [0.06, 0.03, 0.06, 0.03]
 
 

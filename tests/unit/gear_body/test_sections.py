@@ -209,7 +209,7 @@ def test_hub_on_bearings_tilts_as_the_config_says_and_only_where_the_gear_bends(
 
 
 def test_inertia_about_a_diameter_of_another_height_is_that_of_the_mass_moved_there():
-    """Of a disc by its closed form, with teeth that are heavier at their roots than at their tips."""
+    """The body is a disc by its closed form; its teeth are heavier at their roots than at their tips."""
     disc = Section(rectangle(0.1, 0.2, -0.02, 0.01), (False,) * 4, (0.1, 0.2), STEEL, 7850.0)
     mass = 7850.0 * np.pi * (0.2**2 - 0.1**2) * 0.03
     across = mass * ((0.2**2 + 0.1**2) / 4.0 + 0.03**2 / 12.0)

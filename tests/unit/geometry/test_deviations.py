@@ -118,7 +118,7 @@ def test_the_same_deviations_on_either_gear_move_it_alike(pair, amount, stated):
 
 
 def test_profile_deviations_on_either_gear_differ_to_second_order_alone(pair):
-    """As flanks slide, the same deviation is another slope on either: slope squared over curvature."""
+    """Flanks slide, so that the same deviation is another slope on either: slope squared over curvature."""
     design = pair()
     off = []
     for amount in (5 * UM, 10 * UM):

@@ -1,4 +1,4 @@
-"""What is taken off the face gear's flanks opens gaps as the displaced flank does, and as on the pinion."""
+"""Material taken off the face gear's flanks opens gaps like a displaced flank, and like the pinion's."""
 
 from dataclasses import replace
 

@@ -20,7 +20,7 @@ def test_rotations_are_scipys():
 
 
 def test_limits_are_found_where_the_flank_turns_back_at_the_tip_plane():
-    """Of 400 random designs these four ended in `flank at a height: 60 Newton steps`, before any work."""
+    """Four of 400 random designs ended in `flank at a height: 60 Newton steps`, before any work."""
     chance = np.random.default_rng(0)
     for number in range(362):
         pinion_teeth, gear_teeth = int(chance.integers(15, 40)), int(chance.integers(80, 250))

@@ -1,4 +1,4 @@
-"""What a measuring machine is given: nominal points and normals, in a file that is read back as it is."""
+"""Nominal points and normals for a measuring machine, in a file that is read back as it is."""
 
 import numpy as np
 from references import against, agrees
@@ -56,13 +56,13 @@ def test_the_file_for_a_measuring_machine_is_read_back_as_flanks_without_deviati
 
 
 def test_a_factor_on_deviations_may_vary_in_tolerances_and_search(tmp_path):
-    from facegear.config.changes import WITHOUT_MESHING, movable, moved
+    from facegear.config.changes import WITHOUT_MESHING, add_changes, movable
 
     machine = facegear.example()
     path = str(machine.export(tmp_path / "nominal_points.csv"))
     values = machine.with_values({"tooth_pair.face_gear.flanks.file": path}).values
     key = "tooth_pair.face_gear.flanks.amplitude"
     start = movable({"tooth_pair": values["tooth_pair"]}, [key], WITHOUT_MESHING)
-    assert moved(start, {key: 0.5})["tooth_pair"]["face_gear"]["flanks"]["amplitude"] == 1.5
+    assert add_changes(start, {key: 0.5})["tooth_pair"]["face_gear"]["flanks"]["amplitude"] == 1.5
     key = "tooth_pair.face_gear.modifications.lead_slope_um"
     assert movable({"tooth_pair": values["tooth_pair"]}, [key], WITHOUT_MESHING)

@@ -19,7 +19,7 @@ TEETH = 2
 
 
 def exact_volume(design, body):
-    """Of chords at 64 and 128 cells, whose error falls with the square of the cell."""
+    """Volume extrapolated from chords at 64 and 128 cells, whose error falls with the square of the cell."""
     coarse, fine = (volume(solid(design, body, TEETH, n + 1, n // 2 + 1)) for n in (64, 128))
     return fine + (fine - coarse) / 3
 

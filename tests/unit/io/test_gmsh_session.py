@@ -1,4 +1,4 @@
-"""What a session of gmsh leaves of the process around it."""
+"""State of the process after a session of gmsh."""
 
 import os
 import subprocess

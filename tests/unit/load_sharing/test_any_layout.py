@@ -99,7 +99,7 @@ def test_where_no_meshes_share_a_load_the_tables_have_no_rows(roles, gears):
 
 
 OWN_TORQUES = {True: [None, None, -50.0], False: [None, None, 0.0, -50.0]}
-"""Of inputs and of others: inputs that bring nothing would leave the machine without load."""
+"""Torques of inputs and of other pinions: inputs that bring nothing would leave the machine without load."""
 
 
 @st.composite

@@ -118,7 +118,7 @@ def test_averages_belong_to_the_start_that_is_asked_for_and_the_range_to_all(pap
 
 
 def test_machines_side_by_side_share_as_each_does_by_itself(paper_machine):
-    """Some start on one of two motions, others on the other, which the range over the starts shows."""
+    """Starts lead to one of two motions, which the range over the starts shows."""
     speeds = (3000.0, 5000.0, 6000.0, 7500.0, 9500.0, 10_000.0)
     together = load_sharing_of_many([(paper_machine, speed) for speed in speeds], SETTINGS, OPTIONS)
     for speed, many in zip(speeds, together, strict=True):

@@ -1,4 +1,4 @@
-"""What K_gamma answers to each error, against the whole hunting cycle computed for both ends."""
+"""Response of K_gamma to each error, against the whole hunting cycle computed for both ends."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What one compiled pass counts is what its definitions make of whole arrays."""
+"""Counts of one compiled pass equal its definitions applied to whole arrays."""
 
 import numpy as np
 import pytest

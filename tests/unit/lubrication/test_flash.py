@@ -16,7 +16,7 @@ from facegear.lubrication.flash import (
     moving_temperature,
     slow_factor,
 )
-from facegear.lubrication.request import STEEL, Heated
+from facegear.lubrication.request import STEEL, FlankMaterial
 
 
 def transient_rise(number: float, step: float = 0.04) -> float:
@@ -129,7 +129,7 @@ def test_factor_of_slow_flanks_is_jaeger_s_between_the_points_of_its_table():
     module="facegear.lubrication.flash",
 )
 def test_both_flanks_of_a_transient_solution_reach_the_flash_temperature_within_a_percent():
-    flanks = STEEL, Heated(30.0, 7700.0, 500.0)
+    flanks = STEEL, FlankMaterial(30.0, 7700.0, 500.0)
     b, friction, load, sliding = 2e-4, 0.05, 3e5, 6.0
     numbers = 4.0, 12.0
     speeds = tuple(2 * pe * flank.diffusivity / b for pe, flank in zip(numbers, flanks, strict=True))
@@ -142,7 +142,7 @@ def test_both_flanks_of_a_transient_solution_reach_the_flash_temperature_within_
 
 @given(st.floats(0.2, 30.0), st.floats(0.2, 30.0), st.floats(2e-5, 5e-4))
 def test_flash_stays_when_the_flanks_change_names(u1, u2, b):
-    flanks = STEEL, Heated(30.0, 7700.0, 500.0)
+    flanks = STEEL, FlankMaterial(30.0, 7700.0, 500.0)
     rise, share = flash_at_any_speed(0.05, 3e5, abs(u1 - u2), (u1, u2), b, flanks)
     swapped, other = flash_at_any_speed(0.05, 3e5, abs(u1 - u2), (u2, u1), b, flanks[::-1])
     assert float(swapped) == pytest.approx(float(rise), rel=1e-12)

@@ -9,7 +9,7 @@ from references import against, agrees
 from facegear.config.base import parse
 from facegear.config.cases import expand_cases
 from facegear.config.load import load_config
-from facegear.config.model import Config, resolved
+from facegear.config.model import Config, resolved_values
 from facegear.pipeline.needs import shared_sources
 from facegear.pipeline.stage import Case
 from facegear.pipeline.studies import friction_cases, friction_points, friction_studied
@@ -36,7 +36,7 @@ def case():
         }
         for name, changes in STUDIED.items()
     ]
-    values = resolved(load_config(CONFIG))
+    values = resolved_values(load_config(CONFIG))
     cases = expand_cases(parse(Config, {**values, "studies": studies}))
     name = values["case"]
     return Case(cases[name], cases, lambda stage, other: shared_sources(cases, stage)[other])

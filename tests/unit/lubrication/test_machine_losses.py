@@ -111,7 +111,7 @@ ONE_PINION = {
 
 
 def test_a_sample_of_tolerances_loses_what_the_machine_with_its_values_does(gearbox):
-    """Of one mesh at a constant torque, where the mean and the largest load are those at rest."""
+    """The machine has one mesh at a constant torque, whose mean and largest load are those at rest."""
     moves = {
         "lubrication.supply_temperature_c": 8.0,
         "lubrication.pinion.ra_um": 0.1,

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from facegear.errors import NotConverged
-from facegear.lubrication.heat import SETTLED, TooHot
+from facegear.lubrication.heat import BULK_TOLERANCE, TooHot
 from facegear.lubrication.machine_loss import settled_bulk
 
 KNOWN = SimpleNamespace(bulk=None, oil_temperature=20.0, oil=SimpleNamespace(flash_point=250.0))
@@ -23,7 +23,7 @@ def test_a_step_that_contracts_settles_at_its_fixed_point(slopes):
     slopes = np.reshape(slopes, (2, 2))
     expected = 10.0 / (1.0 - slopes)
     bulk = settled(lambda before: slopes * before + 10.0)
-    np.testing.assert_allclose(bulk, expected, atol=SETTLED * 2.5)
+    np.testing.assert_allclose(bulk, expected, atol=BULK_TOLERANCE * 2.5)
 
 
 def test_a_step_that_never_settles_ends_in_one_line():

@@ -18,9 +18,9 @@ from facegear.geometry.placement import body_rotation, pinion_to_gear
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.lubrication.kinematics import (
     line_kinematics,
+    pinion_pose,
     slip,
     spins,
-    standing,
     surface_normals,
 )
 
@@ -43,8 +43,8 @@ def test_velocities_are_those_of_material_points_in_any_assembly(place, phi1, of
     moves = []
     for turn in (step, -step):
         phi = phi1 + turn
-        inside = standing(design, phi1, 0).inverse().points(point)
-        pinion = standing(design, phi, 0).points(inside)
+        inside = pinion_pose(design, phi1, 0).inverse().points(point)
+        pinion = pinion_pose(design, phi, 0).points(inside)
         on_gear = point @ body_rotation("face_gear", RATIO * phi1)
         moves.append((pinion, on_gear @ body_rotation("face_gear", RATIO * phi).T))
     by_difference = [(after - before) / (2 * step) for after, before in zip(*moves, strict=True)]
@@ -56,7 +56,7 @@ def test_the_pinion_stands_in_the_mesh_frame_as_the_geometry_places_it_on_the_ge
     design = replace(PAIR, assembly=AssemblyErrors(1e-4, 1e-3, 5e-5))
     point = np.array([[0.003, 0.26, -0.044]])
     gear = pinion_to_gear(design, 0.03, 0.005, 1)
-    back = standing(design, 0.03, 1).then(body_rotation("face_gear", -(0.005 + 2 * pi / 143)))
+    back = pinion_pose(design, 0.03, 1).then(body_rotation("face_gear", -(0.005 + 2 * pi / 143)))
     assert back.points(point) == pytest.approx(gear.points(point), abs=1e-15)
 
 
@@ -113,7 +113,7 @@ def test_line_contact_pair_slides_as_its_closed_form_says():
         "along": s * (RATIO * cosine * c + k),
         "u1": rho * c,
         "u2": rho * c - s * (c - RATIO * cosine * k),
-        "entrained": rho * k - 0.5 * s * (RATIO * cosine * c + k),
+        "line_entrainment": rho * k - 0.5 * s * (RATIO * cosine * c + k),
     }
     for name, expected in exact.items():
         agrees(

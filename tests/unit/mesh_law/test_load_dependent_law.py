@@ -122,7 +122,7 @@ def test_a_table_without_any_force_has_no_harmonics_and_no_breaks():
 
 
 def test_contacts_are_evaluated_as_if_each_stood_alone():
-    """Some are open throughout, some in one piece, some in many: none changes what another one gets."""
+    """Contacts are open throughout, in one piece, or in many: none changes the force of another one."""
     phases = np.linspace(0.0, 1.0, 40, endpoint=False)
     tables = lagging(4 * [two_pairs(9, 6, 1.5)], [0.0, 0.2, 0.5, 0.7])
     last = tables[0].levels[-1]

@@ -1,4 +1,4 @@
-"""The same results give the same files of figures."""
+"""Equal results give equal files of figures."""
 
 import numpy as np
 import pytest

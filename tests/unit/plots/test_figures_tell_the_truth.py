@@ -1,4 +1,4 @@
-"""What figures draw: whole pitches, no arbitrary vectors, lines at their orders, text that can be read."""
+"""Content of figures: whole pitches, no arbitrary vectors, lines at their orders, text that can be read."""
 
 import matplotlib.pyplot as plt
 import numpy as np

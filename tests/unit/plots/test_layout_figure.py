@@ -29,7 +29,7 @@ def drawn(gears, names):
 @pytest.mark.parametrize("gears", [["upper"], ["lower"], ["lower", "upper"]])
 @pytest.mark.parametrize("names", [["a", "b"], [letter * 40 for letter in "abcdef"], ["left idler"] * 8])
 def test_no_text_of_the_layout_is_cut_off_or_hides_a_gear(gears, names):
-    """Of a machine with one gear the title left the page, and long names covered the rim."""
+    """With one gear the title left the page, and long names covered the rim."""
     figure, radius = drawn(gears, [f"{name[:-1]}{i}" for i, name in enumerate(names)])
     figure.draw_without_rendering()
     whole = figure.bbox

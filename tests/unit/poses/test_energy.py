@@ -28,7 +28,7 @@ from facegear.transmission.machine import FlankTables
 from facegear.transmission.static_gears import at_rest as static
 from facegear.transmission.statics import Equilibria, mean_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
-from validation.poses.measure import ASSEMBLIES, FROZEN, SURFACE, TILTING, TOUCHING
+from validation.poses.measure import ASSEMBLIES, FROZEN_REACTIONS, SURFACE, TILTING, TOUCHING_REACTIONS
 
 ANGLE = float(np.radians(0.05))
 PINION_BASE = 3.75e-3 * 23 / 2 * np.cos(np.radians(25.0))
@@ -76,7 +76,9 @@ def test_approach_and_reactions_are_the_derivatives_of_the_energy(surface, torqu
 @settings(max_examples=10, deadline=None)
 @given(st.floats(-2.5e-4, 2e-4), st.floats(-1e-4, 1e-4), angles)
 def test_slopes_of_the_exact_unloaded_contact_are_its_differences(surface, offset, shift, angle):
-    """Of transmission error and path; the errors of differences are those of 2 um and 2e-6 rad."""
+    """The slopes are of transmission error and path; the errors of differences are those of 2 um and 2e-6
+    rad.
+    """
     errors = np.array([offset, shift, angle])
 
     def contact(moved):
@@ -127,7 +129,7 @@ def model_of(machine, surface):
 
 
 def generalized_forces(machine, surface, displacements):
-    """Of drive flanks on all coordinates, with the force of the law where each stands; and their energy."""
+    """Return the forces of drive flanks on all coordinates, by the law of each contact, and their energy."""
     meshes, model = len(machine.layout.meshes), model_of(machine, surface)
     logs, misses = [np.full(meshes, 9.0)], []
     for _ in range(20):
@@ -273,7 +275,7 @@ PARTS = ["offset", "axial_shift", "shaft_angle_error"]
 
 @pytest.fixture(scope="module")
 def tilting_surface():
-    """The same pair with two errors of the shaft angle, solved at default accuracy."""
+    """Surface of the pair with two errors of the shaft angle, solved at default accuracy."""
     with np.load(TILTING) as stored:
         return PoseSurface.of_arrays(dict(stored))
 
@@ -296,7 +298,7 @@ def reactions(surface, torque, errors):
 @pytest.mark.parametrize("torque", [420.0, 930.0])
 def test_reactions_of_the_surface_are_those_of_contact_that_is_moved(tilting_surface, torque):
     """Within 0.3 % of the force, and of its moment at 0.1 m; from `python -m validation.poses.measure`."""
-    rows = pd.read_csv(FROZEN).set_index(["torque_n_m", "error"]).loc[torque].loc[PARTS]
+    rows = pd.read_csv(FROZEN_REACTIONS).set_index(["torque_n_m", "error"]).loc[torque].loc[PARTS]
     known = -(rows["along_normals"] + rows["giving_way"]).to_numpy()
     energy, force = reactions(tilting_surface, torque, AssemblyErrors())
     agrees("reactions to offset and axial shift, N", energy[:2], known[:2], absolute=3e-3 * force)
@@ -306,7 +308,7 @@ def test_reactions_of_the_surface_are_those_of_contact_that_is_moved(tilting_sur
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 def test_reactions_of_the_surface_are_the_sums_of_the_touching_loads(tilting_surface, assembly):
     """But for how teeth give way differently, 0.45 % of the force; load itself moves it by 2 to 5 %."""
-    rows = pd.read_csv(TOUCHING).set_index("assembly").loc[assembly]
+    rows = pd.read_csv(TOUCHING_REACTIONS).set_index("assembly").loc[assembly]
     for row in rows.itertuples():
         energy, force = reactions(tilting_surface, row.torque_n_m, ASSEMBLIES[assembly])
         overturning = -energy[2] - tilting_surface.pair.mean_radius * energy[1]

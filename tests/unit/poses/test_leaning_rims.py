@@ -40,7 +40,7 @@ def surface():
 
 @cache
 def matrices():
-    """Of the reference body, on a mesh as coarse as the question allows."""
+    """Matrices of the reference body, on a mesh as coarse as the question allows."""
     return body_matrices(gear_bodies.section(), body_mesh(gear_bodies.section(), 1, 2.0))
 
 
@@ -100,7 +100,7 @@ def test_slope_of_the_rim_below_a_mesh_is_that_of_the_nodes_when_another_mesh_is
 
 
 def test_slopes_are_those_of_the_flanks_own_answers_with_more_columns():
-    """What flanks do to each other is as without slopes, which are influenced both ways alike."""
+    """The coupling between flanks is as without slopes, which are influenced both ways equally."""
     layout = make_layout(kinematics=GEOMETRIC)
     plain, (flanks, slopes) = static_rows(body(), layout, 1), posed_rows(body(), layout, 1)
     np.testing.assert_allclose(flanks @ flanks.T, plain @ plain.T, rtol=1e-9, atol=1e-18)
@@ -116,7 +116,7 @@ def rocking_machine():
 
 
 def stiff_rims_on_springs(radius):
-    """The same as bodies whose only wave is that tilt."""
+    """Return the machine with bodies whose only wave is that tilt."""
     layout, way = make_layout(gear_bearing=2e8, kinematics=GEOMETRIC), np.array([radius, 0.0, 1.0])
     static, leaning = np.zeros((2, 2, 2)), np.zeros((2, 3))
     static[1] = np.outer(way[:2], way[:2]) / TILTING_STIFFNESS
@@ -163,7 +163,7 @@ def test_a_rim_whose_only_wave_is_a_tilt_has_the_poses_of_a_rigid_gear_that_tilt
 
 
 def test_modes_of_a_body_lean_its_rim_as_its_static_answer_does(surface):
-    """Of one whose only compliance is that of its modes: poses from either coordinates are the same."""
+    """The body's only compliance is that of its modes: poses from either coordinates are the same."""
     own = stiff_rims_on_springs(surface.pair.mean_radius).bodies.bodies[0]
     frequency = np.sqrt(TILTING_STIFFNESS) / (2.0 * np.pi)
     machine = stiff_rims_on_springs(surface.pair.mean_radius)

@@ -117,7 +117,7 @@ def test_a_pose_of_two_moved_bodies_is_the_published_one(design, side):
     st.floats(-0.1, 0.1),
 )
 def test_a_pair_in_its_pose_stands_as_both_moved_bodies_do(design, parts, phi1, phi2):
-    """The same rigid motion from the pinion's teeth to the gear's, for motions that are large."""
+    """Pinion's teeth and gear's teeth differ by an equal rigid motion, for motions that are large."""
     first, second, third, fourth = np.array(parts).reshape(4, 3)
     pinion = body_motion(0.1 * first, second, (0.0, design.mean_radius, 0.0))
     gear = body_motion(0.1 * third, fourth, (0.0, 0.0, -0.05))

@@ -24,7 +24,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.statics import mean_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
-from validation.poses.measure import ASSEMBLIES, LOADED, SURFACE, TORQUE
+from validation.poses.measure import ASSEMBLIES, LOADED_CONTACT, SURFACE, TORQUE
 
 MESHES = [
     f"{name}/{side}"
@@ -90,7 +90,7 @@ def test_forces_with_teeth_where_they_stand_are_the_published_ones(concentric, s
 @pytest.mark.parametrize("assembly", PUBLISHED)
 def test_loaded_contact_in_given_assemblies_is_the_published_one(assembly):
     """A measurement at default accuracy, stored by `python -m validation.poses.measure`."""
-    row = pd.read_csv(LOADED).set_index("assembly").loc[assembly]
+    row = pd.read_csv(LOADED_CONTACT).set_index("assembly").loc[assembly]
     for key, known, digit in zip(KEYS, PUBLISHED[assembly], DIGITS, strict=True):
         agrees(f"{key} at {TORQUE:g} N m", row[key], known, absolute=digit)
 
@@ -124,7 +124,7 @@ def test_at_its_nodes_the_surface_is_what_was_solved_there(surface, path, torque
 
 @pytest.mark.parametrize("order", [2, 3])
 def test_splines_over_nodes_left_out_miss_a_cubic_in_nothing(surface, order):
-    """What is left out is known exactly where the quantity is a polynomial in both coordinates."""
+    """Nodes that are left out are known exactly where the quantity is a polynomial in both coordinates."""
     logs = np.log(surface.nodes.torques / 100.0)
     along = (surface.nodes.paths[:, None] - 0.268) / 0.01
     values = {STIFFNESS: np.exp(20.0 + along**order - 0.1 * logs)[None]}

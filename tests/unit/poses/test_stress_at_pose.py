@@ -16,7 +16,7 @@ from facegear.poses.tables import MARGINS, margin_text
 from facegear.stages.duty_poses import duty_poses
 from facegear.stages.rating import rating
 from facegear.strength.flank_contacts import flank_contacts
-from facegear.strength.posed_contacts import ROOTS, Stand, change, solved_contacts
+from facegear.strength.posed_contacts import ROOTS, ContactPose, solved_contacts, stress_ratio
 from validation.poses.measure import SURFACE
 
 FEW = {
@@ -82,14 +82,14 @@ def test_contact_solved_at_the_pose_of_a_mesh_changes_stress_as_the_surface_says
     given = gearbox._chain.arguments("rating")
     assembled = flank_contacts(given["stress"], given["by_flank"])["upper", "drive"]
     solved = solved_contacts(given["posed"], given["posed_by_torque"])
-    rest = Stand(contact_at(surface.pair, surface.nominal).y, 0.0)
+    rest = ContactPose(contact_at(surface.pair, surface.nominal).y, 0.0)
     for mesh in ("left idler/upper", "tail idler/lower"):
         number = given["posed_by_torque"].set_index("mesh")["contact"][mesh].iloc[0]
-        there = Stand(1e-3 * by_mesh.loc[mesh, "unloaded_path_mm"], 0.0)
+        there = ContactPose(1e-3 * by_mesh.loc[mesh, "unloaded_path_mm"], 0.0)
         for body in ("pinion", "face_gear"):
             for torque in (300.0, 600.0, 1000.0):
                 direct = solved[number].tension[body](torque) / assembled.tension[body](torque)
-                said = change(surface, ROOTS[body], rest, there)(np.array([torque]))[0]
+                said = stress_ratio(surface, ROOTS[body], rest, there)(np.array([torque]))[0]
                 assert direct == pytest.approx(said, rel=stated[ROOTS[body]])
     idlers = by_mesh[by_mesh.index.str.contains("idler")]
     grown = idlers["face_gear_root_mpa"] / idlers["face_gear_root_as_assembled_mpa"] - 1.0
@@ -118,14 +118,14 @@ def test_a_rating_takes_the_stress_of_each_mesh_where_its_bin_puts_it(gearbox, b
         rating(**given).content["damage"].set_index(["failure", "method", "bin"])["stress_mpa"].sort_index()
     )
     stands = given["duty_poses"].set_index(["bin", "mesh", "flank"])["unloaded_path_mm"]
-    ends = [Stand(1e-3 * stands[number, mesh, "drive"], 0.0) for number in (1, 2)]
+    ends = [ContactPose(1e-3 * stands[number, mesh, "drive"], 0.0) for number in (1, 2)]
     for failure, method, quantity, column in (
         ("bending", "finite elements", "face_gear_root_pa", "face_gear_root_mpa"),
         ("pitting", "contact analysis", "pressure_pa", "pressure_mpa"),
     ):
         found, torques = damage[failure, method], np.array([own, 0.5 * own])
         assert found[1] == pytest.approx(by_mesh.loc[mesh, column], rel=2e-3)
-        moved = change(surface, quantity, *ends)(torques)[1]
+        moved = stress_ratio(surface, quantity, *ends)(torques)[1]
         assert moved < 0.99
         contact = chain.part("posed_stress", "by_torque")
         assert contact["mesh"].nunique() == len(by_mesh)

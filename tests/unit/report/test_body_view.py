@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import sync_playwright
 
 from facegear.config.load import load_config
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.report.body_view import body_view, boundary
 from facegear.report.case import case_report
 from facegear.report.page import Chapter, render
@@ -84,7 +84,7 @@ def test_pictures_and_viewer_of_bodies_stand_in_the_chapter_on_modes(disc, tmp_p
     names = ("machine_campbell", "body_shapes", "body_waves", "body_campbell")
     for name in names:
         (tmp_path / f"{name}.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9pt"/>')
-    values = resolved(load_config("config/harmonics_only.yaml"))
+    values = resolved_values(load_config("config/harmonics_only.yaml"))
     pictures = {name: tmp_path / f"{name}.svg" for name in names}
     page = case_report(values, {}, pictures, [], bodies=body_view(*disc))
     (chapter,) = re.findall(r'(?s)<section id="modes">(.*?)</section>', page)

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from facegear.config.load import load_config
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.report.case import case_report
 from facegear.report.poses import pose_tables, pose_text
 
@@ -74,7 +74,7 @@ def test_the_edges_that_loaded_patterns_reach_and_those_that_stay_free_are_said(
 
 @pytest.mark.parametrize("known", [True, False])
 def test_the_report_has_the_chapter_where_poses_were_computed(known):
-    values = resolved(load_config("config/harmonics_only.yaml"))
+    values = resolved_values(load_config("config/harmonics_only.yaml"))
     page = case_report(values, tables() if known else {}, {}, [])
     assert ("Teeth where forces put them" in page) is known
     assert (pose_text(tables()) in page) is known

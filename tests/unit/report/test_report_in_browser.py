@@ -55,7 +55,8 @@ DOTS = """async sources => {
   }
   return [4 * dark / first.length, 4 * other / first.length, first.length - second.length];
 }"""
-"""Of two pictures drawn 800 px wide: dark dots of the first, dots that differ, both as fractions."""
+"""Script that compares two pictures drawn 800 px wide: dark dots of the first, dots that differ, both as
+fractions."""
 
 
 def dim_colours():

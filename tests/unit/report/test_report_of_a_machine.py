@@ -15,13 +15,13 @@ import pandas as pd
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from facegear.config.load import extended, load_config
-from facegear.config.model import resolved
+from facegear.config.load import base_path, load_config
+from facegear.config.model import resolved_values
 from facegear.config.notes import notes
 from facegear.io import tables
 from facegear.report.case import case_report
 from facegear.report.machine import Base
-from validation.report_pages import A4, chromium, printed
+from validation.report_pages import A4, chromium, print_page
 
 ROOT = Path(__file__).parents[3]
 CONFIG = ROOT / "config" / "concentric.yaml"
@@ -53,8 +53,8 @@ def concentric(tmp_path_factory):
     folder = tmp_path_factory.mktemp("concentric")
     with zipfile.ZipFile(Path(__file__).with_name("concentric.zip")) as archive:
         archive.extractall(folder)
-    values = {**resolved(load_config(CONFIG)), "reproduction": False}
-    base = extended(CONFIG)
+    values = {**resolved_values(load_config(CONFIG)), "reproduction": False}
+    base = base_path(CONFIG)
     text = case_report(
         values,
         {path.stem: in_parts(tables.read(path, allow_empty=True)) for path in folder.glob("*.csv")},
@@ -63,7 +63,7 @@ def concentric(tmp_path_factory):
         json.loads((folder / "pair.json").read_text()),
         base=None
         if base is None
-        else Base(base.name, {**resolved(load_config(base)), "reproduction": False}),
+        else Base(base.name, {**resolved_values(load_config(base)), "reproduction": False}),
         notes=notes({**values, "reproduction": None}),
     )
     page = folder / "report.html"
@@ -76,7 +76,7 @@ def test_a_whole_machine_prints_on_at_most_25_pages_of_a4_with_every_column_of_e
         page = browser.new_page()
         page.goto(concentric.as_uri())
         unread = page.evaluate("[...document.images].filter(image => !image.naturalWidth).length")
-        pages, right_edges = printed(page)
+        pages, right_edges = print_page(page)
         figures = page.locator("figure[id] img").count()
     assert len(right_edges) >= 20 and figures >= 25, "a whole machine"
     assert pages <= MOST_PAGES

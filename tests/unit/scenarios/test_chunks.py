@@ -119,7 +119,7 @@ class Ring:
 
 
 def test_what_finished_samples_leave_behind_does_not_pile_up(tmp_path, monkeypatch):
-    monkeypatch.setattr(chunks, "COLLECTED", 50)
+    monkeypatch.setattr(chunks, "SAMPLES_PER_COLLECTION", 50)
     alive = weakref.WeakSet()
     most = [0]
 

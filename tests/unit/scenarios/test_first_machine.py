@@ -10,7 +10,7 @@ import pytest
 
 import facegear
 from facegear.config.load import config_of
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.config.tooth_pair import pair
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigError, FacegearError
@@ -88,7 +88,7 @@ def test_every_machine_of_a_grid_passes_check_or_has_no_teeth(teeth, tmp_path):
                 assert teeth < 12 and NAMED.match(str(error)), error
                 continue
             config = config_of(values_of(machine.text, tmp_path))
-            assert not idlers or "worse than" not in "".join(machine.expected)
+            assert not idlers or "worse than" not in "".join(machine.expectations)
             assert config.tooth_pair.face_gear_teeth == gear
 
 
@@ -105,7 +105,7 @@ def test_chosen_teeth_mesh_freely_at_more_positions_and_can_be_rated(known, tmp_
 
 @pytest.mark.parametrize("known", MACHINES, ids=lambda known: known.case)
 def test_what_a_user_knows_is_enough_for_a_config_without_mistakes(known, tmp_path):
-    values = resolved(config_of(values_of(first_machine(known).text, tmp_path)))
+    values = resolved_values(config_of(values_of(first_machine(known).text, tmp_path)))
     assert values["tooth_pair"]["face_gear_teeth"] == known.face_gear_teeth
     machine = values["transmission"]
     assert machine["torque"]["per_input_n_m"] == known.torque_n_m
@@ -147,7 +147,7 @@ def test_a_split_torque_machine_splits_its_torque_as_it_says(known, tmp_path):
     """It shared nothing: K_gamma was 1.999, and idlers carried 0.1 %."""
     _, gearbox = with_constant_stiffness(known, tmp_path)
     groups = gearbox.hunting().table().set_index("group")
-    said = first_machine(known).expected[1]
+    said = first_machine(known).expectations[1]
     inputs, _, highest, ratio = map(float, re.findall(r"\d+\.\d+|\d+", said.partition(" (")[0]))
     found = groups["k_gamma"].filter(like="input").max()
     assert found == pytest.approx(inputs, rel=0.1) and found <= 1.3
@@ -165,7 +165,7 @@ def test_printed_resonances_are_natural_frequencies_in_the_speed_range(known, tm
     frequencies = gearbox.modes().table()["frequency_hz"].round(1).unique()
     speeds = 60.0 * frequencies / known.pinion_teeth
     within = sorted(speed for speed in speeds if sweep["from_rpm"] <= speed <= sweep["to_rpm"])
-    said = [float(number) for number in re.findall(r"[\d.]+", first_machine(known).expected[-1])]
+    said = [float(number) for number in re.findall(r"[\d.]+", first_machine(known).expectations[-1])]
     assert said == pytest.approx(within[: len(said)], rel=2e-3) and len(said) > 1
 
 
@@ -206,7 +206,7 @@ def test_every_mesh_at_rest_lies_inside_the_torques_of_the_contact_analysis(tmp_
 
 def test_a_load_too_small_to_share_says_what_is_nearest():
     known = make_known("light", 23, 143, 3.75, 20, 7500, pinions=2, idlers=5)
-    (line,) = [line for line in first_machine(known).expected if "worse than" in line]
+    (line,) = [line for line in first_machine(known).expectations if "worse than" in line]
     assert re.search(r"F_t/\(b m\) = 2\.06 MPa; nearest: at least", line)
 
 
@@ -278,7 +278,7 @@ def test_a_single_idler_has_no_load_sharing_of_its_own():
     """It was said to have K_gamma nan to nan."""
     (line,) = [
         line
-        for line in first_machine(make_known("own", 23, 143, 3.75, 600, 7500, idlers=1)).expected
+        for line in first_machine(make_known("own", 23, 143, 3.75, 600, 7500, idlers=1)).expectations
         if line.startswith("K_gamma")
     ]
     assert "nan" not in line and "idlers" not in line
@@ -287,7 +287,7 @@ def test_a_single_idler_has_no_load_sharing_of_its_own():
 def test_bearings_that_a_user_gave_are_named_where_they_keep_the_torque_from_being_shared():
     known = make_known("own", 23, 143, 3.75, 600, 7500, 2, idlers=2, idler_bearing_n_per_m=100.0)
     assert "nearest: bearings as chosen without idler_bearing_n_per_m" in "".join(
-        first_machine(known).expected
+        first_machine(known).expectations
     )
 
 
@@ -304,11 +304,11 @@ def test_teeth_that_pit_get_a_shaper_that_spreads_the_contact():
 
 @pytest.mark.parametrize("others", [{}, {"idlers": 2}, {"shaper_teeth": 22}])
 def test_a_torque_that_is_too_large_is_named_with_one_that_is_not(others):
-    lines = "\n".join(first_machine(pair_of_19_and_97(300, **others)).expected)
+    lines = "\n".join(first_machine(pair_of_19_and_97(300, **others)).expectations)
     (nearest,) = re.findall(r"leaves the rating without reserve .* nearest: at most ([\d.]+) N m", lines)
     assert 20.0 < float(nearest) < 300.0
     for part, is_named in ((0.97, False), (1.05, True)):
-        lines = "\n".join(first_machine(pair_of_19_and_97(part * float(nearest), **others)).expected)
+        lines = "\n".join(first_machine(pair_of_19_and_97(part * float(nearest), **others)).expectations)
         assert ("leaves the rating without reserve" in lines) == is_named
 
 

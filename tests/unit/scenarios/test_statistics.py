@@ -74,7 +74,7 @@ def test_block_with_a_failed_sample_is_left_out_and_counted():
     values = index_samples(linear(), 0, 5 * 256).sum(axis=1)
     values[7] = np.nan
     found = sobol_indices(values, 3)
-    assert (found.blocks, found.failed) == (128, 1)
+    assert (found.blocks, found.failed_blocks) == (128, 1)
     with pytest.raises(ValueError, match="whole"):
         sobol_indices(np.full(5, np.nan), 3)
 

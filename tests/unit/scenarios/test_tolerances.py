@@ -18,7 +18,7 @@ from facegear.load_sharing import quantities
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.stages.tolerances import tolerances
 from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 
 MEAN = "transmission.single_meshes"
 LINEAR = {

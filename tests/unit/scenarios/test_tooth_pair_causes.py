@@ -19,7 +19,7 @@ from facegear.pipeline.stage import Case
 from facegear.stages.tolerances_chunk import chunk_of
 from facegear.variants import contact as in_contact
 from facegear.variants.machines import stored_flanks
-from facegear.variants.sampled import SampledMachine
+from facegear.variants.sampled_machine import SampledMachine
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's compliance is computed once a process
 CROWNING = "tooth_pair.pinion.lead_crowning.amount_um"

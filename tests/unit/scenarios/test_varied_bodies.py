@@ -12,7 +12,7 @@ from facegear.config.base import parse
 from facegear.config.load import load_config
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.machines import MachineInputs
-from facegear.config.model import resolved
+from facegear.config.model import resolved_values
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
@@ -39,7 +39,7 @@ def stiff(times: float) -> ReducedBody:
 @pytest.fixture(scope="module")
 def values():
     """Plain values without runouts: one mesh cycle is all of the hunting cycle."""
-    plain = resolved(FLEXIBLE)
+    plain = resolved_values(FLEXIBLE)
     for part in ("pinion", "face_gear"):
         plain["transmission"][part]["runout"] = None
     for single in plain["transmission"]["single_pinions"].values():
@@ -58,7 +58,7 @@ def solved(monkeypatch):
         webs.append(section.web.rim_thickness_mm)
         return stiff(2e4 * section.web.rim_thickness_mm / 12.0)
 
-    monkeypatch.setattr(varied_bodies, "_solved", solve)
+    monkeypatch.setattr(varied_bodies, "_solve_body", solve)
     return webs
 
 
@@ -99,7 +99,7 @@ def test_body_is_solved_once_for_every_section_and_not_for_what_it_does_not_depe
         given = with_web(values, thickness)
         given["transmission"]["face_gear"]["mass_kg"] = 40.0 + thickness
         section = parse(Transmission, given["transmission"])
-        joined = bodies.joined(
+        joined = bodies.add_bodies(
             MachineInputs(transmission=section, teeth=numbers, harmonics=K).build(),
             section,
             given["tooth_pair"],
@@ -128,7 +128,7 @@ def test_design_whose_mass_cannot_hold_its_web_is_refused_before_it_is_solved(va
         transmission=section, teeth=ToothNumbers.of_config(values["tooth_pair"]), harmonics=K
     ).build()
     with pytest.raises(ConfigError, match=r"transmission\.face_gear\.mass_kg = 32"):
-        bodies_of(values).joined(machine, section, given["tooth_pair"])
+        bodies_of(values).add_bodies(machine, section, given["tooth_pair"])
     assert not solved
 
 

@@ -81,7 +81,7 @@ def test_below_the_first_solution_the_force_falls_with_the_exponent_that_it_has_
 
 
 def test_a_table_of_more_levels_is_taken_only_where_fewer_miss_the_aim():
-    """As where a second pair joins, the slope jumps by two thirds at a deflection."""
+    """The slope jumps by two thirds at a deflection, like where a second pair joins."""
     smooth, forces = contacts(depth=0.0), np.array(law_torques(24e3))
     x = np.linspace(0.0, 1e-4, 20001)
     over = np.maximum(x - 2e-5, 0.0)

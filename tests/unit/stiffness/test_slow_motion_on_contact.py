@@ -47,7 +47,7 @@ def moved(machine, speed):
 
 
 def at_rest(machine):
-    """The same deflection of the machine at rest, m."""
+    """Deflection of the machine at rest, m."""
     found = equilibria(machine, np.arange(SAMPLES) / SAMPLES).displacements
     return (found @ flank_jacobian(machine.layout).T - constant_errors(machine) - flank_gaps(machine))[:, 0]
 

@@ -19,20 +19,20 @@ from facegear.strength.posed_contacts import (
     PRESSURE,
     ROOTS,
     STRESSES,
+    ContactPose,
     PosedContacts,
-    Stand,
-    change,
-    changed,
-    duty_stands,
+    duty_contact_poses,
     posed_contacts,
     root_arrays_of,
+    scale_contact,
+    stress_ratio,
 )
 from facegear.strength.root_stress import RootStress
-from validation.poses.measure import ASSEMBLIES, LOADED, SURFACE, TORQUE
+from validation.poses.measure import ASSEMBLIES, LOADED_CONTACT, SURFACE, TORQUE
 
 TORQUES = np.array([300.0, 600.0, 1000.0])
-REST = Stand(0.268125, 0.0)
-ASIDE = Stand(0.2725, 0.0)
+REST = ContactPose(0.268125, 0.0)
+ASIDE = ContactPose(0.2725, 0.0)
 GEARS = ("upper", "lower")
 
 
@@ -71,24 +71,25 @@ def duty(torques, bins, meshes=(), flank="drive", gear="face_gear"):
 )
 def test_what_a_pose_changes_of_stress_is_what_contact_solved_in_both_assemblies_says(surface):
     """Between the surface's nodes; contact at default accuracy, stored by `validation.poses.measure`."""
-    rows = pd.read_csv(LOADED).set_index("assembly")
+    rows = pd.read_csv(LOADED_CONTACT).set_index("assembly")
     ends = [
-        Stand(contact_at(surface.pair, ASSEMBLIES[name]).y, 0.0) for name in ("nominal", "offset -120 um")
+        ContactPose(contact_at(surface.pair, ASSEMBLIES[name]).y, 0.0)
+        for name in ("nominal", "offset -120 um")
     ]
     for name in STRESSES:
         known = rows.loc["offset -120 um", name] / rows.loc["nominal", name]
-        factor = change(surface, name, *ends)(np.array([TORQUE]))
+        factor = stress_ratio(surface, name, *ends)(np.array([TORQUE]))
         agrees(f"{name} over that as assembled", factor, known, relative=5e-3)
 
 
 @settings(max_examples=20, deadline=None)
 @given(st.floats(0.261, 0.277), st.floats(0.261, 0.277), st.floats(0.261, 0.277), st.floats(70.0, 1190.0))
 def test_changes_of_stress_follow_one_another(surface, first, second, third, torque):
-    stands = [Stand(path, 0.0) for path in (first, second, third)]
+    stands = [ContactPose(path, 0.0) for path in (first, second, third)]
     at = np.array([torque])
     for name in STRESSES:
-        steps = change(surface, name, *stands[:2])(at) * change(surface, name, *stands[1:])(at)
-        assert steps == pytest.approx(change(surface, name, stands[0], stands[2])(at), rel=1e-9)
+        steps = stress_ratio(surface, name, *stands[:2])(at) * stress_ratio(surface, name, *stands[1:])(at)
+        assert steps == pytest.approx(stress_ratio(surface, name, stands[0], stands[2])(at), rel=1e-9)
         there, here = (surface.at(name, torque, stand.path, 0.0) for stand in (stands[2], stands[0]))
         assert steps == pytest.approx(there / here, rel=1e-9)
 
@@ -108,7 +109,7 @@ def posed(surface):
 def test_a_load_has_the_stress_of_its_own_mesh_where_its_bin_puts_it(surface, torque, mesh, gear):
     """A bin with the machine's own load changes nothing; another one what the surface says."""
     machine = posed(surface)
-    stands = {(number, name, flank): REST for number in (0, 1) for name, flank in machine.stands}
+    stands = {(number, name, flank): REST for number in (0, 1) for name, flank in machine.contact_poses}
     stands[1, mesh, "drive"] = ASIDE
     loads = machine.stresses(duty([torque, torque], [0, 1], [mesh, mesh], gear=gear), stands)
     own = machine.contacts[mesh]["drive"]
@@ -118,16 +119,16 @@ def test_a_load_has_the_stress_of_its_own_mesh_where_its_bin_puts_it(surface, to
         (loads.pressure, own.pressure.at(torque), PRESSURE),
     ):
         assert found[0] == stress
-        assert found[1] == pytest.approx(stress * change(surface, name, REST, ASIDE)(at)[0], rel=1e-12)
+        assert found[1] == pytest.approx(stress * stress_ratio(surface, name, REST, ASIDE)(at)[0], rel=1e-12)
 
 
 def test_a_duty_cycle_that_names_no_mesh_is_judged_by_the_one_that_carries_most(surface):
     machine = posed(surface)
-    stands = {(0, *key): REST for key in machine.stands}
+    stands = {(0, *key): REST for key in machine.contact_poses}
     assert machine.met_by(duty([600.0], [0])) == [("left/upper", "drive")]
     loads = machine.stresses(duty([600.0], [0]), stands)
     assert loads.tension[0] == pytest.approx(1.2 * 600e6, rel=1e-6)
-    other = replace(machine, carrying={"tail/upper": "drive", "left/upper": "back"})
+    other = replace(machine, loaded_flanks={"tail/upper": "drive", "left/upper": "back"})
     assert other.met_by(duty([600.0], [0])) == [("tail/upper", "drive")]
     each = duty([600.0], [0], flank="each")
     assert other.met_by(each) == [("left/upper", "drive"), ("left/upper", "back")]
@@ -158,12 +159,12 @@ def test_the_flank_that_carries_has_contact_solved_there_and_the_other_that_of_t
     }
     assembled = {(gear, flank): contact(1.0) for gear in GEARS for flank in ("drive", "back")}
     found = posed_contacts(arrays, table, surface, assembled, GEARS)
-    assert found.carrying == {"one/upper": "back"}
+    assert found.loaded_flanks == {"one/upper": "back"}
     own, other = (found.contacts["one/upper"][flank] for flank in ("back", "drive"))
     np.testing.assert_array_equal(own.roots["pinion"].stress, solved.roots["pinion"].stress)
     np.testing.assert_allclose(own.pressure.pressure, solved.pressure.pressure, rtol=1e-12)
-    factors = {name: change(surface, name, REST, ASIDE) for name in STRESSES}
-    expected = changed(contact(1.0), factors)
+    factors = {name: stress_ratio(surface, name, REST, ASIDE) for name in STRESSES}
+    expected = scale_contact(contact(1.0), factors)
     np.testing.assert_array_equal(other.roots["face_gear"].stress, expected.roots["face_gear"].stress)
     at = np.array([600.0])
     assert other.tension["face_gear"](600.0) == pytest.approx(
@@ -177,7 +178,7 @@ def test_stands_of_bins_are_read_as_they_were_written():
         [(1, "one/upper", "drive", 270.0, 0.02), (2, "one/upper", "back", 265.0, 0.0)],
         columns=["bin", "mesh", "flank", "unloaded_path_mm", "shaft_angle_error_deg"],
     )
-    assert duty_stands(table) == {
-        (0, "one/upper", "drive"): Stand(0.27, float(np.radians(0.02))),
-        (1, "one/upper", "back"): Stand(0.265, 0.0),
+    assert duty_contact_poses(table) == {
+        (0, "one/upper", "drive"): ContactPose(0.27, float(np.radians(0.02))),
+        (1, "one/upper", "back"): ContactPose(0.265, 0.0),
     }

@@ -21,7 +21,7 @@ CONFIG = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 BODY = CONFIG.transmission.face_gear.body
 FITTED = BODY.model_copy(update={"teeth": "fitted"})
 SIZES = (0.5, 1.6, 0.9)
-"""Of the elements, in modules: the volume is that of four times as many to 1e-4."""
+"""Sizes of the elements, in modules: the volume is that of four times as many to 1e-4."""
 
 
 def test_layer_weighs_what_the_papers_teeth_weigh():

@@ -196,7 +196,9 @@ def test_softer_bodies_lower_every_natural_frequency_of_the_machine_and_turning_
 
 
 def factors_by_moving_loads(order, harmonic, angles):
-    """What turns with and against the body in the wave of an order, from forces at discrete times."""
+    """Factors of the parts that turn with and against the body in the wave of an order, from forces at
+    discrete times.
+    """
     times = np.arange(8 * harmonic) / (8 * harmonic)
     forces = np.cos(2 * np.pi * harmonic * times[:, None] - harmonic * TEETH * angles)
     spectrum = np.fft.fft(forces @ np.exp(1j * order * angles)) / times.size

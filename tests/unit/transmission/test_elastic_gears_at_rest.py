@@ -72,7 +72,7 @@ def below(body: ReducedBody, max_frequency) -> ReducedBody:
 
 
 def test_law_that_depends_on_the_load_acts_behind_a_body_as_the_stiffness_that_it_is_the_same_as():
-    """Of forces in proportion to the amount, at rest and with the modes of motion."""
+    """Forces are in proportion to the amount, at rest and with the modes of motion."""
     table = linear_table(4, 1e-3, 4.1e8)
     constant = gearbox(gear_bodies.reference_modes())
     lawful = replace(constant, tables=(FlankTables(table, table),) * 2)
@@ -107,7 +107,7 @@ def test_flanks_at_rest_stand_where_teeth_and_the_influence_of_all_flanks_let_th
 
 
 def test_machine_at_rest_needs_two_coordinates_for_each_mesh_of_a_gear_and_gives_the_same_answers():
-    """Of a body that has no more compliance than its modes."""
+    """The body has no more compliance than its modes."""
     body = gear_bodies.reference_modes()
     machine = gearbox(replace(body, static=body.modal))
     condensed = at_rest(machine)

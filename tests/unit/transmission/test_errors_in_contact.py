@@ -37,7 +37,7 @@ def closed_by(design, **assembly):
 
 
 def lumped(x=0.0, y=0.0):
-    """The same of the lumped model's upper and lower mesh: (drive, back) each."""
+    """Values of the lumped model's upper and lower mesh: (drive, back) each."""
     layout = make_layout((("one", Role.INPUT, 0.0),), kinematics=GEOMETRIC)
     flaws = replace(perfect(layout), position=np.array([[x, y]]))
     lower_drive, upper_drive, lower_back, upper_back = -constant_errors(

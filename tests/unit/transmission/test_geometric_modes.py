@@ -109,8 +109,10 @@ def test_tilting_gears_add_two_modes_each_and_stiff_tilt_adds_nothing_else():
 
 
 def test_inputs_float_along_one_line_and_idlers_along_none():
-    """As printed every pinion has one translation that no mesh feels; really only inputs, whose two meshes
-    push along one line, while an idler's drive flank above and back flank below push along two.
+    """In the printed model every pinion has one translation that no mesh feels; really only inputs have.
+
+    Their two meshes push along one line, while an idler's drive flank above and back flank below push along
+    two.
     """
     printed, geometric = both_modes()
     assert multiplicities(printed) == [6, 1, 1, 2, 1, 5, 1, 1, 1, 1, 1, 1, 2, 1, 1, 1, 1]

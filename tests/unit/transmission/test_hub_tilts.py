@@ -29,7 +29,7 @@ from facegear.transmission.teeth import GEOMETRIC
 RADIAL, TILTING, CENTRE = 3e8, 4e6, -0.02
 """Bearings, N/m and N m/rad; height of the point about which the hub tilts, m."""
 MORE = 4.0, 0.03
-"""What the hub has beyond the section: kg and kg m2 about a diameter there."""
+"""Mass and inertia that the hub has beyond the section: kg and kg m2 about a diameter there."""
 MASS, POLAR, _, _ = section_properties(gear_bodies.section())
 INERTIA = inertia_about(gear_bodies.section(), CENTRE) + MORE[1]
 SPEED = 200.0
@@ -88,8 +88,9 @@ def frequencies(turned, gear_speed, count):
 
 
 def free_hub(gear_speed, count):
-    """The same by finite elements with the hub's surface as a rigid body on springs: modes of that at rest,
-    among which the matrices of the turning body stand still in space.
+    """Solve by finite elements with the hub's surface as a rigid body on springs.
+
+    The modes are of the body at rest, among which the matrices of the turning body stand still in space.
     """
     whole, free = matrices(), matrices().free
     rigid = rigid_motions(whole.elements, 1)

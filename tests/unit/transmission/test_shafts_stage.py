@@ -1,4 +1,4 @@
-"""What stage shafts writes: stiffness, bearing loads and twist of a machine under its mean torques."""
+"""Results of stage shafts: stiffness, bearing loads and twist of a machine under its mean torques."""
 
 from pathlib import Path
 

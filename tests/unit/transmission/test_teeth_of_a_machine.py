@@ -1,4 +1,4 @@
-"""What single teeth add to the errors of a machine's meshes, beside pitch deviations that say the same."""
+"""Contribution of single teeth to the errors of a machine's meshes, beside equivalent pitch deviations."""
 
 from dataclasses import replace
 

@@ -38,7 +38,7 @@ def report_base(wildcards):
 
     A file that is no whole config has no values to compare with.
     """
-    path = extended(CONFIGFILES[0])
+    path = base_path(CONFIGFILES[0])
     if path is None:
         return None
     try:

@@ -37,7 +37,7 @@ def listed(branch: Branch):
 
 
 def assert_same_from_the_other_end(branch: Branch, run: ContinuationSettings):
-    """The same special points by another way along the branch, and no turning round on either."""
+    """Assert equal special points by another way along the branch, and no turning round on either."""
     assert branch.ends == (BranchEnd.LIMIT, BranchEnd.LIMIT)
     back = follow(branch.period_map, turned(branch.points[-1]), replace(run, ds_max=0.11), both=False)
     assert back.ends[1] is BranchEnd.LIMIT
@@ -118,7 +118,7 @@ def test_a_graze_within_a_hundred_thousandth_of_a_fold_is_distinguished_from_it(
 
 
 def test_two_folds_a_hundred_thousandth_apart_are_both_found():
-    """As 0.1 rpm at 11 000 rpm."""
+    """The distance corresponds to 0.1 rpm at 11 000 rpm."""
     period_map = period_map_of(lambda speed: backlash_oscillator(speed, mean=0.4), 1e-14)
     branch = branch_at(period_map, np.array([1.4, 0.0]), 0.5, ContinuationSettings(0.45, 2.1))
     folds = [special.point.value for special in branch.of(Kind.FOLD)]

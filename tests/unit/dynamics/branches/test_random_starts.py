@@ -15,7 +15,7 @@ SPEED = 6200.0
 
 
 def in_basis(model, turn):
-    """The same model in other coordinates: those of its basis times `turn` (n, n)."""
+    """Return the same model in other coordinates: those of its basis times `turn` (n, n)."""
     reduced = replace(
         model.reduced,
         basis=model.reduced.basis @ turn,
@@ -57,7 +57,9 @@ def test_starts_do_not_depend_on_the_basis_that_the_processor_gives_the_modes(mo
 
 
 def test_starts_fill_a_box_of_displacements_and_of_rotations_at_the_mesh_radius():
-    """What no mesh feels is left out: a start is the nearest one, by the masses, to a point of the box."""
+    """Motions that no mesh feels are left out: a start is the nearest one, by the masses, to a point of the
+    box.
+    """
     model = build_model(make_machine())
     linear, basis = model.machine.linear, model.reduced.basis
     found = scattered(model, 2e-5, 4000, 1) @ basis.T

@@ -9,7 +9,7 @@ import pytest
 from facegear.geometry.flank_errors import GEARS
 from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import contacts_of, flank_contacts
-from facegear.strength.met_flanks import met_by, worst_pressure, worst_root
+from facegear.strength.paired_flanks import met_by, worst_pressure, worst_root
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays
 

@@ -20,30 +20,57 @@ from paper.scorecard.outcome import Tables
 MODES = (12, 7, 8, 25, 17, 11, 18, 19)
 """Orders of the panels (a) to (h) of figure 6."""
 PINIONS = ("tail idler", "right idler", "right input", "left input", "left idler")
-"""In the order of the panels of figure 9."""
-SWEPT = PINIONS[:3]
+"""Pinions in the order of the panels of figure 9."""
+SWEEP_PINIONS = PINIONS[:3]
 """Pinions whose sweeps the paper shows."""
 SPEEDS = (200.0, 20000.0)
 """Range of the paper's sweeps, rpm."""
 CYCLES, ORDERS = 8, 4
 """Mesh cycles and orders that figure 9 shows."""
-STATED: Mapping[str, Any] = {"colour": grey(0.45), "line": "dot", "width": 1.0}
+CLAIM_STYLE: Mapping[str, Any] = {"colour": grey(0.45), "line": "dot", "width": 1.0}
 """Style of numbers that the paper states."""
 SHARING = {
     "inputs": ((1.0, 2.0), "of upper and lower face gear\n(right input pinion)"),
     "idlers": ((1.0, 3.0), "of the idler pinions and the tail rotor idler"),
 }
+"""Range of the coefficient on the axis, and its subject in the axis label, by kind of group."""
 
 Draw = Callable[[Tables, Sequence[Claim]], Figure]
 
 
 def draw(number: int, tables: Tables, claims: Sequence[Claim]) -> Figure:
-    """A figure by its number in the paper; `claims` are those that stand beside it."""
-    return DRAWN[number](tables, claims)
+    """Draw a figure of the paper.
+
+    Parameters
+    ----------
+    number : int
+        Number of the figure in the paper.
+    tables : Tables
+        Stored results by name.
+    claims : Sequence[Claim]
+        Claims that stand beside the figure.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    return DRAW_FUNCTIONS[number](tables, claims)
 
 
 def shown_data(figure: Figure) -> pd.DataFrame:
-    """What a figure shows, row by row: panel, series, x, y; stated numbers are series of their own."""
+    """Return the data of a figure, row by row; stated numbers are series of their own.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+
+    Returns
+    -------
+    DataFrame
+        Columns panel, series, x, y.
+    """
     parts = []
     for number, panel in enumerate(figure.panels):
         title = panel.title or f"panel {number + 1}"
@@ -87,7 +114,7 @@ def _stiffness(tables: Tables, claims: Sequence[Claim]) -> Figure:
         Curve(whole["position"], 1e-8 * whole["k_n_per_m"], "computed"),
         Curve(whole["position"], 1e-8 * whole["k_series_n_per_m"], "Fourier series kept", RED, "dash"),
     ]
-    marks += [Line(1e-8 * mean, "y", "stated mean", **STATED) for _, mean in _numbers(claims)]
+    marks += [Line(1e-8 * mean, "y", "stated mean", **CLAIM_STYLE) for _, mean in _numbers(claims)]
     across = Axis("mesh period t/T", "", low=0.0, high=1.0)
     return Figure([Panel(across, Axis("mesh stiffness", "10⁸ N/m"), marks, height=2.5)])
 
@@ -137,7 +164,7 @@ def _response(tables: Tables, claims: Sequence[Claim]) -> Figure:
 
 def _pinions(tables: Tables, claims: Sequence[Claim]) -> Figure:
     """Figure 10: RMS of the pinions' translations, speed rising."""
-    return _translations(tables["sweep"], SWEPT, "xy", claims)
+    return _translations(tables["sweep"], SWEEP_PINIONS, "xy", claims)
 
 
 def _gears(tables: Tables, claims: Sequence[Claim]) -> Figure:
@@ -156,13 +183,13 @@ def _translations(
             curve = select(sweep, "up", f"{letter}_ac_rms_um", body)
             marks.append(Curve(curve["speed_rpm"], curve["value"], letter, colour, line, width=1.0))
         marks += _stated_speeds([claim for claim in claims if claim.criterion == "peak_speed"])
-        panels.append(_swept(marks, f"({panel}) {body}"))
+        panels.append(_sweep_panel(marks, f"({panel}) {body}"))
     return Figure(panels, width=1.4 * NARROW, keys=_stated_key(panels))
 
 
 def _deflections(tables: Tables, claims: Sequence[Claim]) -> Figure:
     """Figure 12: RMS of six meshes' deflections, speed rising and falling."""
-    meshes = [f"{pinion}/{side}" for side, pinion in product(("upper", "lower"), SWEPT)]
+    meshes = [f"{pinion}/{side}" for side, pinion in product(("upper", "lower"), SWEEP_PINIONS)]
     panels = []
     for panel, mesh in zip("abcdef", meshes, strict=True):
         marks: list[Curve | Line] = []
@@ -171,7 +198,7 @@ def _deflections(tables: Tables, claims: Sequence[Claim]) -> Figure:
             name = f"speed {direction}"
             marks.append(Curve(curve["speed_rpm"], curve["value"], name, colour, line, width=1.0))
         marks += _stated_speeds([claim for claim in claims if _on_mesh(claim, mesh)])
-        panels.append(_swept(marks, f"({panel}) {mesh}"))
+        panels.append(_sweep_panel(marks, f"({panel}) {mesh}"))
     return Figure(panels, width=1.4 * NARROW, keys=_stated_key(panels))
 
 
@@ -181,13 +208,24 @@ def _on_mesh(claim: Claim, mesh: str) -> bool:
 
 
 def stated_speed(claim: Claim) -> float:
-    """The speed (rpm) at which a claim states a peak or a jump."""
+    """Return the speed at which a claim states a peak or a jump.
+
+    Parameters
+    ----------
+    claim : Claim
+        A claim with argument `near`.
+
+    Returns
+    -------
+    float
+        Speed, rpm.
+    """
     return float(claim.args["near"])
 
 
 def _stated_speeds(claims: Sequence[Claim]) -> list[Line]:
     return [
-        Line(speed, name=f"stated {speed:g} rpm", in_legend=False, **STATED)
+        Line(speed, name=f"stated {speed:g} rpm", in_legend=False, **CLAIM_STYLE)
         for speed in dict.fromkeys(stated_speed(claim) for claim in claims)
     ]
 
@@ -195,10 +233,10 @@ def _stated_speeds(claims: Sequence[Claim]) -> list[Line]:
 def _stated_key(panels: Sequence[Panel]) -> list[Key]:
     """One entry of the legend for all speeds that the paper states."""
     is_stated = any(isinstance(mark, Line) for panel in panels for mark in panel.marks)
-    return [Key("stated by the paper", **STATED)] if is_stated else []
+    return [Key("stated by the paper", **CLAIM_STYLE)] if is_stated else []
 
 
-def _swept(marks: Sequence[Curve | Line], title: str) -> Panel:
+def _sweep_panel(marks: Sequence[Curve | Line], title: str) -> Panel:
     speed = Axis("input rotation speed", "rpm", low=SPEEDS[0], high=SPEEDS[1])
     return Panel(speed, Axis("RMS", "µm", low=0.0), marks, title=title, height=1.5)
 
@@ -206,35 +244,35 @@ def _swept(marks: Sequence[Curve | Line], title: str) -> Panel:
 def _sharing(study: str, kind: str) -> Draw:
     """Figures 13 to 20: a coefficient over one mesh cycle, a colour for each point of a study."""
 
-    def drawn(tables: Tables, claims: Sequence[Claim]) -> Figure:
+    def draw_sharing(tables: Tables, claims: Sequence[Claim]) -> Figure:
         curves, sharing = tables["curves"], tables["sharing"]
         rows = curves[(curves["study"] == study) & (curves["kind"] == kind)]
         rows = rows[rows["group"] == rows["group"].iloc[0]]
-        (low, high), what = SHARING[kind]
+        (low, high), subject = SHARING[kind]
         marks: list[Curve | Line] = []
         for colour, (point, curve) in zip(COLOURS, rows.groupby("point", sort=False), strict=False):
             label, time = curve["label"].iloc[0], 1e4 * curve["time_s"]
             marks.append(Curve(time, curve["coefficient"], label, colour))
             of_point = sharing[(sharing["study"] == study) & (sharing["point"] == point)]
-            own = of_point.set_index("group").loc[curve["group"].iloc[0]]
-            if own["undefined_fraction"] < MAX_UNDEFINED:
+            group_summary = of_point.set_index("group").loc[curve["group"].iloc[0]]
+            if group_summary["undefined_fraction"] < MAX_UNDEFINED:
                 look: Look = {"colour": colour, "line": "solid", "width": 3.0, "part": 0.04}
-                marks.append(Line(own["mean"], "y", f"{label}, our mean", **look))
-            for claim, stated in _numbers(claims):
+                marks.append(Line(group_summary["mean"], "y", f"{label}, our mean", **look))
+            for claim, claimed_value in _numbers(claims):
                 if claim.args.get("point") == point:
                     name = "minimum" if "column" in claim.args else "mean"
                     line = "dashdot" if name == "minimum" else "dot"
-                    style: Look = {**STATED, "colour": colour, "line": line}
-                    marks.append(Line(stated, "y", f"{label}, stated {name}", **style))
+                    style: Look = {**CLAIM_STYLE, "colour": colour, "line": line}
+                    marks.append(Line(claimed_value, "y", f"{label}, stated {name}", **style))
         panel = Panel(
             Axis("time over one mesh cycle", "10⁻⁴ s", low=0.0, high=float(time.max())),
-            Axis(f"dynamic load sharing coefficient\n{what}", "", low=low - 0.05, high=high + 0.05),
+            Axis(f"dynamic load sharing coefficient\n{subject}", "", low=low - 0.05, high=high + 0.05),
             marks,
             height=3.0,
         )
         return Figure([panel], width=1.2 * NARROW)
 
-    return drawn
+    return draw_sharing
 
 
 def _numbers(claims: Sequence[Claim]) -> list[tuple[Claim, float]]:
@@ -242,7 +280,7 @@ def _numbers(claims: Sequence[Claim]) -> list[tuple[Claim, float]]:
     return [(claim, claim.paper) for claim in claims if claim.paper is not None]
 
 
-DRAWN: Mapping[int, Draw] = {
+DRAW_FUNCTIONS: Mapping[int, Draw] = {
     6: _modes,
     7: _stiffness,
     8: _harmonics,
