@@ -16,7 +16,7 @@ from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.number_format import count_noun
-from facegear.questions import OPTIONS, QUESTIONS, answered, flag, reader
+from facegear.questions import OPTIONS, QUESTIONS, complete_answers, flag, reader
 
 ROOT = Path(__file__).parents[1]
 INTERRUPTED = 130
@@ -31,13 +31,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     So does a file or folder that the system refuses. Ctrl-C ends it with one line and exit code INTERRUPTED.
     """
-    given = parser().parse_args(arguments)
+    options = parser().parse_args(arguments)
     try:
-        return given.command(given)
+        return options.command(options)
     except KeyboardInterrupt:
         # The terminal shows ^C behind what stands there, such as a question.
         start = "\n" if sys.stderr.isatty() else ""
-        print(f"{start}{given.name}: stopped{STOPPED.get(given.name, '')}", file=sys.stderr)
+        print(f"{start}{options.name}: stopped{STOPPED.get(options.name, '')}", file=sys.stderr)
         return INTERRUPTED
     except FacegearError as error:
         print(error, file=sys.stderr)
@@ -76,9 +76,9 @@ def parser() -> argparse.ArgumentParser:
         new.add_argument(
             flag(name), type=reader(kind), help=text + ("" if default is None else f" ({default})")
         )
-    chosen = new.add_argument_group("values that are chosen unless they are given")
+    optional_values = new.add_argument_group("values that are chosen unless they are given")
     for name, (kind, text) in OPTIONS.items():
-        chosen.add_argument(flag(name), type=reader(kind), help=text)
+        optional_values.add_argument(flag(name), type=reader(kind), help=text)
     new.add_argument(
         "--from", dest="rexs", type=Path, metavar="REXS", help="REXS file whose equal pinions are taken over"
     )
@@ -153,38 +153,40 @@ def installed_version() -> str:
         return "unknown: this folder is not installed"
 
 
-def _new(given: argparse.Namespace) -> int:
+def _new(options: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
     from facegear.variants.first_machine import first_machine
     from facegear.variants.gear_unit import RexsPinions, known_of_rexs
     from facegear.variants.starting_wishes import MachineWishes
 
-    if given.config.exists():
-        raise FacegearError(f"{given.config}: exists already; choose another name")
-    if given.config.suffix not in (".yaml", ".yml"):
-        raise FacegearError(f"{given.config}: must end in .yaml")
-    rexs = RexsPinions({}, ()) if given.rexs is None else known_of_rexs(given.rexs)
+    if options.config.exists():
+        raise FacegearError(f"{options.config}: exists already; choose another name")
+    if options.config.suffix not in (".yaml", ".yml"):
+        raise FacegearError(f"{options.config}: must end in .yaml")
+    rexs = RexsPinions({}, ()) if options.rexs is None else known_of_rexs(options.rexs)
     read = dict(rexs.values)
-    if given.idlers and given.pinions is None and "pinions" in read:
-        read["pinions"] = max(read["pinions"] - given.idlers, 0)
-    own = {name: value for name, value in vars(given).items() if value is not None}
-    given_values = {name: own[name] for name in OPTIONS if name in own}
-    known = MachineWishes(
-        case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own}) | given_values)
+    if options.idlers and options.pinions is None and "pinions" in read:
+        read["pinions"] = max(read["pinions"] - options.idlers, 0)
+    new_values = {name: value for name, value in vars(options).items() if value is not None}
+    given_values = {name: new_values[name] for name in OPTIONS if name in new_values}
+    wishes = MachineWishes(
+        case=options.config.stem,
+        coarse=options.coarse,
+        **(read | complete_answers({**read, **new_values}) | given_values),
     )
-    machine = first_machine(known)
+    machine = first_machine(wishes)
     with TemporaryDirectory() as folder:
-        draft = Path(folder) / given.config.name
+        draft = Path(folder) / options.config.name
         draft.write_text(machine.text, encoding="utf-8")
         try:
             load_config(draft)
         except ConfigErrors as error:
             raise ConfigErrors("new", list(error.lines)) from None
-    _say_if_new(given.config.parent)
-    with atomic_path(given.config) as temporary:
+    _say_if_new(options.config.parent)
+    with atomic_path(options.config) as temporary:
         temporary.write_text(machine.text, encoding="utf-8")
     print(*rexs.notes, *machine.expectations, sep="\n")
-    print(f"{given.config}: written; `facegear report {given.config}` computes it")
+    print(f"{options.config}: written; `facegear report {options.config}` computes it")
     return 0
 
 
@@ -194,25 +196,32 @@ def _say_if_new(folder: Path) -> None:
         print(f"{folder}: new folder", file=sys.stderr)
 
 
-def _run(given: argparse.Namespace) -> int:
+def _run(options: argparse.Namespace) -> int:
     """Hand over to Snakemake, whose own reader of configs is not met by a file that cannot be read.
 
     Where the workflow is not at hand, as it is no part of the wheel, this process computes the same files.
     """
-    read_layers(given.config)
-    return _with_snakemake(given) if (ROOT / "workflow" / "Snakefile").is_file() else _run_here(given)
+    read_layers(options.config)
+    return _with_snakemake(options) if (ROOT / "workflow" / "Snakefile").is_file() else _run_here(options)
 
 
-def _with_snakemake(given: argparse.Namespace) -> int:
+def _with_snakemake(options: argparse.Namespace) -> int:
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "workflow" / "Snakefile")]
-    command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
-    command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
-    folder = Path(given.directory)
-    for inside in () if given.dry_run else ("", ".snakemake", "results"):
+    command += [
+        "--cores",
+        options.cores,
+        "--directory",
+        options.directory,
+        "--configfile",
+        str(options.config),
+    ]
+    command += ["--verbose"] * options.verbose + ["--dry-run"] * options.dry_run
+    folder = Path(options.directory)
+    for inside in () if options.dry_run else ("", ".snakemake", "results"):
         require_writable(folder / inside)
-    with subprocess.Popen([*command, "--", *given.targets], env=_with_cache(folder.resolve())) as run:
+    with subprocess.Popen([*command, "--", *options.targets], env=_with_cache(folder.resolve())) as run:
         while True:
             # A terminal sends Ctrl-C to Snakemake, too, which ends its jobs before it ends itself.
             with suppress(KeyboardInterrupt):
@@ -233,95 +242,97 @@ def _with_cache(folder: Path) -> dict[str, str]:
     return dict(os.environ)
 
 
-def _run_here(given: argparse.Namespace) -> int:
+def _run_here(options: argparse.Namespace) -> int:
     import facegear
 
-    if given.targets or given.dry_run:
+    if options.targets or options.dry_run:
         hint = "the workflow is not part of an installed package: run this from its repository"
         raise FacegearError(f"run: single files and --dry-run need Snakemake; {hint}")
-    gearbox = facegear.load(given.config, None)
-    folder = Path(given.directory) / "results" / gearbox.config.case
-    print(gearbox.run(folder, _printed))
+    gearbox = facegear.load(options.config, None)
+    folder = Path(options.directory) / "results" / gearbox.config.case
+    print(gearbox.run(folder, _print_stage))
     return 0
 
 
-def _report(given: argparse.Namespace) -> int:
+def _report(options: argparse.Namespace) -> int:
     import facegear
 
-    gearbox = facegear.load(given.config, given.results)
-    path = given.output or Path(f"{gearbox.config.case}.html")
+    gearbox = facegear.load(options.config, options.results)
+    path = options.output or Path(f"{gearbox.config.case}.html")
     _say_if_new(path.parent)
     failures: list[str] = []
 
     def print_stage(stage: str, summary: str) -> None:
         failures.extend([stage] * summary.startswith("not computed: "))
-        _printed(stage, summary)
+        _print_stage(stage, summary)
 
     print(gearbox.report(path, print_stage))
     return 1 if failures else 0
 
 
-def _figures(given: argparse.Namespace) -> int:
+def _figures(options: argparse.Namespace) -> int:
     import facegear
 
-    gearbox = facegear.load(given.config, given.results)
-    folder, suffix = given.output, ".png" if given.png else ".svg"
+    gearbox = facegear.load(options.config, options.results)
+    folder, suffix = options.output, ".png" if options.png else ".svg"
     if folder is None:
-        folder = (gearbox.store.folder or Path(given.results) / gearbox.config.case) / "figures"
-        if not given.png:
+        folder = (gearbox.store.folder or Path(options.results) / gearbox.config.case) / "figures"
+        if not options.png:
             raise FacegearError(f"figures: the svg in {folder} are those of the run: add --png or --output")
-    paths = gearbox.figures(folder, given.names, suffix, _printed)
+    paths = gearbox.figures(folder, options.names, suffix, _print_stage)
     print(paths[0] if len(paths) == 1 else f"{count_noun(len(paths), 'figure')} in {folder}")
     return 0
 
 
-def _printed(stage: str, summary: str) -> None:
+def _print_stage(stage: str, summary: str) -> None:
     print(f"{stage}: {summary}", file=sys.stderr, flush=True)
 
 
-def _check(given: argparse.Namespace) -> int:
+def _check(options: argparse.Namespace) -> int:
     """Exit code 1 where a run would fail."""
     from facegear.checking import check_config
     from facegear.config.yaml_file import read_yaml
 
-    result = check_config(load_config(given.config), read_yaml(given.config))
+    result = check_config(load_config(options.config), read_yaml(options.config))
     for line in result.remarks:
         print(line)
     if result.failures:
         for line in result.failures:
-            print(f"{given.config}: would fail later: {line}", file=sys.stderr)
+            print(f"{options.config}: would fail later: {line}", file=sys.stderr)
         return 1
-    print(f"{given.config}: no mistakes; {count_noun(len(result.cases), 'case')}: {', '.join(result.cases)}")
+    print(
+        f"{options.config}: no mistakes; {count_noun(len(result.cases), 'case')}: {', '.join(result.cases)}"
+    )
     return 0
 
 
-def _limits(given: argparse.Namespace) -> int:
+def _limits(options: argparse.Namespace) -> int:
     from facegear.config.limits import limits_in_words
 
-    print(limits_in_words(**{name: getattr(given, name) for name in LIMITS}))
+    print(limits_in_words(**{name: getattr(options, name) for name in LIMITS}))
     return 0
 
 
-def _compare(given: argparse.Namespace) -> int:
+def _compare(options: argparse.Namespace) -> int:
     """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
     from facegear.compare import answers, judge, page  # these draw, and bring matplotlib
 
-    if given.page:
-        _say_if_new(given.page.parent)
-        require_writable_file(given.page)
-    with answers.opened(given.old) as old, answers.opened(given.new) as new:
+    if options.page:
+        _say_if_new(options.page.parent)
+        require_writable_file(options.page)
+    with answers.open_answer(options.old) as old, answers.open_answer(options.new) as new:
         comparison = judge.compare(old, new)
         reasons = page.causes_table(comparison, old, new)
         print(page.verdict(comparison))
-        sides = {given.old: old, given.new: new}.items()
+        sides = {options.old: old, options.new: new}.items()
         for sentence in filter(None, [page.stored_in_words(name, folder) for name, folder in sides]):
             print(sentence)
         if len(comparison.rows):
             print(page.by_table(comparison).to_string(index=False, na_rep=""))
             for reason in reasons.itertuples(index=False):
                 print(f"{reason.cause}  [{reason.table}]")
-        if given.page:
-            page.write_page(given.page, comparison, reasons, old, new)
+        if options.page:
+            page.write_page(options.page, comparison, reasons, old, new)
     return 0 if comparison.equal else 1
 
 

@@ -32,15 +32,17 @@ def kept_by_content(size: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         @lru_cache(maxsize=size)
-        def kept(call: _Call) -> Any:
+        def compute(call: _Call) -> Any:
             return call.compute()
 
         @wraps(function)
-        def shared(*arguments: P.args, **named: P.kwargs) -> R:
-            result: R = kept(_Call(content((arguments, named)), partial(function, *arguments, **named)))
+        def call_once(*arguments: P.args, **keywords: P.kwargs) -> R:
+            result: R = compute(
+                _Call(content((arguments, keywords)), partial(function, *arguments, **keywords))
+            )
             return result
 
-        return shared
+        return call_once
 
     return decorate
 
@@ -50,7 +52,7 @@ def content(value: Any) -> Any:
     return _content(value)[0]
 
 
-_KEPT = "_content"
+_CONTENT_ATTRIBUTE = "_content"
 """Attribute in which a dataclass that nothing can change any more keeps its content."""
 
 
@@ -59,8 +61,8 @@ def _content(value: Any) -> tuple[Any, bool]:
     if isinstance(value, np.ndarray):
         return (value.dtype.str, value.shape, value.tobytes()), _is_fixed(value)
     if isinstance(value, tuple | list):
-        parts, fixed = _all([_content(part) for part in value])
-        return (type(value), parts), fixed and isinstance(value, tuple)
+        parts, is_fixed = _join_contents([_content(part) for part in value])
+        return (type(value), parts), is_fixed and isinstance(value, tuple)
     kind: Any = type(value)
     if (names := _field_names(kind)) is not None:
         return _of_fields(value, names)
@@ -77,13 +79,13 @@ def _is_fixed(array: Any) -> bool:
 
 
 def _of_fields(value: Any, names: tuple[str, ...]) -> tuple[Any, bool]:
-    known = getattr(value, _KEPT, None)
-    if known is not None:
-        return known, True
-    parts, fixed = _all([_content(getattr(value, name)) for name in names])
+    content = getattr(value, _CONTENT_ATTRIBUTE, None)
+    if content is not None:
+        return content, True
+    parts, is_fixed = _join_contents([_content(getattr(value, name)) for name in names])
     whole = (type(value), parts)
-    if fixed and type(value).__dataclass_params__.frozen:
-        object.__setattr__(value, _KEPT, whole)
+    if is_fixed and type(value).__dataclass_params__.frozen:
+        object.__setattr__(value, _CONTENT_ATTRIBUTE, whole)
         return whole, True
     return whole, False
 
@@ -94,6 +96,6 @@ def _field_names(kind: Any) -> tuple[str, ...] | None:
     return tuple([part.name for part in fields(kind)]) if is_dataclass(kind) else None
 
 
-def _all(parts: Sequence[tuple[Any, bool]]) -> tuple[tuple[Any, ...], bool]:
+def _join_contents(parts: Sequence[tuple[Any, bool]]) -> tuple[tuple[Any, ...], bool]:
     """Contents of several values, and whether all will stay as they are."""
-    return tuple([part for part, _ in parts]), all(fixed for _, fixed in parts)
+    return tuple([part for part, _ in parts]), all(is_fixed for _, is_fixed in parts)

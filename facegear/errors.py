@@ -52,18 +52,18 @@ class NotConverged(FacegearError):
 class CorruptFile(FacegearError):
     """A stored file that is truncated, altered or not what its reader expects."""
 
-    def __init__(self, path: str | Path, what: str, rebuild: str | None = None) -> None:
+    def __init__(self, path: str | Path, problem: str, rebuild: str | None = None) -> None:
         rebuild = rebuild or f"snakemake --cores 2 --force {path}"
-        super().__init__(f"{path}: {what}; rebuild it with: {rebuild}")
-        self.path, self.what = Path(path), what
+        super().__init__(f"{path}: {problem}; rebuild it with: {rebuild}")
+        self.path, self.problem = Path(path), problem
 
 
 class MissingExtra(FacegearError):
     """A library that is installed only with an extra of the package: names both."""
 
     def __init__(self, library: str, extra: str) -> None:
-        where = "in the folder of facegear's sources"
-        super().__init__(f'{library} is not installed; get it with: pip install ".[{extra}]" ({where})')
+        folder_text = "in the folder of facegear's sources"
+        super().__init__(f'{library} is not installed; get it with: pip install ".[{extra}]" ({folder_text})')
         self.library, self.extra = library, extra
 
 
@@ -134,8 +134,23 @@ def file_path(value: object, argument: str = "path") -> Path:
     return Path(value)
 
 
-def chosen(name: str, allowed: Sequence[str], what: str) -> str:
-    """`name` if it is one of `allowed`; raises FacegearError with one line otherwise."""
-    if name not in allowed:
-        raise FacegearError(f"{what} = {name!r}: must be one of {', '.join(allowed)}")
+def require_choice(name: str, choices: Sequence[str], quantity: str) -> str:
+    """Return a name, or refuse it if it is not one of the choices.
+
+    Parameters
+    ----------
+    name : str
+        The name.
+    choices : Sequence[str]
+        Names that are allowed.
+    quantity : str
+        Meaning of the name, for the message.
+
+    Returns
+    -------
+    str
+        The name. Raises FacegearError in one line.
+    """
+    if name not in choices:
+        raise FacegearError(f"{quantity} = {name!r}: must be one of {', '.join(choices)}")
     return name

@@ -25,7 +25,13 @@ class Progress:
         self.estimate: tuple[float, float] | None = None
 
     def step(self, count: int = 1) -> None:
-        """Count work as done; prints at most once an interval."""
+        """Count work as done; prints at most once an interval.
+
+        Parameters
+        ----------
+        count : int
+            Number of finished pieces of work.
+        """
         self.done += count
         now = time.monotonic()
         if self.first is None:
@@ -33,8 +39,8 @@ class Progress:
         if (now - self.last < self.interval and self.done < self.total) or now - self.start < self.interval:
             return
         self.last = now
-        known = self.first[1] < self.done < self.total
-        left = f", about {self._left(now, self.first):.0f} s left" if known else ""
+        is_estimable = self.first[1] < self.done < self.total
+        left = f", about {self._left(now, self.first):.0f} s left" if is_estimable else ""
         print(f"{self.label}: {self.done}/{self.total}{left}", file=self.stream or sys.stderr, flush=True)
 
     def _left(self, now: float, first: tuple[float, int]) -> float:

@@ -1,4 +1,4 @@
-"""What `facegear new` asks for."""
+"""Questions of `facegear new`."""
 
 import sys
 from argparse import ArgumentTypeError
@@ -17,7 +17,7 @@ QUESTIONS: dict[str, tuple[type[int] | type[float], float | None, str]] = {
     "pressure_angle_deg": (float, 25.0, "Pressure angle in degrees"),
     "idlers": (int, 0, "Idlers between a lower and an upper face gear; 0 for a single gear"),
 }
-"""What `new` asks: kind of number, default if there is one, and the question."""
+"""Questions of `new`: kind of number, default if there is one, and the text."""
 
 OPTIONS: dict[str, tuple[type[int] | type[float], str]] = {
     "profile_shift_modules": (float, "profile shift of the pinions"),
@@ -74,26 +74,60 @@ def reader(kind: type[int] | type[float]) -> Callable[[str], float]:
 
 
 def flag(name: str) -> str:
-    """The option of an argument."""
+    """Return the option of an argument.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument.
+
+    Returns
+    -------
+    str
+        The option.
+    """
     return f"--{name.replace('_', '-')}"
 
 
-def answered(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of QUESTIONS: as given, else as answered at the terminal, else by default.
+def complete_answers(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of QUESTIONS: as given, else as answered at the terminal, else by default.
 
-    Raises FacegearError where there is neither, or an answer is no number.
+    Parameters
+    ----------
+    options : Mapping[str, Any]
+        Values of the command line by name, None where not given.
+
+    Returns
+    -------
+    dict[str, Any]
+        Value by name, in the unit of its question. Raises FacegearError where there is neither, or an answer
+        is no number.
     """
-    missing = [name for name in QUESTIONS if given.get(name) is None]
-    needed = [flag(name) for name in missing if QUESTIONS[name][1] is None]
-    if needed and not sys.stdin.isatty():
-        raise FacegearError(f"new: {', '.join(needed)} must be given, as there is no terminal to ask at")
+    missing_names = [name for name in QUESTIONS if options.get(name) is None]
+    needed_flags = [flag(name) for name in missing_names if QUESTIONS[name][1] is None]
+    if needed_flags and not sys.stdin.isatty():
+        raise FacegearError(
+            f"new: {', '.join(needed_flags)} must be given, as there is no terminal to ask at"
+        )
     return {
-        name: asked(name) if name in missing and needed else _or_default(name, given) for name in QUESTIONS
+        name: ask_question(name) if name in missing_names and needed_flags else _or_default(name, options)
+        for name in QUESTIONS
     }
 
 
-def asked(name: str) -> float:
-    """What a user answers to a question; nothing takes the default."""
+def ask_question(name: str) -> float:
+    """Ask a question at the terminal; an empty answer takes the default.
+
+    Parameters
+    ----------
+    name : str
+        Name of the question.
+
+    Returns
+    -------
+    float
+        The answer, in the unit of the question.
+    """
     kind, default, text = QUESTIONS[name]
     try:
         answer = input(f"{text}{'' if default is None else f' [{default}]'}: ").strip()
@@ -109,5 +143,5 @@ def asked(name: str) -> float:
         raise ConfigError(name, answer, KINDS[kind]) from None
 
 
-def _or_default(name: str, given: Mapping[str, Any]) -> Any:
-    return QUESTIONS[name][1] if given.get(name) is None else given[name]
+def _or_default(name: str, answers: Mapping[str, Any]) -> Any:
+    return QUESTIONS[name][1] if answers.get(name) is None else answers[name]

@@ -21,7 +21,7 @@ from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from facegear.compare.answers import SAME_DATE
 from facegear.io import documents, tables
-from facegear.pipeline.reported import REPORTED, table_name
+from facegear.pipeline.reported import REPORT_TABLES, table_name
 from facegear.pipeline.table import STAGES
 from validation.references import ROOT
 
@@ -155,7 +155,7 @@ def stored_tables(folder: Path) -> dict[str, pd.DataFrame]:
     dict[str, DataFrame]
         Tables by name.
     """
-    files_read = [(name, file) for name, files in REPORTED.items() for file in files]
+    files_read = [(name, file) for name, files in REPORT_TABLES.items() for file in files]
     paths = [
         folder / STAGES[name].files[file].path for name, file in (*files_read, ("duty_loads", "duty_loads"))
     ]

@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from facegear.compare.judge import NOT_STORED, answer_tables
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.io import documents
 from facegear.io.atomic import atomic_path
 from facegear.io.checksums import MANIFEST_SUFFIX
@@ -19,8 +19,14 @@ MAX_BYTES = 60_000
 SAME_DATE = (2000, 1, 1, 0, 0, 0)
 
 
-def stored() -> list[str]:
-    """Names `version/machine` of the stored answers."""
+def answer_names() -> list[str]:
+    """Return the names `version/machine` of the stored answers.
+
+    Returns
+    -------
+    list[str]
+        The names, sorted.
+    """
     folder = files("facegear.compare").joinpath("stored")
     if not folder.is_dir():
         return []
@@ -38,6 +44,13 @@ def store(folder: Path, path: Path) -> None:
 
     The file names the larger tables too, so that nothing is compared with them. Two equal folders give the
     same bytes. What was on the machine that made them is left out.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    path : Path
+        Path of the file.
     """
     all_names = sorted(answer_tables(folder))
     names = [name for name in all_names if (folder / name).stat().st_size <= MAX_BYTES]
@@ -51,15 +64,25 @@ def store(folder: Path, path: Path) -> None:
 
 
 @contextmanager
-def opened(name: str) -> Iterator[Path]:
-    """The folder of a stored answer `version/machine`, unpacked while it is used, or a folder as it is.
+def open_answer(name: str) -> Iterator[Path]:
+    """Unpack a stored answer while it is used; a folder is used as it is.
 
-    Raises FacegearError for a name that is neither.
+    Parameters
+    ----------
+    name : str
+        Name `version/machine` of a stored answer, or path of a folder.
+
+    Yields
+    ------
+    Path
+        Folder of the answer. Raises FacegearError for a name that is neither.
     """
     if Path(name).is_dir():
         yield Path(name)
         return
-    version, _, machine = chosen(name, stored(), "results (a folder, or a stored answer)").partition("/")
+    version, _, machine = require_choice(
+        name, answer_names(), "results (a folder, or a stored answer)"
+    ).partition("/")
     source = files("facegear.compare").joinpath("stored", version, f"{machine}.zip")
     with TemporaryDirectory() as folder, source.open("rb") as stream, zipfile.ZipFile(stream) as archive:
         archive.extractall(folder)
@@ -67,10 +90,10 @@ def opened(name: str) -> Iterator[Path]:
 
 
 def _short(manifest: Path) -> str:
-    """What says how a table was made, without time, machine and summary."""
+    """Reduce a manifest to what says how a table was made, without time, machine and summary."""
     record = documents.read(manifest)
-    kept = ("rule", "versions", "params", "code", "rebuild", "inputs", "files")
-    return json.dumps({key: record[key] for key in kept if key in record}, sort_keys=True)
+    keys = ("rule", "versions", "params", "code", "rebuild", "inputs", "files")
+    return json.dumps({key: record[key] for key in keys if key in record}, sort_keys=True)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What may have moved a table: config, code and versions of its stage and of all stages before it."""
+"""Possible causes of a moved table: config, code and versions of its stage and of all stages before it."""
 
 import os
 from collections.abc import Iterator, Mapping
@@ -12,10 +12,24 @@ Manifest = Mapping[str, Any]
 
 
 def causes(name: str, old: Path, new: Path) -> list[str]:
-    """One line for each difference behind a table of two folders of results.
+    """List the differences behind a table of two folders of results.
 
     That is a changed value of the config, with both values; changed code of a stage; another version of a
     library. A line says so where there is none, or where a folder does not say how a table was made.
+
+    Parameters
+    ----------
+    name : str
+        Path of the table inside the folders.
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+
+    Returns
+    -------
+    list[str]
+        A line for each difference.
     """
     before, after = _history(old / name), _history(new / name)
     if not before or not after:
@@ -28,18 +42,18 @@ def _history(path: Path) -> dict[str, Manifest]:
     """Manifests of a table's stage and of all before it that the folder still holds, by rule."""
     folders: dict[Path, dict[str, tuple[Path, Manifest]]] = {}
     history: dict[str, Manifest] = {}
-    seen, waiting = set(), [path]
-    while waiting:
-        near = waiting.pop()
+    visited, pending = set(), [path]
+    while pending:
+        near = pending.pop()
         if near.parent not in folders:
             folders[near.parent] = _manifests(near.parent)
         source, manifest = folders[near.parent].get(near.name, (None, {}))
-        if source is None or source in seen:
+        if source is None or source in visited:
             continue
-        seen.add(source)
+        visited.add(source)
         history.setdefault(str(manifest["rule"]), manifest)
         before = [Path(os.path.normpath(near.parent / name)) for name in manifest.get("inputs", {})]
-        waiting += reversed(before)
+        pending += reversed(before)
     return history
 
 
@@ -57,7 +71,7 @@ def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> It
         old, new = (dict(_leaves("", side[rule]["params"].get("needs") or {})) for side in (before, after))
         for key in sorted(old.keys() | new.keys()):
             if old.get(key) != new.get(key):
-                yield f"config {key}: {_shown(old, key)} -> {_shown(new, key)}"
+                yield f"config {key}: {_value_text(old, key)} -> {_value_text(new, key)}"
 
 
 def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
@@ -75,7 +89,7 @@ def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield from _leaves(f"{key}.{name}" if key else str(name), item)
 
 
-def _shown(values: Mapping[str, Any], key: str) -> str:
+def _value_text(values: Mapping[str, Any], key: str) -> str:
     return repr(values[key]) if key in values else "absent"
 
 

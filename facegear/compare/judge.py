@@ -15,7 +15,7 @@ from facegear.compare.quantities import (
     TABLES,
     Bracket,
     Table,
-    declared,
+    declaration_of,
 )
 from facegear.errors import FacegearError
 from facegear.io import documents, tables
@@ -32,7 +32,7 @@ COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerica
 
 
 class Verdict(StrEnum):
-    """What became of a number or a label."""
+    """Verdict on a number or a label."""
 
     SAME = "same"
     WITHIN_ERROR = "within its numerical error"
@@ -75,27 +75,54 @@ class Comparison:
 def compare(old: Path, new: Path) -> Comparison:
     """Compare all tables of two folders of results, but for those that a stored answer leaves out.
 
-    Raises FacegearError for a folder without tables, CorruptFile for a table that was altered since its stage
-    wrote it.
+    Parameters
+    ----------
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+
+    Returns
+    -------
+    Comparison
+        The comparison.
+
+    Raises
+    ------
+    FacegearError
+        For a folder without tables.
+    CorruptFile
+        For a table that was altered since its stage wrote it.
     """
     names = {side: answer_tables(side) for side in (old, new)}
     left_out = tables_not_stored(old) | tables_not_stored(new)
-    judged = [
+    judgements = [
         _judge_file(name, old if name in names[old] else None, new if name in names[new] else None)
         for name in sorted((names[old] | names[new]) - left_out)
     ]
-    rows = pd.concat(judged, ignore_index=True)
+    rows = pd.concat(judgements, ignore_index=True)
     counts = {verdict: int((rows["verdict"] == verdict).sum()) for verdict in Verdict}
     return Comparison(rows[rows["verdict"] != Verdict.SAME].reset_index(drop=True), counts)
 
 
 def answer_tables(folder: Path) -> set[str]:
-    """Tables of a folder of results, as paths inside it."""
+    """Return the tables of a folder of results.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    set[str]
+        Paths inside the folder.
+    """
     paths = (path.relative_to(folder) for path in folder.rglob("*.csv"))
-    kept = {path.as_posix() for path in paths if not set(path.parts) & {*LEFT_OUT, *UNDETERMINED}}
-    if not kept:
+    table_paths = {path.as_posix() for path in paths if not set(path.parts) & {*LEFT_OUT, *UNDETERMINED}}
+    if not table_paths:
         raise FacegearError(f"{folder}: must be a folder of results, with tables (*.csv) in it")
-    return kept
+    return table_paths
 
 
 def tables_not_stored(folder: Path) -> set[str]:
@@ -119,27 +146,30 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
     if old is None or new is None:
         return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
-    table = declared(TABLES, name) or Table()
+    table = declaration_of(TABLES, name) or Table()
     speeds = _bracket_names(before, after, table)
     groups = pd.concat([_without_item(frame, table) for frame in (before, after)])
     before, after = (
         _by_row(frame, table, speed) for frame, speed in zip((before, after), speeds, strict=True)
     )
     groups = dict(zip([*before.index, *after.index], groups, strict=True))
-    shared = before.index.intersection(after.index, sort=False)
+    common_rows = before.index.intersection(after.index, sort=False)
     columns = [column for column in before.columns if column in after.columns]
-    group = pd.Series([groups[row] for row in shared], index=shared, dtype=object)
+    group = pd.Series([groups[row] for row in common_rows], index=common_rows, dtype=object)
     parts = [
-        _judge_column(name, table, before.loc[shared], after.loc[shared], column, group) for column in columns
+        _judge_column(name, table, before.loc[common_rows], after.loc[common_rows], column, group)
+        for column in columns
     ]
-    for this, other, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
-        lost = [f"column {column}" for column in this.columns if column not in other.columns]
-        rows = this.loc[this.index.difference(other.index, sort=False)]
-        frame = _one_sided(name, [*rows.index.astype(str), *lost], verdict)
-        elsewhere = other.loc[other.index.difference(this.index, sort=False)]
+    for table_here, other_table, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
+        lost_columns = [
+            f"column {column}" for column in table_here.columns if column not in other_table.columns
+        ]
+        rows = table_here.loc[table_here.index.difference(other_table.index, sort=False)]
+        frame = _one_sided(name, [*rows.index.astype(str), *lost_columns], verdict)
+        elsewhere = other_table.loc[other_table.index.difference(table_here.index, sort=False)]
         mirrors = {groups[row] for row in elsewhere.index[_flagged(elsewhere, SYMMETRY_BROKEN)]}
         in_both = np.fromiter((groups[row] in mirrors for row in rows.index), dtype=bool, count=len(rows))
-        not_rows = np.zeros(len(lost), dtype=bool)
+        not_rows = np.zeros(len(lost_columns), dtype=bool)
         open_rows = np.concatenate([_flagged(rows, AFTER_IRREGULAR), not_rows])
         images = np.concatenate([_flagged(rows, SYMMETRY_BROKEN) & in_both, not_rows])
         verdicts = frame["verdict"].mask(open_rows, Verdict.ROUNDING).mask(images, Verdict.MIRROR)
@@ -155,17 +185,17 @@ def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.D
     keys = [key for key in table.keys if key in frame.columns]
     if not keys:
         return frame.set_axis([f"row {number + 1}" for number in range(len(frame))])
-    parts = [frame[key].map(_written) for key in keys]
+    parts = [frame[key].map(_value_text) for key in keys]
     if speeds is not None:
-        parts.append(speeds.map(_written))
+        parts.append(speeds.map(_value_text))
     names = parts[0].str.cat(parts[1:], sep=", ") if len(parts) > 1 else parts[0]
     again = names.groupby(names).cumcount()
     names = names.where(again == 0, names + " #" + (again + 1).astype(str))
-    kept = [column for column in frame.columns if column not in keys or column == table.quantity]
-    return frame[kept].set_axis(pd.Index(names))
+    columns = [column for column in frame.columns if column not in keys or column == table.quantity]
+    return frame[columns].set_axis(pd.Index(names))
 
 
-def _written(value: object) -> str:
+def _value_text(value: object) -> str:
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
@@ -207,7 +237,7 @@ def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
     keys = [key for key in table.keys if key in frame.columns and key != table.item]
     if not keys or table.item is None:
         return pd.Series(np.arange(len(frame)).astype(str), index=frame.index)
-    parts = [frame[key].map(_written) for key in keys]
+    parts = [frame[key].map(_value_text) for key in keys]
     return parts[0].str.cat(parts[1:], sep=", ") if len(parts) > 1 else parts[0]
 
 
@@ -216,17 +246,17 @@ def _judge_column(
 ) -> pd.DataFrame:
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
-    shown = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
+    rows = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
     open_rows = _flagged(before, AFTER_IRREGULAR) & _flagged(after, AFTER_IRREGULAR)
     has_image = _flagged(before, SYMMETRY_BROKEN) & _flagged(after, SYMMETRY_BROKEN)
     if not numeric:
-        same = (old.fillna("").astype(str) == new.fillna("").astype(str)).to_numpy()
-        return shown.assign(
+        is_equal = (old.fillna("").astype(str) == new.fillna("").astype(str)).to_numpy()
+        return rows.assign(
             relative_change=np.nan,
             numerical_error=np.nan,
             verdict=np.select(
                 [
-                    same,
+                    is_equal,
                     open_rows,
                     _both_irregular(old, new, table),
                     has_image & (column not in table.motion),
@@ -250,7 +280,7 @@ def _judge_column(
         [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR, Verdict.ROUNDING, Verdict.MIRROR],
         np.where(np.isnan(errors), Verdict.NO_ERROR, Verdict.MOVED),
     )
-    return shown.assign(relative_change=change, numerical_error=errors, verdict=verdict)
+    return rows.assign(relative_change=change, numerical_error=errors, verdict=verdict)
 
 
 def _zero(table: Table, rows: pd.DataFrame, column: str) -> pd.Series:
@@ -322,8 +352,8 @@ def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
     motions = [frame[column] for column in table.motion if column in frame.columns]
     rows = np.zeros(len(frame), dtype=bool)
     for motion in motions:
-        named = motion.notna().to_numpy()
-        rows |= named & ~motion.astype(str).str.startswith(REGULAR).to_numpy()
+        has_motion = motion.notna().to_numpy()
+        rows |= has_motion & ~motion.astype(str).str.startswith(REGULAR).to_numpy()
     return rows
 
 

@@ -15,7 +15,7 @@ from facegear.compare.judge import (
     answer_tables,
     tables_not_stored,
 )
-from facegear.compare.quantities import CURVES, Curve, declared
+from facegear.compare.quantities import CURVES, Curve, declaration_of
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.number_format import count_noun
@@ -24,15 +24,29 @@ from facegear.plots.save import save
 from facegear.report.page import Chapter, Picture, Table, render
 from facegear.report.table import words
 
-SHOWN = 8
+LIMIT = 8
 """Most rows of one table that the page lists."""
 
-NAMED = 3
+MAX_FILES_NAMED = 3
 """Most tables that are named behind one cause."""
 
 
 def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: Path, new: Path) -> None:
-    """Write the page; `reasons` of `causes_table`, `old` and `new` are the folders that were compared."""
+    """Write the page of a comparison.
+
+    Parameters
+    ----------
+    path : Path
+        Path of the file.
+    comparison : Comparison
+        The comparison.
+    reasons : pd.DataFrame
+        Table of `causes_table`.
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+    """
     with TemporaryDirectory() as folder:
         pictures = list(_pictures(comparison, old, new, Path(folder)))
         chapters = [
@@ -52,7 +66,7 @@ def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: P
             Chapter("Curves over each other", "The series of each table that moved most.", pictures=pictures),
             Chapter(
                 "What moved",
-                f"The {SHOWN} largest changes of each table, relative to the largest number of their column.",
+                f"The {LIMIT} largest changes of each table, relative to the largest number of their column.",
                 tables=[Table("Changes", largest(comparison))],
             ),
         ]
@@ -62,15 +76,26 @@ def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: P
 
 
 def verdict(comparison: Comparison) -> str:
-    """One sentence on the whole."""
+    """Write one sentence on the whole comparison.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    str
+        The sentence.
+    """
     if comparison.equal:
         within = comparison.counts[Verdict.WITHIN_ERROR] + comparison.counts[Verdict.IRREGULAR]
-        more = f" {within} numbers moved within their numerical error." if within else ""
+        note = f" {within} numbers moved within their numerical error." if within else ""
         rounding = comparison.counts[Verdict.ROUNDING]
-        more += f" {rounding} numbers, labels and rows that rounding decides differ." if rounding else ""
+        note += f" {rounding} numbers, labels and rows that rounding decides differ." if rounding else ""
         images = comparison.counts[Verdict.MIRROR]
-        more += f" {images} are of the mirror image of the same motion." if images else ""
-        return f"Both folders say the same.{more}"
+        note += f" {images} are of the mirror image of the same motion." if images else ""
+        return f"Both folders say the same.{note}"
     files = comparison.rows.loc[comparison.rows["verdict"].isin(CHANGES), "file"].nunique()
     return f"The folders differ in {count_noun(files, 'table')}."
 
@@ -98,31 +123,72 @@ def stored_in_words(name: str, folder: Path) -> str:
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:
-    """The largest changes of every table, those beyond their error first."""
+    """Return the largest changes of every table, those beyond their error first.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each change.
+    """
     rows = comparison.rows.assign(counts=comparison.rows["verdict"].isin(CHANGES))
     order = rows.sort_values(["counts", "relative_change"], ascending=False, kind="stable")
-    return order.groupby("file").head(SHOWN).sort_values("file", kind="stable").drop(columns="counts")
+    return order.groupby("file").head(LIMIT).sort_values("file", kind="stable").drop(columns="counts")
 
 
 def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
-    """Columns table, cause: what may have moved each table that stands in both folders."""
+    """Tabulate what may have moved each table that stands in both folders.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+    old : Path
+        Folder of the earlier results.
+    new : Path
+        Folder of the later results.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns table, cause.
+    """
     files = [
         name for name in comparison.rows["file"].unique() if (old / name).exists() and (new / name).exists()
     ]
     rows = [(name, line) for name in files for line in causes(name, old, new)]
-    grouped = pd.DataFrame(rows, columns=["table", "cause"]).groupby("cause", sort=False)["table"]
-    return grouped.agg(_named).reset_index()
+    tables_by_cause = pd.DataFrame(rows, columns=["table", "cause"]).groupby("cause", sort=False)["table"]
+    return tables_by_cause.agg(_file_names).reset_index()
 
 
 def by_table(comparison: Comparison) -> pd.DataFrame:
-    """One row a table and verdict: how many numbers or labels, and the largest relative change among them."""
-    grouped = comparison.rows.groupby(["file", "verdict"], sort=True)["relative_change"]
-    return grouped.agg(numbers="size", largest_change="max").reset_index().rename(columns={"file": "table"})
+    """Count numbers or labels by table and verdict.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        The comparison.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each table and verdict: count, and the largest relative change.
+    """
+    changes_by_file = comparison.rows.groupby(["file", "verdict"], sort=True)["relative_change"]
+    return (
+        changes_by_file.agg(numbers="size", largest_change="max")
+        .reset_index()
+        .rename(columns={"file": "table"})
+    )
 
 
-def _named(files: pd.Series) -> str:
-    more = f" and {len(files) - NAMED} more" if len(files) > NAMED else ""
-    return ", ".join(files[:NAMED]) + more
+def _file_names(files: pd.Series) -> str:
+    remainder = f" and {len(files) - MAX_FILES_NAMED} more" if len(files) > MAX_FILES_NAMED else ""
+    return ", ".join(files[:MAX_FILES_NAMED]) + remainder
 
 
 def _counts(comparison: Comparison) -> pd.DataFrame:
@@ -132,7 +198,7 @@ def _counts(comparison: Comparison) -> pd.DataFrame:
 
 def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Iterator[Picture]:
     for name in comparison.rows["file"].unique():
-        curve = declared(CURVES, name)
+        curve = declaration_of(CURVES, name)
         if curve and (old / name).exists() and (new / name).exists():
             before, after, title = _worst_series(name, curve, old, new)
             path = folder / f"{name.replace('/', '_')}.svg"
@@ -151,11 +217,13 @@ def _worst_series(name: str, curve: Curve, old: Path, new: Path) -> tuple[pd.Dat
     if not curve.series:
         return before, after, ""
     keys = [*curve.series, curve.x]
-    both = before[[*keys, curve.y]].merge(after[[*keys, curve.y]], on=keys, suffixes=("_old", "_new"))
-    change = (both[f"{curve.y}_new"] - both[f"{curve.y}_old"]).abs().fillna(0.0)
-    worst = both.loc[change.idxmax(), list(curve.series)] if len(both) else before.iloc[0]
-    picked = [
+    joined_curves = before[[*keys, curve.y]].merge(
+        after[[*keys, curve.y]], on=keys, suffixes=("_old", "_new")
+    )
+    change = (joined_curves[f"{curve.y}_new"] - joined_curves[f"{curve.y}_old"]).abs().fillna(0.0)
+    worst = joined_curves.loc[change.idxmax(), list(curve.series)] if len(joined_curves) else before.iloc[0]
+    series = [
         frame[(frame[list(curve.series)] == worst[list(curve.series)].to_numpy()).all(axis=1)]
         for frame in (before, after)
     ]
-    return picked[0], picked[1], ", ".join(str(worst[key]) for key in curve.series)
+    return series[0], series[1], ", ".join(str(worst[key]) for key in curve.series)

@@ -1,4 +1,4 @@
-"""What is compared between two folders of results, and how accurately each number is known.
+"""Quantities that are compared between two folders of results, and the numerical error of each.
 
 An error is relative to the largest magnitude of its column in either folder. In tables with one quantity a
 row it is relative to the largest magnitude of that quantity. The errors are those of the accuracy table in
@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-Declared = TypeVar("Declared")
+Declaration = TypeVar("Declaration")
 
 MOTION_COLUMNS = ("class", "motion", "class_before", "class_after")
 """Columns that name a class of motion."""
@@ -78,22 +78,37 @@ class Table:
     bracket: Bracket | None = None
 
     def error(self, column: str, elsewhere: bool = False) -> float | None:
-        """Relative numerical error of a column, or None where none is stated.
+        """Return the numerical error of a column.
 
-        elsewhere: of a row whose bracket lies elsewhere in the other table.
+        Parameters
+        ----------
+        column : str
+            Name of the column.
+        elsewhere : bool
+            Whether the row's bracket lies elsewhere in the other table.
+
+        Returns
+        -------
+        float or None
+            The error, relative; None where none is stated.
         """
         errors = {**self.errors, **self.bracket.errors} if elsewhere and self.bracket else self.errors
         fitting = [start for start in errors if column.startswith(start)]
         return errors[max(fitting, key=len)] if fitting else None
 
 
-ROUNDED = 1e-9
+ROUNDING_ERROR = 1e-9
 """Linear algebra and convex problems that are solved to rounding."""
 CONTACT = {"k_": 3e-3, "ste": 1e-2, "pressure": 1e-2, "path": 1e-4}
 """docs/explanation/contact.md: the default mesh against one that is finer in every direction."""
 RESIDUALS = {"kkt_residual": 1e-12, "torque_residual": 1e-10}
 """Relative residuals up to which a contact counts as solved."""
-MOTION = {"value": 8.6e-4, "energy_fraction": 1.8e-3, "resonance_rpm": ROUNDED, "order": ROUNDED}
+MOTION = {
+    "value": 8.6e-4,
+    "energy_fraction": 1.8e-3,
+    "resonance_rpm": ROUNDING_ERROR,
+    "order": ROUNDING_ERROR,
+}
 """docs/explanation/dynamics.md: periodic motions against 1e-10 and 4096 samples; energies are squares."""
 MOTION_RESIDUAL = {"residual": 1e-7}
 """Change over a period, over the scale, up to which a motion counts as periodic at the nominal speed."""
@@ -117,11 +132,11 @@ SHARING = {
 """docs/explanation/load_sharing.md."""
 
 TABLES: Mapping[str, Table] = {
-    "machine/ratings.csv": Table(("quantity",), "quantity", {"value": ROUNDED}),
-    "machine/bodies.csv": Table(("body",), errors={"": ROUNDED}),
-    "machine/meshes.csv": Table(("mesh",), errors={"": ROUNDED}),
-    "modal/frequencies.csv": Table(("order",), errors={"frequency": ROUNDED}, motion=()),
-    "modal/contacts.csv": Table(("contact",), errors={"force": ROUNDED, "stiffness": 3e-3}, motion=()),
+    "machine/ratings.csv": Table(("quantity",), "quantity", {"value": ROUNDING_ERROR}),
+    "machine/bodies.csv": Table(("body",), errors={"": ROUNDING_ERROR}),
+    "machine/meshes.csv": Table(("mesh",), errors={"": ROUNDING_ERROR}),
+    "modal/frequencies.csv": Table(("order",), errors={"frequency": ROUNDING_ERROR}, motion=()),
+    "modal/contacts.csv": Table(("contact",), errors={"force": ROUNDING_ERROR, "stiffness": 3e-3}, motion=()),
     "contact/by_torque.csv": Table(("torque_n_m",), errors=CONTACT),
     "contact/ltca.csv": Table(("torque_n_m", "position"), errors=CONTACT, zero=RESIDUALS),
     "stiffness/harmonics.csv": Table(
@@ -132,12 +147,15 @@ TABLES: Mapping[str, Table] = {
         ("quantity", "body_or_mesh"), "quantity", MOTION, zero=MOTION_RESIDUAL, item="body_or_mesh"
     ),
     "dynamics/response.csv": Table(
-        ("mesh", "mesh_cycle"), errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4, "time_s": ROUNDED}
+        ("mesh", "mesh_cycle"),
+        errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4, "time_s": ROUNDING_ERROR},
     ),
-    "dynamics/spectrum.csv": Table(("mesh", "order"), errors={"amplitude": 8.6e-4, "frequency": ROUNDED}),
+    "dynamics/spectrum.csv": Table(
+        ("mesh", "order"), errors={"amplitude": 8.6e-4, "frequency": ROUNDING_ERROR}
+    ),
     "dynamics/multipliers.csv": Table(errors={"": MULTIPLIERS}),
     "dynamics/seams.csv": Table(("direction", "speed_rpm")),
-    "dynamics/bearings.csv": Table(("body", "direction"), errors={"static": ROUNDED, "": 8.6e-4}),
+    "dynamics/bearings.csv": Table(("body", "direction"), errors={"static": ROUNDING_ERROR, "": 8.6e-4}),
     "dynamics/sweep.csv": Table(
         ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION, item="body_or_mesh"
     ),
@@ -155,9 +173,9 @@ TABLES: Mapping[str, Table] = {
     "load_sharing/nominal.csv": Table(("group", "cycle_fraction"), errors=SHARING),
     "load_sharing/reference.csv": Table(("quantity", "group"), "quantity", SHARING),
     "load_sharing/speed_range.csv": Table(("group", "speed_rpm"), errors=SHARING),
-    "load_sharing/hunting_groups.csv": Table(("group",), errors={"": ROUNDED}),
-    "load_sharing/hunting_meshes.csv": Table(("mesh",), errors={"": ROUNDED}),
-    "load_sharing/hunting_cycles.csv": Table(("cycle",), errors={"": ROUNDED}),
+    "load_sharing/hunting_groups.csv": Table(("group",), errors={"": ROUNDING_ERROR}),
+    "load_sharing/hunting_meshes.csv": Table(("mesh",), errors={"": ROUNDING_ERROR}),
+    "load_sharing/hunting_cycles.csv": Table(("cycle",), errors={"": ROUNDING_ERROR}),
     "strength/root_stress.csv": Table(("torque_n_m", "body", "fillet"), errors={"largest": 1e-2}),
     "strength/safety.csv": Table(("body", "flank")),
     "strength/rating.csv": Table(("body", "gear", "flank", "failure", "method")),
@@ -188,6 +206,21 @@ CURVES: Mapping[str, Curve] = {
 }
 
 
-def declared(known: Mapping[str, Declared], name: str) -> Declared | None:
-    """What is known of a table; of that of a study's point the same as of the machine's own."""
-    return next((known[path] for path in known if name == path or name.endswith(f"/{path}")), None)
+def declaration_of(declarations: Mapping[str, Declaration], name: str) -> Declaration | None:
+    """Return the declaration of a table; the table of a study's point has that of the machine's own.
+
+    Parameters
+    ----------
+    declarations : Mapping[str, Declaration]
+        Declarations by path of the table.
+    name : str
+        Path of the table.
+
+    Returns
+    -------
+    Declaration or None
+        The declaration, None where there is none.
+    """
+    return next(
+        (declarations[path] for path in declarations if name == path or name.endswith(f"/{path}")), None
+    )

@@ -10,7 +10,7 @@ from facegear.config.machine_errors import half_backlash
 from facegear.config.machine_layout import ToothNumbers
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
-from facegear.transmission.assembly import Assembly, assembly, squeezed
+from facegear.transmission.assembly import Assembly, assembly, interference_depths
 from facegear.transmission.layout import Layout
 
 
@@ -111,7 +111,7 @@ def _require_assembly(section: Transmission, shape: Layout, fit: Assembly) -> No
         requirement = (
             f"where the teeth fit, such as {fit.below[i] * unit:.6g} and {fit.above[i] * unit:.6g} "
             f"(or clocking_deg): {1e6 * fit.misfit[i]:.0f} um are left between this pinion's meshes and "
-            f"their backlash takes up {1e6 * fit.room[i]:.0f} um"
+            f"their backlash takes up {1e6 * fit.clearance[i]:.0f} um"
         )
         raise ConfigError(f"transmission.pinions[{i}].{key}", value, requirement)
 
@@ -122,10 +122,12 @@ def _find_preloads(section: Transmission, model: LumpedParts) -> Iterator[tuple[
     half = half_backlash(section, shape)
     fit = assembly(shape, half, flaws.clocking, flaws)
     for i in np.flatnonzero(~fit.fits):
-        requirement = f"errors of this pinion and its meshes within the {1e6 * fit.room[i]:.0f} um they leave"
+        requirement = (
+            f"errors of this pinion and its meshes within the {1e6 * fit.clearance[i]:.0f} um they leave"
+        )
         amount = f"{1e6 * fit.misfit[i]:.0f} um between its two meshes"
         yield f"transmission.single_pinions.{shape.pinions[i].name}", amount, requirement
-    squeeze = squeezed(shape, half, flaws)
+    squeeze = interference_depths(shape, half, flaws)
     for mesh in np.flatnonzero(squeeze > 0.0):
         pinion = shape.pinions[shape.meshes[mesh][0]].name
         amount = f"{1e6 * squeeze[mesh]:.1f} um too deep in {shape.mesh_names[mesh]}"

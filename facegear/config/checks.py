@@ -451,7 +451,7 @@ def check_search(
         For the first key or goal that the machine does not have.
     """
     # Imported here: only a search needs to know what machines are judged by.
-    from facegear.load_sharing.quantity_names import columns_of, quantity_names
+    from facegear.load_sharing.quantity_names import matching_names, quantity_names
 
     keys = [key for variable in section.variables for key in variable.sets]
     causes = tolerances.causes if section.robust and tolerances is not None else ()
@@ -468,7 +468,7 @@ def check_search(
     names = quantity_names(machine_layout, dynamic, contact != "none", gauges, jumps=True)
     for goal in (*section.objectives, *section.constraints):
         for start in goal.quantities:
-            if not columns_of(start, names):
+            if not matching_names(start, names):
                 requirement = f"the beginning of one of: {', '.join(names)}"
                 key = "smallest_of" if goal.large else "largest_of"
                 raise ConfigError(f"search: {goal.name}.{key}", start, requirement)

@@ -14,7 +14,7 @@ from facegear.config.shafts import OUTPUT, TurningMassSection, stepped_shaft, to
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import error_series
 from facegear.harmonics.series import Harmonics
-from facegear.shafts.condensed import condensed
+from facegear.shafts.condensed_shaft import condense_shaft
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.excitation import Excitation
 from facegear.transmission.imperfections import Imperfections
@@ -246,7 +246,7 @@ def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
     seats, masses = {}, {}
     for number, pinion in enumerate(section.pinions):
         if (shaft := section.shaft_of(pinion)) is not None:
-            seats[number] = Seat(condensed(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
+            seats[number] = Seat(condense_shaft(stepped_shaft(shaft)), shaft.tilt_inertia_kg_m2)
         if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
             masses[number] = _turning_masses(chain)
     if chain := section.torsion.get(OUTPUT):

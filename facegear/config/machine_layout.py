@@ -22,7 +22,7 @@ from facegear.config.bodies import (
 from facegear.config.changes import TEETH
 from facegear.config.shafts import stepped_shaft
 from facegear.config.transmission import PinionPlace, Transmission
-from facegear.shafts.condensed import condensed
+from facegear.shafts.condensed_shaft import condense_shaft
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
 
@@ -195,7 +195,7 @@ def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
     single_pinion = section.single_pinions.get(pinion.name)
     if (shaft := section.shaft_of(pinion)) is None:
         return _body(section.pinion, single_pinion)
-    compliance = condensed(stepped_shaft(shaft)).compliance
+    compliance = condense_shaft(stepped_shaft(shaft)).compliance
     (x, xy), (_, y) = np.linalg.inv(compliance[:2, :2]).tolist()
     mass, inertia = _inertias(section.pinion, single_pinion)
     return Body(mass, inertia, (x, y, 1.0 / float(compliance[2, 2])), xy)

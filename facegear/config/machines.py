@@ -13,7 +13,7 @@ from facegear.config.machine_layout import ToothNumbers
 from facegear.config.mesh_friction import with_friction
 from facegear.config.mesh_law import flank_tables
 from facegear.config.transmission import Transmission
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.poses.fixed_point import posed_machine
 from facegear.poses.surface import PoseSurface

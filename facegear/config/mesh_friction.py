@@ -8,7 +8,7 @@ from scipy.interpolate import PchipInterpolator
 
 from facegear.arrays import Array
 from facegear.harmonics.fit import fit_harmonics
-from facegear.harmonics.series import stacked
+from facegear.harmonics.series import stack_series
 from facegear.lubrication.columns import EXCITATION_COLUMNS
 from facegear.transmission.machine import Machine
 from facegear.transmission.mesh_friction import MeshFriction
@@ -66,4 +66,4 @@ def _series(torques: Array, ratios: Array, torque: float) -> Array:
     at = (
         ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(clipped_torque))
     )
-    return stacked([fit_harmonics(column).series.kept(ORDERS) for column in at.T])
+    return stack_series([fit_harmonics(column).series.truncate(ORDERS) for column in at.T])

@@ -7,7 +7,7 @@ from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
-from facegear.load_sharing.quantity_names import of_contact
+from facegear.load_sharing.quantity_names import is_contact_quantity
 
 LINES = "flanks that touch along lines meet any pose with an edge"
 STATIC = "where transmission.operating_pose is static"
@@ -75,5 +75,5 @@ def check_posed_variants(machine: Transmission, tolerances: Tolerances | None, s
         if moves_pair([key]):
             raise ConfigError("search.variables.sets", key, OTHER_SURFACE)
     for goal in (*search.objectives, *search.constraints):
-        for text in filter(of_contact, goal.quantities):
+        for text in filter(is_contact_quantity, goal.quantities):
             raise ConfigError(f"search: {goal.name}", text, f"a quantity of the machine {STATIC}: {REST}")

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, refuse, require_all
 from facegear.config.dynamics import SWEEP_ACCURACY, SWEPT_TEXT, Accuracy, settings
 from facegear.dynamics.sweeps.plan import JumpRange
-from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, of_jumps
+from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, is_jump_quantity
 
 RESERVED_COLUMNS = ("design", "error", "generation", "seed")
 """Columns beside those of variables, objectives and constraints."""
@@ -72,7 +72,7 @@ class ObjectiveSection(Section):
         if bool(self.largest_of) == bool(self.smallest_of):
             refuse("largest_of", list(self.largest_of), "either this or smallest_of")
         for text in self.largest_of:
-            if of_jumps(text):
+            if is_jump_quantity(text):
                 refuse("largest_of", text, "in smallest_of, as a margin is to be large")
         return self
 

@@ -10,7 +10,7 @@ from facegear.config.base import Section, refuse, require_all
 from facegear.config.material import MaterialSection
 from facegear.rigid_body import MOTIONS, is_held
 from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, Shaft
+from facegear.shafts.condensed_shaft import Bearing, Shaft
 
 SOFTEST_BEARING, STIFFEST_BEARING = 1e6, 1e14
 """Limits of a bearing's stiffness across and along the shaft, N/m."""

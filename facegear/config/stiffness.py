@@ -149,7 +149,7 @@ class MeshStiffness(Section):
         if (mean := self.mean) is not None and mean < SOFTEST:
             requirement = f"at least {SOFTEST:g} N/m; values in N/um are a million times too small"
             refuse("csv or table" if self.mean_n_per_m is None else "mean_n_per_m", mean, requirement)
-        minimum = given_series(self).kept(self.harmonics_kept).varied(self.variation).minimum
+        minimum = given_series(self).truncate(self.harmonics_kept).scale_variation(self.variation).minimum
         if minimum <= 0.0:
             condition = "harmonics so small beside the mean that k(t) stays positive"
             refuse("table", f"k(t) falls to {minimum:.4g} N/m", condition)
@@ -201,9 +201,9 @@ def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
         mean=section.mean,
         torque=section.torque_n_m,
         definition=section.definition,
-        kept=section.harmonics_kept,
+        order=section.harmonics_kept,
         variation=section.variation,
-        given=given_series(section),
+        given_series=given_series(section),
     )
 
 

@@ -1,4 +1,4 @@
-"""The contact analysis of a pair: every flank that meets errors of its own, at all positions and torques."""
+"""The contact analysis of a pair: every flank with its own errors, at all positions and torques."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,39 +23,39 @@ from facegear.geometry.flank_errors import distinct_pairs
 
 @dataclass(frozen=True, eq=False)
 class ContactAnalysis:
-    """Contact of the different pairs that flanks are part of, solved; its tables and arrays are made where
-    they are asked for.
+    """Solved contact of the different pairs that flanks are part of; tables and arrays are made when first
+    read.
 
     Attributes
     ----------
     models
         The pairs, that of the upper gear's drive flank first.
-    solved
-        Their positions at each torque, and the pressure on their flanks.
-    numbers : (gears, flanks)
+    results
+        Positions of each pair at each torque, and the pressure on its flanks.
+    numbers : (gears, flanks) array of int
         Which of the pairs each flank is part of.
     """
 
     models: list[ContactModel]
-    solved: list[tuple[list[LoadedPosition], FlankPressure]]
+    results: list[tuple[list[LoadedPosition], FlankPressure]]
     numbers: Integers
 
     @cached_property
     def ltca(self) -> list[pd.DataFrame]:
         """The contact table of each pair."""
-        return [ltca_table(*result) for result in self.solved]
+        return [ltca_table(*result) for result in self.results]
 
     @cached_property
     def pressure(self) -> list[dict[str, AnyArray]]:
         """Loads and pressures of each pair, as PRESSURE_ARRAYS."""
         return [
             pressure_arrays(results, model.flanks.pinion, pressure)
-            for model, (results, pressure) in zip(self.models, self.solved, strict=True)
+            for model, (results, pressure) in zip(self.models, self.results, strict=True)
         ]
 
     @cached_property
     def by_torque(self) -> list[pd.DataFrame]:
-        """What the tables of each pair say of each torque."""
+        """Summary of each pair's tables, one row a torque."""
         return [by_torque(*tables) for tables in zip(self.ltca, self.pressure, strict=True)]
 
     @cached_property
@@ -66,7 +66,7 @@ class ContactAnalysis:
     @cached_property
     def loads(self) -> dict[str, AnyArray]:
         """Forces of all pairs on the nodes of both bodies, see `facegear.contact.columns`."""
-        return load_arrays([results for results, _ in self.solved], self.numbers)
+        return load_arrays([results for results, _ in self.results], self.numbers)
 
 
 def contact_analysis(
@@ -75,25 +75,52 @@ def contact_analysis(
     flanks: tuple[GearFlank, GearFlank],
     plan: ContactPlan,
     every_flank: bool = True,
-    known: KnownContact | None = None,
+    known_contact: KnownContact | None = None,
 ) -> ContactAnalysis:
-    """Contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
+    """Solve the contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
-    `known`: the contact of a pair that differs little, with the same nodes and plan.
+    All pairs that differ in assembly errors and deviations are solved on the same compliances.
 
-    All pairs that differ in assembly errors and deviations are solved on the same compliances. Raises
-    NotConverged naming position and torque.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    flanks : tuple[GearFlank, GearFlank]
+        Surfaces and compliances of pinion and face gear.
+    plan : ContactPlan
+        Torques, positions and options.
+    every_flank : bool
+        Whether all flanks are solved, not only the upper gear's drive flank.
+    known_contact : KnownContact, optional
+        Contact of a pair that differs little, with the same nodes and plan.
+
+    Returns
+    -------
+    ContactAnalysis
+        Solved contact of all different pairs.
+
+    Raises
+    ------
+    NotConverged
+        Names position and torque.
     """
     model = contact_model(design, *flanks)
     different, numbers = distinct_pairs(design)
     if not every_flank:
         different, numbers = different[:1], np.zeros_like(numbers)
-    models = [model.of(other) for other in different]
-    return ContactAnalysis(models, [_solved(each, materials, plan, known) for each in models], numbers)
+    models = [model.of(pair_design) for pair_design in different]
+    return ContactAnalysis(
+        models, [_solve_model(pair_model, materials, plan, known_contact) for pair_model in models], numbers
+    )
 
 
-def _solved(
-    model: ContactModel, materials: tuple[Material, Material], plan: ContactPlan, known: KnownContact | None
+def _solve_model(
+    model: ContactModel,
+    materials: tuple[Material, Material],
+    plan: ContactPlan,
+    known_contact: KnownContact | None,
 ) -> tuple[list[LoadedPosition], FlankPressure]:
-    results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options, known)
+    results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options, known_contact)
     return results, flank_pressure(results, model.flanks, materials)

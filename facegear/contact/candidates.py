@@ -19,12 +19,13 @@ from facegear.contact.lattice import Lattice
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """Loads of one tooth pair that may act: a unit force each, spread over a hat's covered area or along an
-    edge.
+    """Loads of one tooth pair that may act: unit forces, each spread over a basis function's covered area or
+    along an edge.
 
-    hats (m,) lattice nodes; gap (m,) m and lever_arm (m,) m averaged over
-    the hat; whether it presses on a `fillet` (m,) of either gear; `averages` over the points under each hat,
-    which stand at refined coordinates `at` (q, 2) on the `lattices` of pinion and gear.
+    hats (m,): lattice nodes of the basis functions; gap (m,) m and lever_arm (m,) m: averages over each
+    basis function; `fillet` (m,): whether it presses on a fillet of either gear; `averages`: weights of
+    the points under each basis function, which lie at refined coordinates `at` (q, 2) on the `lattices` of
+    pinion and gear.
     """
 
     tooth: int
@@ -35,19 +36,42 @@ class Candidates:
     averages: Rows
     at: tuple[Array, Array]
     lattices: tuple[Lattice, Lattice]
-    _made: dict[tuple[int, bool], sp.csr_matrix] = field(default_factory=dict, init=False)
+    _load_cache: dict[tuple[int, bool], sp.csr_matrix] = field(default_factory=dict, init=False)
 
-    def loads(self, side: int, refined: bool) -> sp.csr_matrix:
-        """Nodal forces (m, nodes) on the pinion's (0) or the gear's (1) lattice.
+    def loads(self, side: int, is_refined: bool) -> sp.csr_matrix:
+        """Return the nodal forces of all loads on one gear's lattice.
 
-        Its nodes are those before refinement unless `refined`.
+        Parameters
+        ----------
+        side : int
+            0 for the pinion, 1 for the gear.
+        is_refined : bool
+            Whether the nodes are those after refinement.
+
+        Returns
+        -------
+        (m, nodes) sparse matrix
+            Dimensionless: forces on nodes of unit loads.
         """
-        if (side, refined) not in self._made:
-            self._made[side, refined] = self.lattices[side].loads(self.averages, self.at[side], refined)
-        return self._made[side, refined]
+        if (side, is_refined) not in self._load_cache:
+            self._load_cache[side, is_refined] = self.lattices[side].loads(
+                self.averages, self.at[side], is_refined
+            )
+        return self._load_cache[side, is_refined]
 
     def only(self, keep: Mask) -> "Candidates":
-        """Those marked (m,)."""
+        """Return some of the loads.
+
+        Parameters
+        ----------
+        keep : (m,) array of bool
+            Marks the loads to return.
+
+        Returns
+        -------
+        Candidates
+            Marked loads.
+        """
         if keep.all():
             return self
         return replace(
@@ -69,10 +93,29 @@ def candidates_of(
     limit: float,
     first: int = 0,
 ) -> list[Candidates]:
-    """Those of the hats over points that a turn by `limit` (rad) would close: one entry, or none.
+    """Return the loads of basis functions whose gap a rotation would close.
 
-    min_area: the covered area below which a hat is left out; those of the pinion's nodes begin at `first`,
-    the others are hats of edges.
+    Parameters
+    ----------
+    pinion : Lattice
+        Lattice of the pinion.
+    gear : Lattice
+        Lattice of the gear.
+    tooth : int
+        Number of the pair.
+    points : FacingPoints
+        Points of the pair.
+    min_area : (functions,) array
+        Covered area below which a basis function is left out, m2.
+    limit : float
+        Rotation, rad.
+    first : int
+        Number of the first basis function of the pinion's nodes; all others are those of edges.
+
+    Returns
+    -------
+    list[Candidates]
+        One entry, or none if no gap is closed.
     """
     starts, teeth = np.array([0, points.gap.size]), np.array([tooth])
     cover = Cover(min_area, first, pinion.shape, (pinion.flank_end, gear.flank_end))

@@ -72,7 +72,8 @@ LOAD_ARRAYS = {
 """
 
 TOOTH_ERROR_ARRAYS = {f"{body}_{side}_m": (None,) for body in BODIES for side in ("drive", "back")}
-"""What the teeth of a gear add to the transmission error of a flank over one of its turns, m."""
+"""Arrays of the contribution of a gear's teeth to the transmission error of a flank over one of the gear's
+turns, m."""
 
 EDGES = ("inside", "pinion tip", "gear tip", "end")
 """Where a loaded plane's strip of contact lies: `where` of the line loads numbers these."""

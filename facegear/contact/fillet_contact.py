@@ -15,11 +15,25 @@ from facegear.contact.position import Spot
 from facegear.geometry import pinion
 
 APART = 2.0
-"""Rows of the lattice between two loaded hats of a plane from which on they belong to two contacts."""
+"""Rows of the lattice between two loaded basis functions of a plane from which on they belong to two
+contacts."""
 
 
 def line_rows(to_pinion_tip: Array, surface: PinionSurface) -> Array:
-    """Row of the refined lattice at which contact lines that far (m) from the pinion's tip edge stand."""
+    """Compute the row of the refined lattice at which contact lines lie.
+
+    Parameters
+    ----------
+    to_pinion_tip : (...) array
+        Distance of the line from the pinion's tip edge, m.
+    surface : PinionSurface
+        Contact surface of the pinion.
+
+    Returns
+    -------
+    (...) array
+        Row, dimensionless.
+    """
     design = surface.design
     top, bottom = design.pinion_tip_roll, max(pinion.junction_roll(design), 0.0)
     height = design.pinion_base_radius * (top**2 - bottom**2) / 2
@@ -28,9 +42,22 @@ def line_rows(to_pinion_tip: Array, surface: PinionSurface) -> Array:
 
 
 def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
-    """The spot without what its tooth carries in a fillet, or beside one and apart from the contact line.
+    """Return the spot without the load in a fillet, and without load beside a fillet and apart from the
+    contact line.
 
-    line (n,): the row at which the contact line stands in each plane.
+    Parameters
+    ----------
+    spot : Spot
+        Loaded basis functions of a tooth pair.
+    line : (n,) array
+        Row at which the contact line lies in each plane, dimensionless.
+    surface : PinionSurface
+        Contact surface of the pinion.
+
+    Returns
+    -------
+    Spot
+        Load on the flank.
     """
     if not spot.fillet.any():
         return spot
@@ -40,10 +67,29 @@ def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
 
 
 def kept_hats(row: Integers, plane: Integers, fillet: Mask, line: Array, apart: float) -> Mask:
-    """Which loaded hats, in rows and planes (m,), are neither in a fillet nor part of a contact in one.
+    """Mark the loaded basis functions that are neither in a fillet nor part of a contact in one.
 
-    A contact: hats of a plane no more than `apart` rows from the next. One that reaches a fillet lies in it,
-    unless the plane's contact line (n,) is within `apart` rows of it.
+    A contact consists of the basis functions of a plane that are no more than `apart` rows from the next.
+    A contact that reaches a fillet lies in it, unless the plane's contact line is within `apart` rows of
+    it.
+
+    Parameters
+    ----------
+    row : (m,) array of int
+        Row of each basis function.
+    plane : (m,) array of int
+        Plane of each basis function.
+    fillet : (m,) array of bool
+        Whether each presses on a fillet.
+    line : (n,) array
+        Row of the contact line in each plane, dimensionless.
+    apart : float
+        Distance in rows, dimensionless.
+
+    Returns
+    -------
+    (m,) array of bool
+        True on the flank.
     """
     order = np.lexsort((row, plane))
     row, plane = row[order], plane[order]
@@ -53,6 +99,6 @@ def kept_hats(row: Integers, plane: Integers, fillet: Mask, line: Array, apart: 
     at_line = line[plane[first]]
     on_line = (low - apart <= at_line) & (at_line <= high + apart)
     in_fillet = np.logical_or.reduceat(fillet[order], first) if row.size else on_line
-    kept = ~fillet
-    kept[order] &= (on_line | ~in_fillet)[np.cumsum(begins) - 1]
-    return kept
+    is_on_flank = ~fillet
+    is_on_flank[order] &= (on_line | ~in_fillet)[np.cumsum(begins) - 1]
+    return is_on_flank

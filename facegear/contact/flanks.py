@@ -1,4 +1,4 @@
-"""Both flanks of a pair as contact sees them: lattices of nodes on exact surfaces."""
+"""Both flanks of a pair as lattices of nodes on exact surfaces."""
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -62,7 +62,18 @@ class PinionSurface:
         return self.lattice.shape
 
     def exact(self, at: Array) -> SurfacePoints:
-        """Points at refined lattice coordinates (n, 2)."""
+        """Compute exact points of the surface.
+
+        Parameters
+        ----------
+        at : (n, 2) array
+            Refined lattice coordinates, dimensionless.
+
+        Returns
+        -------
+        SurfacePoints
+            Points and normals (n, 3), m.
+        """
         return pinion_points(self.design, self.side, self.lattice.refinement, at)
 
     @cached_property
@@ -132,9 +143,10 @@ class PinionSurface:
         return coordinates, self.exact(coordinates)
 
     @cached_property
-    def facing(self) -> PinionPoints:
-        """The integration points of the flank and then those of the tip edge, whose hats are numbered after
-        those of the flank.
+    def facing_points(self) -> PinionPoints:
+        """The integration points of the flank and then those of the tip edge.
+
+        The basis functions of the tip edge are numbered after those of the flank.
         """
         (under, values), (coordinates, tip), columns = self.under, self.tip, self.shape[1]
         _, edge_under, edge_values = edge_hats(columns)
@@ -180,7 +192,22 @@ class PinionSurface:
         return row * (self.shape[1] - 1) + column
 
     def coordinates(self, flank: Array, fillet: Array, y: Array) -> Array:
-        """Refined lattice coordinates (n, 2) of feet as in `EdgeFeet`, nan beside the pinion's ends."""
+        """Compute lattice coordinates of feet of perpendiculars, see `EdgeFeet`.
+
+        Parameters
+        ----------
+        flank : (n,) array
+            Fraction of the flank's height, nan in the fillet.
+        fillet : (n,) array
+            Angle gamma in the fillet, rad.
+        y : (n,) array
+            Position along the pinion's axis, m.
+
+        Returns
+        -------
+        (n, 2) array
+            Refined lattice coordinates, dimensionless; nan beside the pinion's ends.
+        """
         rows, columns = self.side.flank_rows, self.shape[1] - 1
         gammas = self.fillet_nodes
         beyond = rows - 1 + np.interp(fillet, gammas, np.arange(gammas.size))
@@ -197,7 +224,7 @@ def _between_probes(lattice: Lattice) -> sp.csr_matrix:
 
 @dataclass(frozen=True, eq=False)
 class GearSurface:
-    """The gear's contact surface: from what a pinion normal hits to refined lattice coordinates."""
+    """The gear's contact surface, which maps hits of pinion normals to refined lattice coordinates."""
 
     design: PairDesign
     side: ContactSide
@@ -219,16 +246,30 @@ class GearSurface:
         return np.concatenate([[0.0], face_gear.fillet_fraction(self.design, *first)])
 
     def coordinates(self, hits: GearHits, fillet: bool, edge: float | Array) -> Array:
-        """Lattice coordinates (p, n, 2), nan where nothing that can touch is hit.
+        """Compute lattice coordinates of hits, nan where nothing that can touch is hit.
 
-        With `fillet`, the fillet and the tip land within `edge` (m) of the flank count too; the latter moves
-        as the tip edge does.
+        Parameters
+        ----------
+        hits : GearHits
+            Where pinion normals (p, n) hit the gear.
+        fillet : bool
+            Whether the fillet counts, and the tip land within `edge` of the flank, which moves as the tip
+            edge does.
+        edge : float or array (n,)
+            Width of the tip land that counts, m.
+
+        Returns
+        -------
+        (p, n, 2) array
+            Refined lattice coordinates, dimensionless.
         """
-        face, rows, known = self.design.face_gear, self.side.flank_rows, self._fillet_nodes
+        face, rows, fillet_shares = self.design.face_gear, self.side.flank_rows, self._fillet_nodes
         row = hits.flank * (rows - 1)
-        if fillet and known.size > 1:
-            on = hits.fillet <= known[-1]
-            row = np.where(on, rows - 1 + np.interp(hits.fillet, known, np.arange(known.size)), row)
+        if fillet and fillet_shares.size > 1:
+            on = hits.fillet <= fillet_shares[-1]
+            row = np.where(
+                on, rows - 1 + np.interp(hits.fillet, fillet_shares, np.arange(fillet_shares.size)), row
+            )
         if fillet:
             row = np.where(hits.beyond <= edge, 0.0, row)
         along = (hits.radius - face.inner_radius) / (face.outer_radius - face.inner_radius)
@@ -254,7 +295,24 @@ def flank_pair(
     cuts: tuple[Refinement, Refinement],
     linear: bool = False,
 ) -> FlankPair:
-    """Contact surfaces of pinion and gear, each refined by its own cuts."""
+    """Build the contact surfaces of pinion and gear, each refined by its own cuts.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sides : tuple[ContactSide, ContactSide]
+        Contact surfaces of pinion and gear before refinement.
+    cuts : tuple[Refinement, Refinement]
+        Refinement of both.
+    linear : bool
+        Whether displacements are linear between nodes, not quadratic over elements.
+
+    Returns
+    -------
+    FlankPair
+        Surfaces of both gears.
+    """
     first, second = (
         Lattice(side.shape, cut, linear, side.flank_rows) for side, cut in zip(sides, cuts, strict=True)
     )

@@ -1,4 +1,4 @@
-"""The loaded flank of one gear as the contact analysis takes it: its surface and its compliance."""
+"""Loaded flank of one gear as the contact analysis takes it: its surface and its compliance."""
 
 from dataclasses import dataclass, replace
 
@@ -13,20 +13,31 @@ from facegear.contact.teeth import ContactSide
 
 @dataclass(frozen=True, eq=False)
 class GearFlank:
-    """Contact surface of a tooth, how the gear's flanks give way, and the gauges that it reads, if any."""
+    """Contact surface of a tooth, compliance of the gear's flanks, and root gauges, if any."""
 
     side: ContactSide
     compliance: FlankCompliance
     gauges: RootGauges | None = None
 
     def softer(self, factor: float) -> "GearFlank":
-        """The flank with Young's modulus smaller by a factor; its gauges read the same stress."""
-        given = self.compliance
-        return replace(self, compliance=replace(given, scale=factor * given.scale))
+        """Return the flank with Young's modulus divided by a factor; its gauges read the same stress.
+
+        Parameters
+        ----------
+        factor : float
+            Old over new Young's modulus, dimensionless.
+
+        Returns
+        -------
+        GearFlank
+            Flank whose displacements are `factor` times as large.
+        """
+        flank_compliance = self.compliance
+        return replace(self, compliance=replace(flank_compliance, scale=factor * flank_compliance.scale))
 
 
-STORED = {
-    **compliance.STORED,
+ARRAY_SHAPES = {
+    **compliance.ARRAY_SHAPES,
     "flank_nodes": (None, None),
     "flank_u": (None, None),
     "flank_v": (None, None),
@@ -40,9 +51,20 @@ STORED = {
 
 
 def to_arrays(flank: GearFlank) -> dict[str, AnyArray]:
-    """Named arrays from which `from_arrays` rebuilds the flank."""
+    """Return named arrays from which `from_arrays` rebuilds the flank.
+
+    Parameters
+    ----------
+    flank : GearFlank
+        Flank to store.
+
+    Returns
+    -------
+    dict of arrays
+        Arrays with the (...) shapes of ARRAY_SHAPES.
+    """
     side, gauges = flank.side, flank.gauges
-    none = np.zeros((0, 0, 0, 3))
+    empty_gauges = np.zeros((0, 0, 0, 3))
     return {
         **compliance.to_arrays(flank.compliance),
         "flank_nodes": side.nodes,
@@ -50,14 +72,25 @@ def to_arrays(flank: GearFlank) -> dict[str, AnyArray]:
         "flank_v": side.v,
         "flank_rows": np.array([side.flank_rows]),
         "junction": side.junction,
-        "gauge_position_m": none if gauges is None else gauges.position,
-        "gauge_across": none if gauges is None else gauges.across,
+        "gauge_position_m": empty_gauges if gauges is None else gauges.position,
+        "gauge_across": empty_gauges if gauges is None else gauges.across,
         "gauge_error": np.zeros(0) if gauges is None else gauges.error,
     }
 
 
 def from_arrays(arrays: Arrays) -> GearFlank:
-    """Inverse of `to_arrays`."""
+    """Rebuild a flank from the arrays of `to_arrays`.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as ARRAY_SHAPES.
+
+    Returns
+    -------
+    GearFlank
+        The flank.
+    """
     side = ContactSide(
         nodes=arrays["flank_nodes"],
         u=arrays["flank_u"],

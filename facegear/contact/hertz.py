@@ -15,26 +15,55 @@ from facegear.arrays import Array
 from facegear.geometry.design import Material
 
 DENTED = 4.0e9
-"""Pressure (Pa) from which on hardened steel keeps a dent: the static limit of line contact in ISO 76."""
+"""Pressure (Pa) above which a dent remains on hardened steel: the static limit of line contact in ISO 76.
+"""
 
 SLENDEREST, ROUNDEST = 1e-6, 1.0 - 1e-6
-"""Ratios of semi-axes between which that of an ellipse is sought."""
+"""Ratios of semi-axes between which the ratio of an ellipse is searched."""
 
 HALVINGS = 60
 
 STEPS = 8
-"""Of the fixed point of pressure and half-width, each of which gains more than a digit."""
+"""Number of steps of the fixed-point iteration of pressure and half-width, each of which gains more than a
+digit."""
 
 
 def contact_modulus(materials: tuple[Material, Material]) -> float:
-    """E* (Pa) with 1/E* = sum of (1 - nu^2)/E."""
+    """Compute the contact modulus E* from 1/E* = sum of (1 - nu^2)/E.
+
+    Parameters
+    ----------
+    materials : tuple[Material, Material]
+        Both bodies.
+
+    Returns
+    -------
+    float
+        E*, Pa.
+    """
     return 1.0 / sum((1 - m.poisson_ratio**2) / m.young_modulus for m in materials)
 
 
 def longer_semi_axis(force: float, across: float, along: float, modulus: float) -> float:
-    """Semi-axis (m) of the ellipse under a force (N), along the smaller of two curvatures (1/m) `along`.
+    """Compute the semi-axis of the contact ellipse in the direction of the smaller curvature.
 
-    Of bodies curved alike both ways it is that of a sphere. Source: Johnson 1985, chapter 4.
+    For bodies with equal curvatures it is that of a sphere. Source: Johnson 1985, chapter 4.
+
+    Parameters
+    ----------
+    force : float
+        N.
+    across : float
+        Larger relative curvature, 1/m.
+    along : float
+        Smaller relative curvature, 1/m.
+    modulus : float
+        Contact modulus E*, Pa.
+
+    Returns
+    -------
+    float
+        Semi-axis, m.
     """
 
     def parts(ratio: float) -> tuple[float, float]:
@@ -45,21 +74,36 @@ def longer_semi_axis(force: float, across: float, along: float, modulus: float) 
     low, high = np.log(SLENDEREST), np.log(ROUNDEST)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        own, other = parts(float(np.exp(middle)))
-        low, high = (middle, high) if own / other < along / across else (low, middle)
+        along_part, across_part = parts(float(np.exp(middle)))
+        low, high = (middle, high) if along_part / across_part < along / across else (low, middle)
     ratio = float(np.exp(0.5 * (low + high)))
-    _, other = parts(ratio)
-    cubed = 3.0 * force * other / (pi * across * modulus * (1.0 - ratio**2))
+    _, across_part = parts(ratio)
+    cubed = 3.0 * force * across_part / (pi * across * modulus * (1.0 - ratio**2))
     return float(cubed ** (1 / 3))
 
 
 def strip_pressure(
     line_load: ArrayLike, curvature: ArrayLike, modulus: float, half_length: ArrayLike = np.inf
 ) -> tuple[Array, Array]:
-    """Largest pressure (Pa) and half-width (m) of a strip that carries `line_load` (N/m, at its middle).
+    """Compute the largest pressure and the half-width of a loaded strip.
 
-    `curvature` (1/m) across the strip, `half_length` (m) of the loaded line. A footprint wider than long is
-    taken as round.
+    A footprint wider than long is taken as round.
+
+    Parameters
+    ----------
+    line_load : (...) array_like
+        Load at the strip's middle, N/m.
+    curvature : (...) array_like
+        Relative curvature across the strip, 1/m.
+    modulus : float
+        Contact modulus E*, Pa.
+    half_length : (...) array_like
+        Half-length of the loaded line, m.
+
+    Returns
+    -------
+    (...) arrays
+        Pressure, Pa, and half-width, m.
     """
     load, across = np.asarray(line_load, float), np.asarray(curvature, float)
     long = np.sqrt(across * modulus * load / pi)
@@ -75,9 +119,9 @@ def _half_width(load: Array, pressure: Array) -> Array:
 
 
 def _shortness(ratio: Array) -> Array:
-    """Curvature across an ellipse of this ratio b/a over that of a long strip of equal b and pressure.
+    """Return the curvature across an ellipse of ratio b/a over that of a long strip of equal b and pressure.
 
-    1 for a strip, pi/4 for a circle.
+    The result is 1 for a strip and pi/4 for a circle.
     """
     square = np.clip(ratio, 1e-12, 1.0 - 1e-9) ** 2
     return (ellipe(1 - square) - square * ellipkm1(square)) / (1 - square)

@@ -12,11 +12,26 @@ def influence_matrix(
     pairs: list[Candidates],
     pinion: FlankCompliance,
     gear: FlankCompliance,
-    coupled: bool = True,
+    is_coupled: bool = True,
 ) -> Array:
-    """Approach (m, m) of function i by a unit force on function j, m/N, of all pairs in order; symmetric.
+    """Compute the influence matrix of all pairs in order: approach of function i by a unit force on function
+    j.
 
-    `coupled` False leaves out the coupling between neighbouring teeth, for comparison.
+    Parameters
+    ----------
+    pairs : list[Candidates]
+        Candidates of each pair.
+    pinion : FlankCompliance
+        Compliance of the pinion.
+    gear : FlankCompliance
+        Compliance of the gear.
+    is_coupled : bool
+        False leaves out the coupling between neighbouring teeth, for comparison.
+
+    Returns
+    -------
+    (m, m) array
+        Symmetric, m/N.
     """
     ends = np.cumsum([0] + [len(pair.hats) for pair in pairs])
     matrix = np.zeros((ends[-1], ends[-1]))
@@ -24,19 +39,35 @@ def influence_matrix(
         for j, second in enumerate(pairs[: i + 1]):
             block = np.zeros((len(first.hats), len(second.hats)))
             for side, body in enumerate((pinion, gear)):
-                own = i == j
-                compliance = body.own if own else body.block(first.tooth - second.tooth)
-                if compliance is not None and (own or coupled):
-                    block += body.scale * product(first.loads(side, own), compliance, second.loads(side, own))
+                is_same_pair = i == j
+                compliance = body.loaded_tooth if is_same_pair else body.block(first.tooth - second.tooth)
+                if compliance is not None and (is_same_pair or is_coupled):
+                    block += body.scale * product(
+                        first.loads(side, is_same_pair), compliance, second.loads(side, is_same_pair)
+                    )
             matrix[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
             matrix[ends[j] : ends[j + 1], ends[i] : ends[i + 1]] = block.T
     return matrix
 
 
 def product(first: sp.csr_matrix, compliance: Array | None, second: sp.csr_matrix) -> Array:
-    """Displacements (m, n) of rows of nodes by unit loads of others, 0 without a compliance.
+    """Compute displacements by loads through a compliance.
 
     Only those columns of the compliance are read that the loads have entries for.
+
+    Parameters
+    ----------
+    first : (m, nodes) sparse matrix
+        Weights of nodes whose displacement is taken.
+    compliance : (nodes, nodes) array, optional
+        m/N; None gives 0.
+    second : (n, nodes) sparse matrix
+        Unit loads on nodes.
+
+    Returns
+    -------
+    (m, n) array
+        Displacements by unit loads, m/N.
     """
     if compliance is None:
         return np.zeros((first.shape[0], second.shape[0]))

@@ -1,4 +1,4 @@
-"""The contact of a pair that is known, where that of another one, little different, is sought."""
+"""Known contact of a pair, which guides the search for the contact of another pair that differs little."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,9 +12,10 @@ from facegear.geometry.unloaded import PAIRS
 
 @dataclass(frozen=True, eq=False)
 class KnownContact:
-    """A contact solved at p positions: the largest `turn` (p,) rad that a load made, and which nodes of the
-    pinion's lattice carry load, or stand beside one that does across the profile: `near` (p, 5, nodes), of
-    the pairs -2..2.
+    """Contact solved at p positions: largest rotation `turn` (p,) rad under any load, and loaded nodes.
+
+    `near` (p, 5, nodes) marks the nodes of the pinion's lattice, for the pairs -2..2, that carry load or
+    are next to one that does across the profile.
     """
 
     turn: Array
@@ -24,20 +25,34 @@ class KnownContact:
 def known_contact(
     results: Sequence[LoadedPosition], positions: Sequence[float], shape: tuple[int, int], base_radius: float
 ) -> KnownContact | None:
-    """Of results at the positions, of a pair with a pinion's lattice of a shape and its base radius (m).
+    """Extract the rotation and the loaded nodes from results.
 
-    None where fillets in the way turn the pinion back.
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+    positions : Sequence[float]
+        All positions, in pitches.
+    shape : tuple[int, int]
+        Lattice of the pinion.
+    base_radius : float
+        Of the pinion, m.
+
+    Returns
+    -------
+    KnownContact, optional
+        Known contact; None where fillets in the way turn the pinion back.
     """
     row_of = {position: row for row, position in enumerate(positions)}
-    turn, loaded = np.zeros(len(positions)), np.zeros((len(positions), PAIRS.size, *shape), bool)
+    turn, is_loaded = np.zeros(len(positions)), np.zeros((len(positions), PAIRS.size, *shape), bool)
     for result in results:
         row = row_of[result.position]
-        turn[row] = max(turn[row], (result.ste - result.unloaded) / base_radius)
+        turn[row] = max(turn[row], (result.ste - result.unloaded_error) / base_radius)
         for spot in result.spots:
-            loaded[row, np.searchsorted(PAIRS, spot.tooth)].flat[spot.hats] = True
+            is_loaded[row, np.searchsorted(PAIRS, spot.tooth)].flat[spot.hats] = True
     if turn.min() <= 0.0:
         return None
-    near = loaded.copy()
-    near[:, :, 1:] |= loaded[:, :, :-1]
-    near[:, :, :-1] |= loaded[:, :, 1:]
+    near = is_loaded.copy()
+    near[:, :, 1:] |= is_loaded[:, :, :-1]
+    near[:, :, :-1] |= is_loaded[:, :, 1:]
     return KnownContact(turn, near.reshape(len(positions), PAIRS.size, -1))

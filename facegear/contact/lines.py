@@ -21,13 +21,14 @@ SAMPLES = 25
 """Points looked at along a profile before the parabola through the minimum and its neighbours."""
 
 EVERY = 4
-"""Which of them are looked at in any case."""
+"""Step between the samples that are always computed."""
 
 BEYOND = 0.1
-"""Part of the flank's height that the involute is followed beyond its tip, to see which lines leave it."""
+"""Fraction of the flank's height by which the involute is continued beyond its tip, to see which lines leave
+it."""
 
 FINER = (0.1, 0.02)
-"""Steps of the next parabolas, in those of the first."""
+"""Steps of the next parabolas, in steps of the first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +53,35 @@ class ContactLines:
 
 
 def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike, y: Array) -> ContactLines:
-    """Lines of the pairs `tooth` (p,) at the unloaded angles phi1, phi2 (p,) rad on planes y (n,) m.
+    """Compute the contact lines of tooth pairs at unloaded angles.
 
-    Raises NotConverged as `separation` does.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1, phi2 : (p,) array
+        Angles of the gears, rad.
+    tooth : (p,) array_like
+        Numbers of the pairs.
+    y : (n,) array
+        Positions of the planes along the pinion's axis, m.
+
+    Returns
+    -------
+    ContactLines
+        Lines (p, n), in SI units (m, rad).
+
+    Raises
+    ------
+    NotConverged
+        As `separation` does.
     """
     tooth = np.asarray(tooth, float)
     roll = _min_gap_roll(design, (phi1, phi2, tooth), y)
     points = flank_points(design, roll, y)
-    seen = separation(design, points, phi1, phi2, tooth)
-    flank = (seen.part == FLANK) & (roll > _min_roll(design))
-    gear_roll, psi = np.where(flank, seen.u, np.nan), np.where(flank, seen.v, np.nan)
+    flank_separation = separation(design, points, phi1, phi2, tooth)
+    flank = (flank_separation.part == FLANK) & (roll > _min_roll(design))
+    gear_roll, psi = np.where(flank, flank_separation.u, np.nan), np.where(flank, flank_separation.v, np.nan)
     curvature, slope = (np.full(roll.shape, np.nan) for _ in range(2))
     turns = np.broadcast_to(to_left_flank(design, phi1, phi2, tooth).matrix[:, None], (*roll.shape, 3, 3))
     on_pinion = roll[flank], np.broadcast_to(y, roll.shape)[flank]
@@ -83,35 +103,75 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
         to_pinion_tip=_arc(design, design.pinion_tip_roll) - _arc(design, roll),
         to_gear_tip=to_gear_tip,
         to_end=np.minimum(ends, half - np.abs(y - design.mean_radius)),
-        face=_covered(design, y, radius),
+        face=_covered_width(design, y, radius),
     )
 
 
 def contact_gaps(
     design: PairDesign, placement: tuple[Array, Array, Array], y: Array
 ) -> tuple[Array, Array, Array]:
-    """Least gaps (p, n) m of flanks in planes y (n,) m, inf where there is none: roll (rad), gap and where on
-    the gear (p, n, 3), m.
+    """Compute the least gaps of flanks in planes across the pinion's axis.
 
-    placement: angles phi1, phi2 (rad) and pairs, (p,) each. Raises NotConverged as `separation` does.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    placement : tuple of arrays
+        Angles phi1, phi2 (rad) and numbers of the pairs, (p,) each.
+    y : (n,) array
+        Positions of the planes along the pinion's axis, m.
+
+    Returns
+    -------
+    tuple of arrays
+        Roll (p, n) on the pinion, rad; gap (p, n), m, inf where there is none; point (p, n, 3) on the
+        gear, m.
+
+    Raises
+    ------
+    NotConverged
+        As `separation` does.
     """
     roll = np.clip(_min_gap_roll(design, placement, y), _min_roll(design), design.pinion_tip_roll)
-    seen = separation(design, flank_points(design, roll, y), *placement)
-    on = seen.part == FLANK
-    points = face_gear.flank_point(design, np.where(on, seen.u, np.nan), np.where(on, seen.v, np.nan))
-    return roll, np.where(on, seen.gap, np.inf), points
+    flank_separation = separation(design, flank_points(design, roll, y), *placement)
+    on = flank_separation.part == FLANK
+    points = face_gear.flank_point(
+        design, np.where(on, flank_separation.u, np.nan), np.where(on, flank_separation.v, np.nan)
+    )
+    return roll, np.where(on, flank_separation.gap, np.inf), points
 
 
 def unloaded_lines(
-    design: PairDesign, position: Array, tooth: ArrayLike, unloaded: Mapping[float, float], y: Array
+    design: PairDesign, position: Array, tooth: ArrayLike, unloaded_errors: Mapping[float, float], y: Array
 ) -> ContactLines:
-    """Lines of the pairs `tooth` (p,) at positions (p,) of a pitch, placed as without load.
+    """Compute the contact lines of tooth pairs at positions of a pitch, with the gears placed as without
+    load.
 
-    unloaded: transmission error (m) by position, positive where the pinion is ahead. Raises NotConverged as
-    `separation` does.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    position : (p,) array
+        In pitches.
+    tooth : (p,) array_like
+        Numbers of the pairs.
+    unloaded_errors : Mapping[float, float]
+        Transmission error by position, m, positive where the pinion is ahead.
+    y : (n,) array
+        Positions of the planes along the pinion's axis, m.
+
+    Returns
+    -------
+    ContactLines
+        Lines (p, n), in SI units (m, rad).
+
+    Raises
+    ------
+    NotConverged
+        As `separation` does.
     """
     phi1 = pinion_angle(design, position)
-    error = -np.array([unloaded[at] for at in position.tolist()])
+    error = -np.array([unloaded_errors[at] for at in position.tolist()])
     phi2 = conjugate_angle(design, phi1) + error / design.gear_base_radius
     return contact_lines(design, phi1, phi2, tooth, y)
 
@@ -126,7 +186,9 @@ def _arc(design: PairDesign, roll: Array | float) -> Array:
 
 
 def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: Array) -> Array:
-    """Roll (p, n) of the least gap in each plane; at an end of the profile where it falls up to there."""
+    """Return the roll (p, n) of the least gap in each plane; the profile's end if the gap falls up
+    to there.
+    """
     top, bottom = design.pinion_tip_roll**2, _min_roll(design) ** 2
     roll_squared = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
     step = roll_squared[1] - roll_squared[0]
@@ -144,23 +206,24 @@ def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: 
 def _sampled_gaps(
     design: PairDesign, placement: tuple[Array, Array, Array], roll_squared: Array, y: Array
 ) -> Array:
-    """Gaps (p, k, n) of `_gaps` at squares (k,) of the roll, as many as show the least in each plane; inf
-    elsewhere.
+    """Return the gaps (p, k, n) of `_gaps` at squares (k,) of the roll, as many as show the least in each
+    plane.
 
-    Every EVERY-th is looked at first. Gaps fall towards the least and rise beyond it, so that it stands
-    between the neighbours of the least of these. Where none of a plane is seen, all are looked at, but for
-    pairs of which none is.
+    Every EVERY-th sample is computed first. Gaps fall towards the least and rise beyond it, so that the
+    least lies between the neighbours of the smallest of these samples. In planes without any finite gap
+    all samples are computed, except for pairs that have none in any plane. Samples that are not computed
+    are inf.
     """
     number = np.arange(roll_squared.size)[:, None]
     gap = np.full((placement[0].size, number.size, y.size), np.inf)
     first = np.broadcast_to(roll_squared[::EVERY, None], (number[::EVERY].size, y.size))
     gap[:, ::EVERY] = _gaps(design, placement, first, y)
-    seen = np.isfinite(gap).any(axis=1, keepdims=True)
+    has_gap = np.isfinite(gap).any(axis=1, keepdims=True)
     near = np.abs(number - np.argmin(gap, axis=1)[:, None]) < EVERY
-    wanted = (number % EVERY > 0) & np.where(seen, near, seen.any(axis=2, keepdims=True))
-    pair, sample, plane = (np.ascontiguousarray(part) for part in np.nonzero(wanted))
+    is_needed = (number % EVERY > 0) & np.where(has_gap, near, has_gap.any(axis=2, keepdims=True))
+    pair, sample, plane = (np.ascontiguousarray(part) for part in np.nonzero(is_needed))
     points = flank_points(design, np.sqrt(np.maximum(roll_squared[sample], 0.0)), y[plane])
-    gap[wanted] = separation_each(design, points, placement, pair, design.module).continued
+    gap[is_needed] = separation_each(design, points, placement, pair, design.module).continued
     return gap
 
 
@@ -169,29 +232,34 @@ def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], roll_square
     points = flank_points(design, np.sqrt(np.maximum(roll_squared, 0.0)), y)
     flat = (*roll_squared.shape[:-2], -1, 3)
     flat_points = SurfacePoints(points.position.reshape(flat), points.normal.reshape(flat))
-    seen = separation(design, flat_points, *placement)
-    gap = np.where(np.isfinite(seen.continued), seen.continued, np.inf)
+    flank_separation = separation(design, flat_points, *placement)
+    gap = np.where(np.isfinite(flank_separation.continued), flank_separation.continued, np.inf)
     return gap.reshape(placement[0].size, *roll_squared.shape[-2:])
 
 
 def _vertex(before: Array, middle: Array, after: Array) -> Array:
-    """Where a parabola through three values at -1, 0, 1 has its minimum, within -1..1; 0 without one."""
+    """Return where a parabola through three values at -1, 0, 1 has its minimum, within -1..1; 0
+    without one.
+    """
     with np.errstate(invalid="ignore", divide="ignore"):
         vertex = 0.5 * (before - after) / (before - 2 * middle + after)
     return np.clip(np.nan_to_num(vertex, nan=0.0, posinf=0.0, neginf=0.0), -1.0, 1.0)
 
 
-def _radius(y: Array, known: Array) -> Array:
-    """Gear radius (p, n), where `known` (p, n) is nan as far from y as at the nearest known plane."""
-    filled = known - y
-    for row in filled:
+def _radius(y: Array, gear_radius: Array) -> Array:
+    """Return the gear radius (p, n); where `gear_radius` (p, n) is nan, its difference from y is
+    interpolated.
+    """
+    difference = gear_radius - y
+    for row in difference:
         on = np.flatnonzero(np.isfinite(row))
         row[:] = np.interp(np.arange(row.size), on, row[on]) if on.size else 0.0
-    return y + filled
+    return y + difference
 
 
-def _covered(design: PairDesign, y: Array, radius: Array) -> Array:
-    """Widths (p, n) under the linear hats of planes at y (n,) between the ends of the gear's face.
+def _covered_width(design: PairDesign, y: Array, radius: Array) -> Array:
+    """Return the widths (p, n) under the linear basis functions of planes y (n,) between the ends of the
+    gear's face.
 
     radius (p, n): gear radius (m) of the line.
     """
@@ -205,7 +273,9 @@ def _covered(design: PairDesign, y: Array, radius: Array) -> Array:
 
 
 def _hat_integral(y: Array, end: Array) -> Array:
-    """Integrals (m) of the linear hats of evenly spaced planes y (n,) from the first plane to `end`."""
+    """Return the integrals (m) of the linear basis functions of evenly spaced planes y (n,) from the first
+    plane to `end`.
+    """
     step = y[1] - y[0]
     at = np.clip((np.clip(end, y[0], y[-1]) - y) / step, -1.0, 1.0)
     whole = 0.5 * (1.0 + at) ** 2 - np.where(at > 0, at**2, 0.0)

@@ -1,8 +1,8 @@
-"""Points by which a pair of teeth can touch, under the hats of a flank or along a tip edge.
+"""Points at which a pair of teeth can touch, under the basis functions of a flank or along a tip edge.
 
-Off the line of action an edge meets the opposite flank at an angle: the gap is least exactly on the edge and
-grows by micrometres within a node distance, so that averages over the surface beside it come too late. Edges
-therefore carry loads of their own, hats along the edge with gaps taken on it.
+Off the line of action an edge meets the opposite flank at an angle: the gap is least exactly on the edge
+and grows by micrometres within a node distance, so that averages over the surface beside it come too late.
+Edges therefore carry loads of their own: basis functions along the edge with gaps taken on it.
 """
 
 from typing import NamedTuple
@@ -14,15 +14,33 @@ from facegear.contact.basis_functions import FacingPoints
 from facegear.contact.flanks import OF_AN_EDGE, PinionPoints, PinionSurface
 
 SMALLEST_COVER = 0.02
-"""Part of a hat's area below which it is left out: the tooth opposite ends there."""
+"""Fraction of a basis function's area below which it is left out: the opposite tooth ends there."""
 
 
 def flank_points(
     surface: PinionSurface, points: Integers, gap: Array, lever_arm: Array, gear: Array, first: int = 0
 ) -> FacingPoints:
-    """Integration points (q,) of the pinion, numbered `points` (q,), whose hats are numbered from `first` on.
+    """Return integration points of the pinion with the basis functions over them.
 
-    gap, lever_arm (q,) m; gear (q, 2): refined lattice coordinates opposite.
+    Parameters
+    ----------
+    surface : PinionSurface
+        Contact surface of the pinion.
+    points : (q,) array of int
+        Numbers of the points.
+    gap : (q,) array
+        m.
+    lever_arm : (q,) array
+        m.
+    gear : (q, 2) array
+        Refined lattice coordinates on the gear, dimensionless.
+    first : int
+        Number of the first basis function of the pinion.
+
+    Returns
+    -------
+    FacingPoints
+        Points (q,), in SI units.
     """
     under, values = surface.under
     return FacingPoints(
@@ -34,7 +52,7 @@ class EdgePoints(NamedTuple):
     """Points (e,) of the gear's tip edge in p placements.
 
     gap, lever_arm (p, e) m; refined lattice coordinates `pinion` (p, e, 2) and `gear` (e, 2); `hats` and
-    `values` (e, 2): those of `edge_hats`.
+    `values` (e, 2) as returned by `edge_hats`.
     """
 
     gap: Array
@@ -45,14 +63,28 @@ class EdgePoints(NamedTuple):
     values: Array
 
 
-def gathered(
+def gather_points(
     points: PinionPoints, first: int, hits: tuple[Integers, Integers, Array, Array], edge: EdgePoints
 ) -> tuple[FacingPoints, Integers]:
-    """Points of p pairs of teeth, and where those of each begin (p + 1,): those of the gear's tip edge, then
-    those of the pinion, whose hats are numbered from `first` on.
+    """Join the points of p pairs of teeth: for each pair those of the gear's tip edge, then those of the
+    pinion.
 
-    hits: numbers (q,) of points of the pinion, where those of each pair end (p + 1,), 0 first, their gaps
-    (q,) m and refined lattice coordinates (q, 2) opposite.
+    Parameters
+    ----------
+    points : PinionPoints
+        Points of the pinion.
+    first : int
+        Number of the first basis function of the pinion.
+    hits : tuple of arrays
+        Numbers (q,) of points of the pinion, ends of each pair's points (p + 1,) with 0 first, gaps (q,)
+        in m, and refined lattice coordinates (q, 2) on the gear.
+    edge : EdgePoints
+        Points of the gear's tip edge.
+
+    Returns
+    -------
+    tuple[FacingPoints, Integers]
+        Points of all pairs, and the start of each pair's points (p + 1,).
     """
     number, ends, gap, gear = hits
     pairs, beside = edge.gap.shape
@@ -93,12 +125,34 @@ def gathered(
 
 
 def flank_cover(surface: PinionSurface) -> Array:
-    """Area (n,) that the teeth opposite must cover of each hat of the flank."""
+    """Return the area that the opposite teeth must cover of each basis function of the flank.
+
+    Parameters
+    ----------
+    surface : PinionSurface
+        Contact surface of the pinion.
+
+    Returns
+    -------
+    (n,) array
+        m2.
+    """
     return SMALLEST_COVER * surface.full_area
 
 
 def edge_cover(columns: int) -> Array:
-    """The same (columns,) along an edge, in distances of its nodes."""
+    """Smallest covered length of each edge basis function.
+
+    Parameters
+    ----------
+    columns : int
+        Number of nodes along the edge.
+
+    Returns
+    -------
+    (columns,) array
+        Length as a fraction of the node spacing.
+    """
     cover = np.full(columns, SMALLEST_COVER)
     cover[[0, -1]] *= 0.5
     return cover

@@ -32,11 +32,11 @@ from facegear.progress import Progress
 
 AT_ONCE = 8
 """Positions whose candidates are searched together."""
-ROOM = 1.12
-"""By how much farther they are searched than the position before needed."""
-KNOWN_MARGIN, KNOWN_ROOM = 1.02, 1.01
-"""In place of MARGIN and ROOM where it is known how the contact of a pair that differs little goes on from
-position to position."""
+SEARCH_MARGIN = 1.12
+"""Factor by which candidates are searched farther than the position before needed."""
+KNOWN_MARGIN, KNOWN_SEARCH_MARGIN = 1.02, 1.01
+"""Values in place of MARGIN and SEARCH_MARGIN where the contact of a pair that differs little shows how the
+rotation changes from position to position."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,19 +51,52 @@ class ContactModel:
     def design(self) -> PairDesign:
         return self.flanks.design
 
-    def assembled(self, errors: AssemblyErrors) -> "ContactModel":
-        """The same bodies in another assembly, which moves no node of theirs."""
+    def with_assembly(self, errors: AssemblyErrors) -> "ContactModel":
+        """Return the same bodies in another assembly, which moves no node of theirs.
+
+        Parameters
+        ----------
+        errors : AssemblyErrors
+            Errors of the assembly.
+
+        Returns
+        -------
+        ContactModel
+            Same compliances, other positions of the gears.
+        """
         return self.of(replace(self.design, assembly=errors))
 
     def of(self, design: PairDesign) -> "ContactModel":
-        """The same bodies of a design that differs in what moves no node of theirs."""
+        """Return the same bodies for a design that differs only in properties that move no node of theirs.
+
+        Parameters
+        ----------
+        design : PairDesign
+            Design with the same nodes.
+
+        Returns
+        -------
+        ContactModel
+            Same compliances, other surfaces.
+        """
         pinion, gear = self.flanks.pinion, self.flanks.gear
         flanks = FlankPair(replace(pinion, design=design), replace(gear, design=design))
         return replace(self, flanks=flanks)
 
 
 def even_positions(count: int) -> list[float]:
-    """Positions 0, 1/n, 2/n ... of a pitch."""
+    """Return evenly spaced positions 0, 1/n, 2/n ... of a pitch.
+
+    Parameters
+    ----------
+    count : int
+        Number n of positions.
+
+    Returns
+    -------
+    list[float]
+        Positions, in pitches.
+    """
     return [i / count for i in range(count)]
 
 
@@ -72,46 +105,75 @@ def loaded_contact(
     positions: Sequence[float],
     torques: Sequence[float],
     options: ContactOptions | None = None,
-    known: KnownContact | None = None,
+    known_contact: KnownContact | None = None,
 ) -> list[LoadedPosition]:
-    """Solve all torques (N m) at all positions (0..1 of a pitch, 0.5 where phi1 = 0), position by position.
+    """Solve for the contact at all positions and torques, position by position.
 
-    `known`: the contact of a pair that differs little, at the same positions and torques.
-    Raises NotConverged naming the position and the torque.
+    Parameters
+    ----------
+    model : ContactModel
+        Exact surfaces and compliances of the pair.
+    positions : Sequence[float]
+        In pitches, 0 to 1; 0.5 where phi1 = 0.
+    torques : Sequence[float]
+        On the pinion, N m.
+    options : ContactOptions, optional
+        Surfaces and couplings that take part; the default options if None.
+    known_contact : KnownContact, optional
+        Contact of a pair that differs little, at the same positions and torques.
+
+    Returns
+    -------
+    list[LoadedPosition]
+        Result at each position and torque, in SI units (N, m, rad).
+
+    Raises
+    ------
+    NotConverged
+        Names the position and the torque.
     """
     options = options or ContactOptions()
     design, face = model.design, model.design.face_gear
     phi1 = pinion_angle(design, positions)
-    phi2, unloaded = unloaded_motion(design, phi1)
+    phi2, unloaded_error = unloaded_motion(design, phi1)
     first = first_turn(torques, design.pinion_base_radius, face.outer_radius - face.inner_radius)
     progress = Progress("loaded contact", len(phi1))
     placements = list(zip(phi1.tolist(), phi2.tolist(), strict=True))
-    searched = _Searched(model, options, placements, known)
+    position_search = _PositionSearch(model, options, placements, known_contact)
     pairs = [
-        _PairAtPosition(searched, row, position=float(position), unloaded=-float(unloaded[row]))
+        _PairAtPosition(
+            position_search, row, position=float(position), unloaded_error=-float(unloaded_error[row])
+        )
         for row, position in enumerate(positions)
     ]
-    contacts, turned = [], 0.0
+    contacts, last_turn = [], 0.0
     for row, pair in enumerate(pairs):
-        turn = turned if turned > 0.0 else first  # fillets in the way turn the pinion back
-        if known is not None:
-            turn = known.turn[row] * (turned / known.turn[row - 1] if turned > 0.0 else 1.0)
-        contacts.append(contact_at(pair, torques, searched.margin(row) * turn))
-        turned = float(contacts[-1].rotation[0])
+        turn = last_turn if last_turn > 0.0 else first  # fillets in the way turn the pinion back
+        if known_contact is not None:
+            turn = known_contact.turn[row] * (
+                last_turn / known_contact.turn[row - 1] if last_turn > 0.0 else 1.0
+            )
+        contacts.append(contact_at(pair, torques, position_search.margin(row) * turn))
+        last_turn = float(contacts[-1].rotation[0])
         progress.step()
     # all at once: each finds what Python needs in the processor's cache, where a solution has cleared it
-    solved = [results_of(*each, torques) for each in zip(pairs, contacts, strict=True)]
-    return [result for of_position in solved for result in of_position]
+    position_results = [
+        results_of(*pair_and_contact, torques) for pair_and_contact in zip(pairs, contacts, strict=True)
+    ]
+    return [result for of_position in position_results for result in of_position]
 
 
 @dataclass(eq=False)
-class _Searched:
-    """What may touch at all positions, searched several at once: `ahead` by row, for a turn `limit` (rad)."""
+class _PositionSearch:
+    """Facing points at all positions, searched for several positions at once.
+
+    `ahead`: points by row, for a rotation `limit` (rad).
+    """
 
     model: ContactModel
     options: ContactOptions
     placements: list[tuple[float, float]]
-    known: KnownContact | None
+    known_contact: KnownContact | None
     ahead: dict[int, FacingPairs] = field(default_factory=dict)
     limit: float = 0.0
 
@@ -119,29 +181,34 @@ class _Searched:
         """Points of a position that a turn by `limit` (rad) would close, and perhaps a few more."""
         if row not in self.ahead or limit > self.limit:
             last = row + (AT_ONCE if row else 1)  # the first position says how far teeth give way
-            some, self.limit = self.placements[row:last], self._room(row, last) * limit
-            teeth = [pairs_to_try(self.model.design, phi1, self.options) for phi1, _ in some]
-            seen = facing_points(self.model.flanks, some, teeth, self.limit, self.options)
-            self.ahead = dict(enumerate(seen, row))
+            placements, self.limit = self.placements[row:last], self._search_margin(row, last) * limit
+            teeth = [pairs_to_try(self.model.design, phi1, self.options) for phi1, _ in placements]
+            facing_pairs = facing_points(self.model.flanks, placements, teeth, self.limit, self.options)
+            self.ahead = dict(enumerate(facing_pairs, row))
         return self.ahead[row]
 
-    def _room(self, row: int, last: int) -> float:
-        """By how much farther positions up to `last` are searched than the one in a row needs."""
-        if self.known is None:
-            return ROOM
-        return KNOWN_ROOM * float(self.known.turn[row:last].max() / self.known.turn[row])
+    def _search_margin(self, row: int, last: int) -> float:
+        """Return the factor by which positions up to `last` are searched farther than the position of `row`
+        needs.
+        """
+        if self.known_contact is None:
+            return SEARCH_MARGIN
+        return KNOWN_SEARCH_MARGIN * float(
+            self.known_contact.turn[row:last].max() / self.known_contact.turn[row]
+        )
 
     def margin(self, row: int) -> float:
-        """By how much farther contact is sought than a position is expected to turn: less where it is known
-        how another contact went on from the position before.
+        """Return the factor by which contact is searched beyond the expected rotation.
+
+        It is smaller where a known contact shows how the rotation changes from the position before.
         """
-        return KNOWN_MARGIN if row and self.known is not None else MARGIN
+        return KNOWN_MARGIN if row and self.known_contact is not None else MARGIN
 
     def strip(self, row: int, teeth: Integers) -> SearchStrip:
-        """In which contact of the pairs `teeth` (p,) is sought at first."""
+        """Return the strip in which contact of the pairs `teeth` (p,) is searched first."""
         margin, width, near = self.margin(row), WIDTH, np.zeros((0, 0), bool)
-        if self.known is not None:
-            width, near = KNOWN_WIDTH, self.known.near[row, np.searchsorted(PAIRS, teeth)]
+        if self.known_contact is not None:
+            width, near = KNOWN_WIDTH, self.known_contact.near[row, np.searchsorted(PAIRS, teeth)]
         return SearchStrip(GAP * MARGIN / margin, width, WIDER, START_GAP / margin, START_WIDTH, near)
 
     @cached_property
@@ -150,24 +217,24 @@ class _Searched:
         model = self.model
         lattices = model.flanks.pinion.lattice, model.flanks.gear.lattice
         cover = cover_of(model.flanks, self.options)
-        return PositionSolver(cover, lattices, (model.pinion, model.gear), self.options.coupled)
+        return PositionSolver(cover, lattices, (model.pinion, model.gear), self.options.is_coupled)
 
 
 @dataclass(frozen=True, eq=False)
 class _PairAtPosition:
-    """`facegear.contact.position.PairAtPosition` of whole gears, at a row of what was searched."""
+    """`facegear.contact.position.PairAtPosition` of whole gears, at a row of a position search."""
 
-    searched: _Searched
+    position_search: _PositionSearch
     row: int
     position: float
-    unloaded: float
+    unloaded_error: float
 
     @property
     def base_radius(self) -> float:
-        return self.searched.model.design.pinion_base_radius
+        return self.position_search.model.design.pinion_base_radius
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         """Solve for the contact of what a rotation of the pinion by `limit` (rad) would close."""
-        facing_pairs = self.searched.at(self.row, limit)
-        strip = self.searched.strip(self.row, facing_pairs.teeth)
-        return self.searched.solver.solve(facing_pairs, torques, limit, strip)
+        facing_pairs = self.position_search.at(self.row, limit)
+        strip = self.position_search.strip(self.row, facing_pairs.teeth)
+        return self.position_search.solver.solve(facing_pairs, torques, limit, strip)

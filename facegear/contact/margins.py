@@ -1,4 +1,4 @@
-"""How far the contact pattern of a pair stays from every edge of its flanks."""
+"""Distances of the contact pattern of a pair from every edge of its flanks."""
 
 from dataclasses import dataclass
 
@@ -36,20 +36,36 @@ class PatternMargins:
 
 
 def pattern_margins(arrays: Arrays, design: PairDesign, torque: float) -> PatternMargins | None:
-    """Of arrays as PRESSURE_ARRAYS of the pair `design` at a torque (N m); None without load.
+    """Compute the distances of the contact pattern from the edges of the flanks.
 
-    Loaded planes across the pinion's axis count half way to their neighbours. Across the profile the pattern
-    is that of the positions solved; a strip that reaches over a tip edge has no distance to it.
+    Loaded planes across the pinion's axis count half way to their neighbours. Across the profile the
+    pattern is that of the positions solved; a strip that reaches over a tip edge has no distance to it.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as PRESSURE_ARRAYS of the pair.
+    design : PairDesign
+        Pair of gears.
+    torque : float
+        On the pinion, N m.
+
+    Returns
+    -------
+    PatternMargins, optional
+        Distances, m; None without load at this torque.
     """
     on = arrays["line_torque_n_m"] == torque
     if not on.any():
         return None
-    shown = list(zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True))
-    row = {key: number for number, key in enumerate(shown)}
+    line_keys = list(zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True))
+    row = {key: number for number, key in enumerate(line_keys)}
     keys = zip(arrays["line_position"][on].tolist(), arrays["line_tooth"][on].tolist(), strict=True)
     lines = np.array([row[key] for key in keys])
     points = arrays["contact_point_m"][lines, arrays["line_plane"][on]]
-    where = {name: bool((arrays["line_where"][on] == number).any()) for number, name in enumerate(EDGES)}
+    touches_edge = {
+        name: bool((arrays["line_where"][on] == number).any()) for number, name in enumerate(EDGES)
+    }
     half = 0.5 * float(np.diff(arrays["contact_point_m"][0, :, 1]).mean())
     phi1 = pinion_angle(design, arrays["line_position"][on])
     motion = to_left_flank(design, phi1, np.zeros_like(phi1), arrays["line_tooth"][on])
@@ -64,8 +80,8 @@ def pattern_margins(arrays: Arrays, design: PairDesign, torque: float) -> Patter
     return PatternMargins(
         inner_end=inner - first,
         outer_end=last - outer,
-        pinion_tip=0.0 if where["pinion tip"] else max(float(to_tip), 0.0),
-        gear_tip=0.0 if where["gear tip"] else max(float(below), 0.0),
+        pinion_tip=0.0 if touches_edge["pinion tip"] else max(float(to_tip), 0.0),
+        gear_tip=0.0 if touches_edge["gear tip"] else max(float(below), 0.0),
         undercut=inner - limits.inner,
         pointing=limits.outer - outer,
     )

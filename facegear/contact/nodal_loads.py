@@ -11,16 +11,30 @@ from facegear.geometry.bodies import BODIES
 
 
 def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Integers) -> dict[str, AnyArray]:
-    """Contact forces as LOAD_ARRAYS: cases by variant, torque and position, loaded nodes by case and tooth.
+    """Collect contact forces as LOAD_ARRAYS: cases by variant, torque and position, loaded nodes by case and
+    tooth.
 
-    `variants`: results under each of the assembly errors; `flank_variant` (gears, flanks) numbers them.
-    Nodes count along each row of the contact surface's lattice before refinement; the force (N) acts against
-    the surface's outward normal.
+    Nodes count along each row of the contact surface's lattice before refinement; the force (N) acts
+    against the surface's outward normal.
+
+    Parameters
+    ----------
+    variants : Sequence[Sequence[LoadedPosition]]
+        Results under each of the assembly errors.
+    flank_variant : (gears, flanks) array of int
+        Number of each flank's variant.
+
+    Returns
+    -------
+    dict of arrays
+        Arrays with the (...) shapes of LOAD_ARRAYS.
     """
-    ordered = [sorted(results, key=lambda result: (result.torque, result.position)) for results in variants]
-    cases = [case for results in ordered for case in results]
+    sorted_results = [
+        sorted(results, key=lambda result: (result.torque, result.position)) for results in variants
+    ]
+    cases = [case for results in sorted_results for case in results]
     arrays = {
-        "variant": np.repeat(np.arange(len(ordered)), [len(results) for results in ordered]),
+        "variant": np.repeat(np.arange(len(sorted_results)), [len(results) for results in sorted_results]),
         "flank_variant": np.asarray(flank_variant),
         "torque_n_m": np.array([case.torque for case in cases]),
         "position": np.array([case.position for case in cases]),
@@ -40,16 +54,35 @@ def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Int
 def loads_by_tooth(
     arrays: Arrays, body: str, flank_nodes: int | None = None, variant: int = 0
 ) -> dict[int, sp.csr_matrix]:
-    """Forces (cases, nodes), N, on each loaded tooth of `pinion` or `face_gear`, from LOAD_ARRAYS.
+    """Return the forces on each loaded tooth of one variant, torque by torque and position by position.
 
-    The cases are those of one variant, torque by torque and position by position.
-    With `flank_nodes` those on later nodes, which lie in the body's own fillet, are left out.
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as LOAD_ARRAYS.
+    body : str
+        `pinion` or `face_gear`.
+    flank_nodes : int, optional
+        Number of nodes on the flank, beyond which loads in the body's own fillet are left out; None keeps
+        them.
+    variant : int
+        Number of the variant.
+
+    Returns
+    -------
+    dict of sparse matrices
+        Forces (cases, nodes) by tooth, N.
     """
     cases = np.flatnonzero(arrays["variant"] == variant)
     shape = cases.size, int(arrays["nodes"][BODIES.index(body)])
     case, tooth, node, force = (arrays[f"{body}_{name}"] for name in ("case", "tooth", "node", "force_n"))
-    own = arrays["variant"][case] == variant
-    case, tooth, node, force = case[own] - cases[0], tooth[own], node[own], force[own]
+    in_variant = arrays["variant"][case] == variant
+    case, tooth, node, force = (
+        case[in_variant] - cases[0],
+        tooth[in_variant],
+        node[in_variant],
+        force[in_variant],
+    )
     force = force if flank_nodes is None else np.where(node < flank_nodes, force, 0.0)
     return {
         int(number): sp.csr_matrix((force[on], (case[on], node[on])), shape=shape)

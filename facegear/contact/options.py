@@ -1,4 +1,4 @@
-"""What a contact analysis is asked to do; light to import, so that configs need no solver."""
+"""Options of a contact analysis; light to import, so that configs need no solver."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -32,13 +32,14 @@ class Sector:
 
 @dataclass(frozen=True)
 class ContactOptions:
-    """What takes part: fillets and tip lands as surfaces, coupling between neighbours, loads on tip edges.
+    """Parts of the model that take part: fillets and tip lands as surfaces, coupling between neighbours,
+    loads on tip edges.
 
     `path_only` leaves out the pairs that touch off the path of contact, where load bends teeth together.
     """
 
     fillet: bool = True
-    coupled: bool = True
+    is_coupled: bool = True
     edges: bool = True
     path_only: bool = False
 

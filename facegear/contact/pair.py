@@ -1,4 +1,4 @@
-"""Both gears of a pair: meshed and condensed one by one, put together for contact."""
+"""Contact model of a pair: both gears are meshed and condensed one by one."""
 
 from collections.abc import Callable
 
@@ -33,12 +33,35 @@ def gear_flank(
     plan: ContactPlan,
     section: bool = True,
 ) -> GearFlank:
-    """Contact surface, flank compliance and, where asked for, gauges of the pinion or the face gear.
+    """Compute contact surface, flank compliance and, if the plan has root stress, gauges of the pinion or the
+    face gear.
 
-    section: whether gauges come with the error of their section.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : str
+        `pinion` or `face_gear`.
+    sizes : MeshSizes
+        Element sizes.
+    material : Material
+        Of the gear.
+    plan : ContactPlan
+        Refinement, sector and element.
+    section : bool
+        Whether gauges come with the error of their section.
 
-    Raises InvalidInput for a sector with more teeth than the gear and for a mesh with elements turned inside
-    out, FacegearError if the mesh cannot be factorised.
+    Returns
+    -------
+    GearFlank
+        Flank of the gear.
+
+    Raises
+    ------
+    InvalidInput
+        For a sector with more teeth than the gear, and for a mesh with elements turned inside out.
+    FacegearError
+        If the mesh cannot be factorised.
     """
     tooth = BUILDERS[body](design, sizes)
     require_right_side_out(tooth)
@@ -53,23 +76,54 @@ def gear_flank(
 
 
 def extent(tooth: FeTooth, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
-    """How many teeth of a body are modelled, the neighbours on each side that are kept, and what ends them.
+    """Return the extent of a body's model.
 
-    Raises InvalidInput for a sector with more teeth than the gear.
+    Parameters
+    ----------
+    tooth : FeTooth
+        Mesh of a tooth.
+    body : str
+        `pinion` or `face_gear`.
+    plan : ContactPlan
+        Sector that is modelled.
+
+    Returns
+    -------
+    tuple[int, int, Ends]
+        Number of teeth that are modelled, number of neighbours on each side whose coupling is kept, and
+        the kind of ends.
+
+    Raises
+    ------
+    InvalidInput
+        For a sector with more teeth than the gear.
     """
     sector = plan.sector
-    wanted = sector.pinion_teeth if body == "pinion" else sector.face_gear_teeth
-    if wanted is None:
+    teeth = sector.pinion_teeth if body == "pinion" else sector.face_gear_teeth
+    if teeth is None:
         return tooth.teeth, min(NEIGHBOURS, (tooth.teeth - 3) // 2), "ring"
-    if wanted > tooth.teeth:
-        raise InvalidInput(
-            f"modelled teeth of the {body.replace('_', ' ')}", wanted, f"at most {tooth.teeth}"
-        )
-    return wanted, min(NEIGHBOURS, (wanted - 3) // 2), sector.cut_faces
+    if teeth > tooth.teeth:
+        raise InvalidInput(f"modelled teeth of the {body.replace('_', ' ')}", teeth, f"at most {tooth.teeth}")
+    return teeth, min(NEIGHBOURS, (teeth - 3) // 2), sector.cut_faces
 
 
 def contact_model(design: PairDesign, pinion: GearFlank, gear: GearFlank) -> ContactModel:
-    """The pair with flanks made for the same design."""
+    """Build the contact model of a pair from flanks made for the same design.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    pinion : GearFlank
+        Flank of the pinion.
+    gear : GearFlank
+        Flank of the face gear.
+
+    Returns
+    -------
+    ContactModel
+        The model.
+    """
     first, second = pinion.compliance, gear.compliance
     cuts = first.refinement, second.refinement
     return ContactModel(flank_pair(design, (pinion.side, gear.side), cuts, first.linear), first, second)

@@ -13,13 +13,13 @@ class Pattern:
     """One tooth's passage through the mesh in p steps and n planes across the pinion's axis.
 
     points (p, n, 3) m: its contact lines, on the right flank in the pinion's body frame; for each torque:
-    `pressure` (p, n) Pa, nan where none is known, and `where` (p, n), a number in EDGES, -1 where unloaded;
-    `line_load` (p, n) N/m.
+    `pressure` (p, n) Pa, nan where it is not known, and `edge` (p, n), a number in EDGES, -1 where
+    unloaded; `line_load` (p, n) N/m.
     """
 
     points: Array
     pressure: dict[float, Array]
-    where: dict[float, Integers]
+    edge: dict[float, Integers]
     line_load: dict[float, Array]
 
     @property
@@ -29,17 +29,41 @@ class Pattern:
 
 
 def passage(position: Array, tooth: Integers) -> Array:
-    """Where a tooth is in its passage (pitches): pair j at position x is where pair 0 is at x + j."""
+    """Return the position of a tooth in its passage: pair j at position x is where pair 0 is at x + j.
+
+    Parameters
+    ----------
+    position : (...) array
+        In pitches.
+    tooth : (...) array of int
+        Number of the pair.
+
+    Returns
+    -------
+    (...) array
+        Position in pitches, rounded to 9 digits.
+    """
     return np.round(position + tooth, 9)
 
 
 def pattern(arrays: Arrays) -> Pattern:
-    """Of arrays as PRESSURE_ARRAYS."""
+    """Build the contact pattern from stored pressures.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as PRESSURE_ARRAYS.
+
+    Returns
+    -------
+    Pattern
+        Pattern at each torque, in SI units (m, Pa, N/m).
+    """
     stages, first = np.unique(passage(arrays["contact_position"], arrays["contact_tooth"]), return_index=True)
     points = arrays["contact_point_m"][first]
     at = np.searchsorted(stages, passage(arrays["line_position"], arrays["line_tooth"]))
     shape = points.shape[:2]
-    pressure, where, line_load = {}, {}, {}
+    pressure, edge, line_load = {}, {}, {}
     for torque in np.unique(arrays["line_torque_n_m"]):
         on = arrays["line_torque_n_m"] == torque
         cells = at[on], arrays["line_plane"][on]
@@ -47,21 +71,32 @@ def pattern(arrays: Arrays) -> Pattern:
         inside = arrays["line_where"][on] == EDGES.index("inside")
         values[cells] = np.where(inside, arrays["line_pressure_pa"][on], np.nan)
         kind[cells], load[cells] = arrays["line_where"][on], arrays["line_load_n_per_m"][on]
-        pressure[float(torque)], where[float(torque)], line_load[float(torque)] = values, kind, load
-    return Pattern(points=points, pressure=pressure, where=where, line_load=line_load)
+        pressure[float(torque)], edge[float(torque)], line_load[float(torque)] = values, kind, load
+    return Pattern(points=points, pressure=pressure, edge=edge, line_load=line_load)
 
 
 def imprint(arrays: Arrays, face: tuple[float, float]) -> Array:
-    """Torque (N m) and the imprint of a passage along the pinion's axis, (torques, 4): its length (m), that
-    over the width of a face from `face[0]` to `face[1]` (m from the gear's axis), and its middle (m).
+    """Measure the imprint of a passage along the pinion's axis, at each torque.
 
-    Of arrays as PRESSURE_ARRAYS; each loaded plane counts half way to its neighbours, within the face.
+    Each loaded plane counts half way to its neighbours, within the face.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as PRESSURE_ARRAYS.
+    face : tuple[float, float]
+        Ends of the face, m from the gear's axis.
+
+    Returns
+    -------
+    (torques, 4) array
+        Torque (N m), length of the imprint (m), length over the width of the face, and its middle (m).
     """
-    swept = pattern(arrays)
-    half = 0.5 * float(np.diff(swept.points[0, :, 1]).mean())
+    contact_pattern = pattern(arrays)
+    half = 0.5 * float(np.diff(contact_pattern.points[0, :, 1]).mean())
     rows = []
-    for torque, where in swept.where.items():
-        y = swept.points[..., 1][where >= 0]
+    for torque, edge in contact_pattern.edge.items():
+        y = contact_pattern.points[..., 1][edge >= 0]
         ends = np.clip([y.min() - half, y.max() + half], *face) if y.size else np.zeros(2)
         length = float(np.ptp(ends))
         rows.append((torque, length, length / (face[1] - face[0]), float(ends.mean())))
@@ -71,16 +106,26 @@ def imprint(arrays: Arrays, face: tuple[float, float]) -> Array:
 def pressure_surface(
     arrays: Arrays,
 ) -> tuple[Array, dict[str, Integers], dict[str, Array]]:
-    """The pattern as quadrilaterals for ParaView: points, cells, and pressure (Pa) and line load (N/m) at
-    each torque; a pressure of nan where none is known.
+    """Return the pattern as quadrilaterals for ParaView.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as PRESSURE_ARRAYS.
+
+    Returns
+    -------
+    tuple
+        Points (n, 3), m; cells by kind (m, 4); fields (n,) by name: pressure (Pa, nan where it is not
+        known) and line load (N/m) at each torque.
     """
-    swept = pattern(arrays)
-    steps, planes = swept.points.shape[:2]
+    contact_pattern = pattern(arrays)
+    steps, planes = contact_pattern.points.shape[:2]
     nodes = np.arange(steps * planes).reshape(steps, planes)
     corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]
     fields = {}
-    for torque in swept.pressure:
-        fields[f"pressure_pa_at_{torque:g}_n_m"] = swept.pressure[torque].ravel()
-        fields[f"line_load_n_per_m_at_{torque:g}_n_m"] = swept.line_load[torque].ravel()
+    for torque in contact_pattern.pressure:
+        fields[f"pressure_pa_at_{torque:g}_n_m"] = contact_pattern.pressure[torque].ravel()
+        fields[f"line_load_n_per_m_at_{torque:g}_n_m"] = contact_pattern.line_load[torque].ravel()
     cells = {"quad": np.stack([c.ravel() for c in corners], axis=-1)}
-    return swept.points.reshape(-1, 3), cells, fields
+    return contact_pattern.points.reshape(-1, 3), cells, fields

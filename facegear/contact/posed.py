@@ -23,9 +23,9 @@ ONE_FLANK = np.zeros((2, 2), dtype=int)
 
 @dataclass(frozen=True, eq=False)
 class PosedContact:
-    """Drive flanks in one assembly: tables and arrays as stage contact has them.
+    """Drive flanks in one assembly: tables and arrays as stage contact stores them.
 
-    reactions: as `touching_reactions` has them.
+    reactions: as returned by `touching_reactions`.
     """
 
     errors: AssemblyErrors
@@ -43,13 +43,34 @@ def posed_contacts(
     plan: ContactPlan,
     assemblies: Sequence[AssemblyErrors],
 ) -> Iterator[PosedContact]:
-    """The contact of the drive flanks of pinion and face gear in each assembly.
+    """Solve the contact of the drive flanks of pinion and face gear in each assembly.
 
-    Raises NotConverged naming position and torque.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    flanks : tuple[GearFlank, GearFlank]
+        Surfaces and compliances of pinion and face gear.
+    plan : ContactPlan
+        Torques, positions and options.
+    assemblies : Sequence[AssemblyErrors]
+        Errors of each assembly.
+
+    Yields
+    ------
+    PosedContact
+        Contact in each assembly.
+
+    Raises
+    ------
+    NotConverged
+        Names position and torque.
     """
     model = contact_model(design, *flanks)
     for errors in assemblies:
-        yield _solved(model.assembled(errors), errors, materials, plan)
+        yield _solve_assembly(model.with_assembly(errors), errors, materials, plan)
 
 
 def met_contacts(
@@ -57,18 +78,41 @@ def met_contacts(
     materials: tuple[Material, Material],
     flanks: tuple[GearFlank, GearFlank],
     plan: ContactPlan,
-    met: Sequence[tuple[PairDesign, tuple[float, ...]]],
+    pair_torques: Sequence[tuple[PairDesign, tuple[float, ...]]],
 ) -> Iterator[PosedContact]:
-    """The contact of pairs of the design's bodies, each at its own torques (N m).
+    """Solve the contact of pairs of the design's bodies, each at its own torques.
 
-    Raises NotConverged naming position and torque.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    flanks : tuple[GearFlank, GearFlank]
+        Surfaces and compliances of pinion and face gear.
+    plan : ContactPlan
+        Positions and options.
+    pair_torques : Sequence[tuple[PairDesign, tuple[float, ...]]]
+        Pairs of the same bodies, and torques of each, N m.
+
+    Yields
+    ------
+    PosedContact
+        Contact of each pair.
+
+    Raises
+    ------
+    NotConverged
+        Names position and torque.
     """
     model = contact_model(design, *flanks)
-    for other, torques in met:
-        yield _solved(model.of(other), other.assembly, materials, replace(plan, torques=torques))
+    for pair_design, torques in pair_torques:
+        yield _solve_assembly(
+            model.of(pair_design), pair_design.assembly, materials, replace(plan, torques=torques)
+        )
 
 
-def _solved(
+def _solve_assembly(
     model: ContactModel, errors: AssemblyErrors, materials: tuple[Material, Material], plan: ContactPlan
 ) -> PosedContact:
     results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)

@@ -1,4 +1,4 @@
-"""The contact of a pair at one position, at every torque."""
+"""Contact of a pair at one position, at every torque."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,29 +14,34 @@ from facegear.errors import NotConverged
 from facegear.geometry.unloaded import PAIRS
 
 STIFFNESS = 2e10
-"""Of teeth of steel in mesh over the width of the face (N/m2), as ISO 6336 takes it: for the approach that
-the candidates of the first solution must cover; later ones follow the solutions."""
+"""Stiffness of steel teeth in mesh over the width of the face, N/m2, as in ISO 6336.
+
+It gives the approach that the candidates of the first solution must cover; later ones follow the
+solutions."""
 
 MARGIN = 1.15
 
 ENLARGEMENTS = 12
 
 UNKNOWN_REFERENCE = 0.01
-"""Part of the approach by which unloaded teeth may overlap until their average stiffness is not known: it
-counts from where the flanks alone would touch, and teeth that overlap there never stand so."""
+"""Fraction of the approach by which unloaded teeth may overlap until their average stiffness is not given.
+
+The approach counts from where the flanks alone would touch, and teeth that overlap there never stand so.
+"""
 
 
 class PairAtPosition(Protocol):
-    """Two gears at one position: what the solution of their contact has to know about them.
+    """Two gears at one position: the data that the solution of their contact needs.
 
-    `position` 0..1 of a pitch; `unloaded` transmission error (m) there; the pinion's `base_radius` (m).
+    `position` 0..1 of a pitch; `unloaded_error`: transmission error (m) there; the pinion's `base_radius`
+    (m).
     """
 
     @property
     def position(self) -> float: ...
 
     @property
-    def unloaded(self) -> float: ...
+    def unloaded_error(self) -> float: ...
 
     @property
     def base_radius(self) -> float: ...
@@ -85,7 +90,7 @@ class LoadedPosition:
         0..1 of a pitch.
     torque
         On the pinion, N m.
-    ste, unloaded
+    ste, unloaded_error
         Transmission error under load and without, m.
     k_average, k_local
         Stiffness on the line of action, N/m; k_average is nan where an overlap matters.
@@ -106,7 +111,7 @@ class LoadedPosition:
     position: float
     torque: float
     ste: float
-    unloaded: float
+    unloaded_error: float
     k_average: float
     k_local: float
     load_share: Array
@@ -123,31 +128,81 @@ class LoadedPosition:
 
 
 def first_turn(torques: Sequence[float], base_radius: float, width: float) -> float:
-    """A guess of the largest turn (rad) under torques (N m) of a pinion whose teeth mesh over a width (m)."""
+    """Return a guess of the largest rotation under several torques.
+
+    Parameters
+    ----------
+    torques : Sequence[float]
+        On the pinion, N m.
+    base_radius : float
+        Of the pinion, m.
+    width : float
+        Width over which its teeth mesh, m.
+
+    Returns
+    -------
+    float
+        Rotation, rad.
+    """
     return max(torques) / (base_radius**2 * width * STIFFNESS)
 
 
 def solve_position(
     pair: PairAtPosition, torques: Sequence[float], guess: float
 ) -> tuple[list[LoadedPosition], float]:
-    """All torques (N m) of a position.
+    """Solve for the contact at all torques of a position.
 
-    `guess` is a first guess of the largest turn (rad); the largest turn found is returned with the results,
-    as the next guess. Raises NotConverged naming position and torque.
+    Parameters
+    ----------
+    pair : PairAtPosition
+        Two gears at the position.
+    torques : Sequence[float]
+        On the pinion, N m.
+    guess : float
+        First guess of the largest rotation, rad.
+
+    Returns
+    -------
+    tuple[list[LoadedPosition], float]
+        Result at each torque, in SI units (N, m, rad); largest rotation found, rad, which is the next
+        guess.
+
+    Raises
+    ------
+    NotConverged
+        Names position and torque.
     """
     contact = contact_at(pair, torques, MARGIN * guess)
     return results_of(pair, contact, torques), float(contact.rotation[0])
 
 
 def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> PositionContact:
-    """The contact of a position under all torques (N m), the largest first.
+    """Solve for the contact of a position under all torques.
 
-    It is sought for turns up to `limit` (rad), and farther where it turns farther. Raises NotConverged naming
-    position and torque.
+    The search is enlarged where the pinion rotates farther than `limit`.
+
+    Parameters
+    ----------
+    pair : PairAtPosition
+        Two gears at the position.
+    torques : Sequence[float]
+        On the pinion, N m.
+    limit : float
+        Rotation up to which contact is searched first, rad.
+
+    Returns
+    -------
+    PositionContact
+        Contact under these torques, the largest first.
+
+    Raises
+    ------
+    NotConverged
+        Names position and torque.
     """
     loads = np.sort(np.array(torques, float))[::-1].copy()
 
-    def where(torque: float) -> str:
+    def place_text(torque: float) -> str:
         return f"position {pair.position:.6f}, torque {torque:g} N m"
 
     for _ in range(ENLARGEMENTS):
@@ -156,21 +211,36 @@ def contact_at(pair: PairAtPosition, torques: Sequence[float], limit: float) -> 
             limit *= 4.0
             continue
         if not contact.forward:
-            raise NotConverged("contact", where(loads[0]), "no candidate point can carry the torque")
+            raise NotConverged("contact", place_text(loads[0]), "no candidate point can carry the torque")
         if contact.rotation[0] > limit:
             limit = MARGIN * float(contact.rotation[0])
             continue
         for torque, steps, residual in zip(loads, contact.steps, contact.residual, strict=True):
-            check_solved(int(steps), float(residual), contact.strip_size, where(torque))
+            check_solved(int(steps), float(residual), contact.strip_size, place_text(torque))
         return contact
-    tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
-    raise NotConverged("contact", where(max(torques)), tried)
+    attempts = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
+    raise NotConverged("contact", place_text(max(torques)), attempts)
 
 
 def results_of(
     pair: PairAtPosition, contact: PositionContact, torques: Sequence[float]
 ) -> list[LoadedPosition]:
-    """Return the result at each torque (N m), in the order of the torques."""
+    """Return the result at each torque, in the order of the torques.
+
+    Parameters
+    ----------
+    pair : PairAtPosition
+        Two gears at the position.
+    contact : PositionContact
+        Contact under the torques, the largest first.
+    torques : Sequence[float]
+        On the pinion, N m.
+
+    Returns
+    -------
+    list[LoadedPosition]
+        Result at each torque, in SI units (N, m, rad).
+    """
     order = np.argsort(torques)[::-1]
     results = _results(pair, contact, np.array([float(torques[index]) for index in order]))
     return [results[row] for row in np.argsort(order)]
@@ -188,7 +258,7 @@ def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> 
     spots = _spots(contact)
     columns = (
         torques,
-        pair.unloaded + approach,
+        pair.unloaded_error + approach,
         average,
         local,
         part @ contact.fillet,
@@ -200,7 +270,7 @@ def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> 
             position=pair.position,
             torque=torque,
             ste=ste,
-            unloaded=pair.unloaded,
+            unloaded_error=pair.unloaded_error,
             k_average=k_average,
             k_local=k_local,
             load_share=load_share[row],
@@ -218,13 +288,13 @@ def _results(pair: PairAtPosition, contact: PositionContact, torques: Array) -> 
 
 
 def _spots(contact: PositionContact) -> list[tuple[Spot, ...]]:
-    """Of each torque, tooth by tooth."""
+    """Return the loaded basis functions at each torque, tooth by tooth."""
     torques, pairs = contact.on_pinion.shape[:2]
     row, on = np.nonzero(contact.force > 0.0)
     node, force, fillet = contact.node[on], contact.force[row, on], contact.fillet[on]
-    begun = np.searchsorted(row * pairs + contact.pair[on], np.arange(torques * pairs + 1)).tolist()
+    bounds = np.searchsorted(row * pairs + contact.pair[on], np.arange(torques * pairs + 1)).tolist()
     tooth, spots = contact.teeth.tolist(), [list[Spot]() for _ in range(torques)]
-    for number, (first, last) in enumerate(pairwise(begun)):
+    for number, (first, last) in enumerate(pairwise(bounds)):
         torque, pair = divmod(number, pairs)
         if last > first:
             spot = Spot(
@@ -236,4 +306,4 @@ def _spots(contact: PositionContact) -> list[tuple[Spot, ...]]:
                 on_gear=contact.on_gear[torque, pair],
             )
             spots[torque].append(spot)
-    return [tuple(some) for some in spots]
+    return [tuple(pair_loads) for pair_loads in spots]

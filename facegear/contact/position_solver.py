@@ -147,7 +147,7 @@ class PositionSolver:
 def _surface(lattice: Lattice, body: FlankCompliance) -> kernels.Surface:
     """Return the contact surface of a gear as the compiled kernels take it."""
     interpolation = lattice.interpolation_rows()
-    on_tooth, on_neighbours = map(np.ascontiguousarray, (_by_rows(body.own), body.others))
+    on_tooth, on_neighbours = map(np.ascontiguousarray, (_by_rows(body.loaded_tooth), body.neighbour_blocks))
     return kernels.Surface(lattice.shape, lattice.steps, *interpolation, on_tooth, on_neighbours, body.scale)
 
 

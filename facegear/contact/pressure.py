@@ -1,10 +1,10 @@
-"""Pressure on the flanks from line loads: what a load carried along a contact line means for the flank.
+"""Pressure on the flanks from line loads: line load, half-width and Hertz pressure along a contact line.
 
-The loads of single hats depend on how the mesh lies to the strip of contact; what a plane across the pinion's
-axis carries does not. So the pressure is that of Hertz for the line load and the exact relative curvature.
-Where a tip edge or an end of the face is closer than the strip's half-width, pressure has no limit as a mesh
-is refined, and the line load is all that can be said. What a fillet carries stands beside no contact line: it
-is left out.
+The loads of single basis functions depend on how the mesh lies relative to the strip of contact. The load
+that a plane across the pinion's axis carries does not. So the pressure is that of Hertz for the line load
+and the exact relative curvature. Where a tip edge or an end of the face is closer than the strip's
+half-width, pressure has no limit as a mesh is refined, and only the line load is given. Load in a fillet
+lies beside no contact line and is left out.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,7 +30,8 @@ KERNEL = np.array([1.0, 2.0, 1.0]) / 4
 """Weights of neighbouring planes, over an element of the face: forces alternate between its nodes."""
 
 WIDER = np.array([1.0, 2.0, 2.0, 2.0, 1.0]) / 8
-"""The same over two elements; the difference shows what the planes' distance leaves open."""
+"""Weights of five neighbouring planes, over two elements; the difference from KERNEL shows what the planes'
+distance leaves open."""
 
 SHORT = 11
 """Loaded planes up to which a contact counts as a short ellipse."""
@@ -46,7 +47,7 @@ class LineLoads:
     """Loaded planes across the pinion's axis, all (m,).
 
     `line` the row in `ContactLines`, `plane` its column; `length` (m) of the line that the plane stands
-    for; `line_load` (N/m) along the line; `where` one of INSIDE, PINION_TIP, GEAR_TIP, END; `pressure` (Pa)
+    for; `line_load` (N/m) along the line; `edge` one of INSIDE, PINION_TIP, GEAR_TIP, END; `pressure` (Pa)
     and its `error` (Pa), nan unless inside; `half_width` (m) of the strip, nan off the flanks.
     """
 
@@ -54,91 +55,146 @@ class LineLoads:
     plane: Integers
     length: Array
     line_load: Array
-    where: Integers
+    edge: Integers
     pressure: Array
     error: Array
     half_width: Array
 
     def largest(self) -> tuple[float, float]:
-        """Largest pressure (Pa) and its error; nan where none is inside."""
-        known = self.where == INSIDE
-        if not known.any():
+        """Return the largest pressure inside the flank, and its error.
+
+        Returns
+        -------
+        tuple[float, float]
+            Pa; nan where no plane is inside.
+        """
+        is_inside = self.edge == INSIDE
+        if not is_inside.any():
             return np.nan, np.nan
-        at = int(np.argmax(np.where(known, self.pressure, -np.inf)))
+        at = int(np.argmax(np.where(is_inside, self.pressure, -np.inf)))
         return float(self.pressure[at]), float(self.error[at])
 
     def part(self, rows: slice) -> "LineLoads":
-        """Those of some rows."""
+        """Return the line loads of a range of rows.
+
+        Parameters
+        ----------
+        rows : slice
+            Range of the m loaded planes.
+
+        Returns
+        -------
+        LineLoads
+            Line loads of these rows.
+        """
         return LineLoads(
             self.line[rows],
             self.plane[rows],
             self.length[rows],
             self.line_load[rows],
-            self.where[rows],
+            self.edge[rows],
             self.pressure[rows],
             self.error[rows],
             self.half_width[rows],
         )
 
     def at_tips(self) -> tuple[float, float]:
-        """Largest line load (N/m) at tip edges and the length (m) that carries any; zero without."""
-        on = (self.where == PINION_TIP) | (self.where == GEAR_TIP)
+        """Return the largest line load at tip edges, and the length that carries any.
+
+        Returns
+        -------
+        tuple[float, float]
+            Line load, N/m, and length, m; both 0 without load at tip edges.
+        """
+        on = (self.edge == PINION_TIP) | (self.edge == GEAR_TIP)
         return float(self.line_load[on].max(initial=0.0)), float(self.length[on].sum())
 
 
 @dataclass(frozen=True, eq=False)
 class FlankPressure:
-    """Contact lines of the pairs that carry load at some torque, and what they carry at each.
+    """Contact lines of the pairs that carry load at some torque, and the load of each line.
 
-    `position` and `tooth` (p,) of the lines; `unloaded` transmission error (m) of all positions by which they
-    are placed; `loads` in the order of the results they were made from.
+    `position` (in pitches) and `tooth` (p,) of the lines; `unloaded_errors`: unloaded transmission error
+    (m) by position, which places the lines; `loads` in the order of the results that they were made from.
     """
 
     position: Array
     tooth: Integers
     lines: ContactLines
-    unloaded: Mapping[float, float]
+    unloaded_errors: Mapping[float, float]
     loads: tuple[LineLoads, ...]
 
     def every_point(self, design: PairDesign) -> tuple[Array, Integers, Array]:
-        """Positions and teeth (q,) of the pairs -2..2 at all positions, and the points (q, n, 3) of their
-        lines on the pinion's right flank in its body frame, m.
+        """Return the contact lines of the pairs -2..2 at all positions, loaded or not.
+
+        Parameters
+        ----------
+        design : PairDesign
+            Pair of gears.
+
+        Returns
+        -------
+        tuple of arrays
+            Position (q,) in pitches and number of the pair (q,); points (q, n, 3) of its contact line on
+            the pinion's right flank in its body frame, m.
         """
-        position, tooth = np.repeat(sorted(self.unloaded), PAIRS.size), np.tile(PAIRS, len(self.unloaded))
+        position, tooth = (
+            np.repeat(sorted(self.unloaded_errors), PAIRS.size),
+            np.tile(PAIRS, len(self.unloaded_errors)),
+        )
         row = _rows(self.position, self.tooth)
-        known = np.array([row.get(pair, -1) for pair in zip(position.tolist(), tooth.tolist(), strict=True)])
-        roll = self.lines.roll[known]
-        rest = known < 0
+        line_number = np.array(
+            [row.get(pair, -1) for pair in zip(position.tolist(), tooth.tolist(), strict=True)]
+        )
+        roll = self.lines.roll[line_number]
+        rest = line_number < 0
         if rest.any():
-            others = position[rest], tooth[rest]
-            roll[rest] = unloaded_lines(design, *others, self.unloaded, self.lines.y).roll
+            missing_pairs = position[rest], tooth[rest]
+            roll[rest] = unloaded_lines(design, *missing_pairs, self.unloaded_errors, self.lines.y).roll
         return position, tooth, flank_points(design, roll, self.lines.y).position
 
 
 def flank_pressure(
     results: Sequence[LoadedPosition], flanks: FlankPair, materials: tuple[Material, Material]
 ) -> FlankPressure:
-    """Line loads and pressures of all results.
+    """Compute line loads and pressures of all results.
 
-    Raises NotConverged as `facegear.geometry.separation` does.
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+    flanks : FlankPair
+        Flanks that touch.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+
+    Returns
+    -------
+    FlankPressure
+        Contact lines of all loaded pairs, and the line loads of each result, in N/m and Pa.
+
+    Raises
+    ------
+    NotConverged
+        As `facegear.geometry.separation` does.
     """
     design = flanks.design
-    unloaded = {result.position: result.unloaded for result in results}
-    loaded = sorted({(result.position, spot.tooth) for result in results for spot in result.spots})
-    position, tooth = (np.array(part) for part in zip(*loaded, strict=True))
-    lines = unloaded_lines(design, position, tooth, unloaded, flanks.pinion.planes)
+    unloaded_errors = {result.position: result.unloaded_error for result in results}
+    loaded_pairs = sorted({(result.position, spot.tooth) for result in results for spot in result.spots})
+    position, tooth = (np.array(part) for part in zip(*loaded_pairs, strict=True))
+    lines = unloaded_lines(design, position, tooth, unloaded_errors, flanks.pinion.planes)
     row = _rows(position, tooth)
     modulus = contact_modulus(materials)
-    places = line_rows(lines.to_pinion_tip, flanks.pinion)
+    lattice_rows = line_rows(lines.to_pinion_tip, flanks.pinion)
     spots, at = [], []
     for result in results:
         for spot in result.spots:
             at.append(row[result.position, spot.tooth])
-            spots.append(on_flank(spot, places[at[-1]], flanks.pinion))
+            spots.append(on_flank(spot, lattice_rows[at[-1]], flanks.pinion))
     every, ends = _along(_by_plane(spots, lines.y.size), np.array(at), lines, modulus)
     of_result = np.cumsum([0] + [len(result.spots) for result in results])
     loads = [every.part(slice(ends[first], ends[last])) for first, last in pairwise(of_result)]
-    return FlankPressure(position, tooth, lines, unloaded, tuple(loads))
+    return FlankPressure(position, tooth, lines, unloaded_errors, tuple(loads))
 
 
 def _rows(position: Array, tooth: Integers) -> dict[tuple[float, int], int]:
@@ -147,15 +203,29 @@ def _rows(position: Array, tooth: Integers) -> dict[tuple[float, int], int]:
 
 
 def line_loads(spots: Sequence[Spot], rows: Sequence[int], lines: ContactLines, modulus: float) -> LineLoads:
-    """Loads of one position and torque along its contact lines, of all the forces of `spots`.
+    """Compute the loads of one position and torque along its contact lines, from all forces of `spots`.
 
-    `rows` numbers the line of each spot; `modulus` E* (Pa).
+    Parameters
+    ----------
+    spots : Sequence[Spot]
+        Loaded basis functions of each tooth pair.
+    rows : Sequence[int]
+        Row in `lines` of the contact line of each spot.
+    lines : ContactLines
+        Contact lines.
+    modulus : float
+        Contact modulus E*, Pa.
+
+    Returns
+    -------
+    LineLoads
+        Loaded planes of all spots, in N/m and Pa.
     """
     return _along(_by_plane(spots, lines.y.size), np.array(rows), lines, modulus)[0]
 
 
 def _by_plane(spots: Sequence[Spot], planes: int) -> Array:
-    """Forces (s, n) N that n planes carry of each spot."""
+    """Return the forces (s, n) in N that n planes carry, for each spot."""
     force = np.zeros((len(spots), planes))
     number = np.repeat(np.arange(len(spots)), [spot.hats.size for spot in spots])
     hats = np.concatenate([spot.hats for spot in spots])
@@ -164,106 +234,114 @@ def _by_plane(spots: Sequence[Spot], planes: int) -> Array:
 
 
 def _along(force: Array, rows: Integers, lines: ContactLines, modulus: float) -> tuple[LineLoads, Integers]:
-    """Of the forces (s, n) N that the planes of lines `rows` (s,) carry, and where those of each spot end
-    (s + 1,), 0 first.
+    """Return the line loads for plane forces (s, n) N on lines `rows` (s,), and the end of each spot's rows
+    (s + 1,).
+
+    The first entry of the ends is 0.
     """
     spots, face = np.arange(len(rows)), lines.face[rows]
     owner = _owners(face, lines.y[1] - lines.y[0])
-    merged, widths = np.zeros_like(force), np.zeros_like(face)
-    for target, values in ((merged, force), (widths, face)):
+    plane_force, widths = np.zeros_like(force), np.zeros_like(face)
+    for target, values in ((plane_force, force), (widths, face)):
         np.add.at(target, (spots[:, None], owner), values)
     load, wider = (
-        np.take_along_axis(_smoothed(merged, widths, weights), owner, 1) for weights in (KERNEL, WIDER)
+        np.take_along_axis(_smooth_load(plane_force, widths, weights), owner, 1)
+        for weights in (KERNEL, WIDER)
     )
-    loaded = np.take_along_axis(_closed(merged > 0), owner, 1) & (face > 0)
-    counts = np.count_nonzero(loaded, axis=1)
+    is_loaded = np.take_along_axis(_close_gaps(plane_force > 0), owner, 1) & (face > 0)
+    counts = np.count_nonzero(is_loaded, axis=1)
     ends = np.concatenate([[0], np.cumsum(counts)])
-    spot, plane = np.nonzero(loaded)
+    spot, plane = np.nonzero(is_loaded)
     row = rows[spot]
     slope = np.nan_to_num(lines.slope[row, plane])
-    half = 0.5 * np.where(loaded, face, 0.0).sum(axis=1)[spot]
+    half = 0.5 * np.where(is_loaded, face, 0.0).sum(axis=1)[spot]
     along = half / np.cos(slope)
-    line_load = load[loaded] * half / along
+    line_load = load[is_loaded] * half / along
     pressure, width = strip_pressure(line_load, lines.curvature[row, plane], modulus, along)
-    where = _where(lines, row, plane, width / np.cos(slope), owner[loaded] != plane)
-    inside = where == INSIDE
-    apart = _largest_nearby(np.abs(wider - load)[loaded], ends, spot)
+    edge = _nearest_edge(lines, row, plane, width / np.cos(slope), owner[is_loaded] != plane)
+    inside = edge == INSIDE
+    apart = _largest_nearby(np.abs(wider - load)[is_loaded], ends, spot)
     # in a short ellipse both averages are too low: load and length say by how much, and p goes with the root
-    top_load = np.where(loaded, load, 0.0).max(axis=1, initial=0.0)
+    top_load = np.where(is_loaded, load, 0.0).max(axis=1, initial=0.0)
     peak = _peak_if_short(force, lines.y) / np.where(top_load > 0.0, top_load, np.inf)
     low = np.maximum(0.5 * (peak - 1.0), 0.0)[spot]
     loads = LineLoads(
         line=row,
         plane=plane,
-        length=face[loaded] / np.cos(slope),
+        length=face[is_loaded] / np.cos(slope),
         line_load=line_load,
-        where=where,
+        edge=edge,
         pressure=np.where(inside, pressure, np.nan),
-        error=np.where(inside, np.hypot(0.5 * apart / load[loaded], low) * pressure, np.nan),
+        error=np.where(inside, np.hypot(0.5 * apart / load[is_loaded], low) * pressure, np.nan),
         half_width=width,
     )
     return loads, ends
 
 
 def _largest_nearby(values: Array, ends: Integers, spot: Integers) -> Array:
-    """The largest (m,) of NEIGHBOURHOOD neighbouring values of the same spot; `ends` as `_along` has them."""
+    """Return the largest (m,) of NEIGHBOURHOOD neighbouring values of the same spot; `ends` as returned by
+    `_along`.
+    """
     at, reach = np.arange(values.size), NEIGHBOURHOOD // 2
     low, high = ends[spot], ends[spot + 1] - 1
     near = [values[np.clip(at + step, low, high)] for step in range(-reach, reach + 1)]
     return np.asarray(np.max(near, axis=0, initial=0.0))
 
 
-def _closed(carries: Mask) -> Mask:
-    """Planes (s, n) that carry load, with those between two that do."""
-    padded = np.pad(carries, ((0, 0), (2, 2)))
-    grown = padded[:, :-2] | padded[:, 1:-1] | padded[:, 2:]
-    return np.asarray(grown[:, :-2] & grown[:, 1:-1] & grown[:, 2:])
+def _close_gaps(carries: Mask) -> Mask:
+    """Return the loaded planes (s, n), and single unloaded planes between two loaded ones."""
+    padded_mask = np.pad(carries, ((0, 0), (2, 2)))
+    dilated_mask = padded_mask[:, :-2] | padded_mask[:, 1:-1] | padded_mask[:, 2:]
+    return np.asarray(dilated_mask[:, :-2] & dilated_mask[:, 1:-1] & dilated_mask[:, 2:])
 
 
 def _peak_if_short(force: Array, y: Array) -> Array:
-    """Largest load per width (s,) N/m of a parabola with the load and length of forces (s, n) on few planes.
+    """Return the peak load per width (s,) N/m of a parabola with load and length of forces (s, n) on few
+    planes.
 
-    That is how a Hertz ellipse spreads its load along its length. 0 for more than SHORT loaded planes.
+    A Hertz ellipse spreads its load along its length in this way. The result is 0 for more than SHORT
+    loaded planes.
     """
     total, step = force.sum(axis=1), y[1] - y[0]
     short = (total > 0.0) & (np.count_nonzero(force, axis=1) <= SHORT)
-    carried = np.where(total > 0.0, total, 1.0)
-    middle = force @ y / carried
-    spread = (force * (y - middle[:, None]) ** 2).sum(axis=1) / carried - step**2 / 6.0
+    total_or_one = np.where(total > 0.0, total, 1.0)
+    middle = force @ y / total_or_one
+    spread = (force * (y - middle[:, None]) ** 2).sum(axis=1) / total_or_one - step**2 / 6.0
     peak = 0.75 * total / np.sqrt(5.0 * np.maximum(spread, MIN_SPREAD * step**2))
     return np.where(short, peak, 0.0)
 
 
 def _owners(face: Array, step: float) -> Integers:
-    """The plane (s, n) that each one's load is counted with: itself, or the nearest that no end cuts.
+    """Return the plane (s, n) to which each plane's load is added: itself, or the nearest that no end cuts.
 
-    How two planes share their load where an end cuts one is arbitrary: their hats almost coincide.
+    How two planes share their load where an end cuts one is arbitrary: their basis functions almost
+    coincide.
     """
     whole = face > (1 - 1e-9) * step
     count = face.shape[1]
-    none = ~whole.any(axis=1)
-    first = np.where(none, 0, np.argmax(whole, axis=1))
-    last = np.where(none, count, count - np.argmax(whole[:, ::-1], axis=1)) - 1
+    has_no_whole_plane = ~whole.any(axis=1)
+    first = np.where(has_no_whole_plane, 0, np.argmax(whole, axis=1))
+    last = np.where(has_no_whole_plane, count, count - np.argmax(whole[:, ::-1], axis=1)) - 1
     return np.clip(np.arange(count), first[:, None], last[:, None])
 
 
-def _smoothed(force: Array, face: Array, weights: Array) -> Array:
-    """Load per width (s, n) N/m over neighbouring planes."""
+def _smooth_load(force: Array, face: Array, weights: Array) -> Array:
+    """Return the load per width (s, n) N/m, averaged over neighbouring planes."""
     reach, count = weights.size // 2, force.shape[1]
-    padded = [np.pad(values, ((0, 0), (reach, reach))) for values in (force, face)]
-    carried, width = (
+    padded_values = [np.pad(values, ((0, 0), (reach, reach))) for values in (force, face)]
+    weighted_force, width = (
         sum(weight * values[:, start : start + count] for start, weight in enumerate(weights))
-        for values in padded
+        for values in padded_values
     )
-    return np.asarray(carried / np.where(width > 0, width, 1.0))
+    return np.asarray(weighted_force / np.where(width > 0, width, 1.0))
 
 
-def _where(lines: ContactLines, row: Integers, planes: Integers, width: Array, cut: Mask) -> Integers:
+def _nearest_edge(lines: ContactLines, row: Integers, planes: Integers, width: Array, cut: Mask) -> Integers:
     to_pinion, to_gear, to_end = (
         values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
     )
-    where = np.full(planes.size, INSIDE)
-    where[cut | (to_end < width) | (to_end < 0)] = END
-    where[(np.isnan(to_gear) & (to_end >= 0)) | (to_gear < width)] = GEAR_TIP
-    where[(to_pinion < width) | (to_pinion <= 0)] = PINION_TIP
-    return where
+    edge = np.full(planes.size, INSIDE)
+    edge[cut | (to_end < width) | (to_end < 0)] = END
+    edge[(np.isnan(to_gear) & (to_end >= 0)) | (to_gear < width)] = GEAR_TIP
+    edge[(to_pinion < width) | (to_pinion <= 0)] = PINION_TIP
+    return edge

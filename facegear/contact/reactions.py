@@ -1,8 +1,8 @@
-"""What the touching loads press on the bodies with: forces and moment of a mesh, averaged over its cycle.
+"""Forces and moment of a mesh on its bodies, from the touching loads, averaged over the mesh cycle.
 
-The sum of f . gap_p over all loads, gap_p the derivative of their gaps by a motion p of the pinion: each load
-acts along the normal of the pinion where it is. The derivative of the whole energy of the contact has
-f . C_p f / 2 as well, as other parts of the teeth give way differently.
+They are the sum of f . gap_p over all loads, gap_p the derivative of their gaps by a motion p of the
+pinion: each load acts along the normal of the pinion where it is. The derivative of the whole energy of
+the contact has f . C_p f / 2 as well, as other parts of the teeth give way differently.
 """
 
 from collections.abc import Sequence
@@ -19,8 +19,22 @@ REACTION_COLUMNS = ("torque_n_m", "tangential_n", "axial_n", "overturning_n_m")
 
 
 def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]) -> pd.DataFrame:
-    """One row a torque, REACTION_COLUMNS: on the gear along the pinion's tangent and on either along the
-    gear's axis, and the moment about the line through the gear's centre along the pinion's tangent.
+    """Tabulate the reactions, one row a torque.
+
+    They are the force on the gear along the pinion's tangent, the force on either body along the gear's
+    axis, and the moment about the line through the gear's centre along the pinion's tangent.
+
+    Parameters
+    ----------
+    surface : PinionSurface
+        Contact surface of the pinion.
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns REACTION_COLUMNS.
     """
     rows = [(result.torque, *_reactions(surface, result)) for result in results]
     table = pd.DataFrame(rows, columns=list(REACTION_COLUMNS))
@@ -33,11 +47,11 @@ def _reactions(surface: PinionSurface, result: LoadedPosition) -> Array:
 
 
 def _of_spot(surface: PinionSurface, position: float, spot: Spot) -> Array:
-    """Of the loads of one pair of teeth, (3,)."""
+    """Return the reactions (3,) of the loads of one pair of teeth."""
     design = surface.design
     points = surface.exact(np.stack(np.divmod(spot.hats, surface.shape[1]), axis=-1).astype(float))
-    turned = pinion_angle(design, position) + (spot.tooth - 0.5) * 2.0 * np.pi / design.pinion.teeth
-    matrix = body_rotation("pinion", turned)
+    angle = pinion_angle(design, position) + (spot.tooth - 0.5) * 2.0 * np.pi / design.pinion.teeth
+    matrix = body_rotation("pinion", angle)
     tilt = rotation(np.array([1.0, 0.0, 0.0]), design.assembly.shaft_angle_error)
     middle = np.array([0.0, design.mean_radius, 0.0])
     force = (spot.force[:, None] * points.normal) @ (tilt @ matrix).T

@@ -1,4 +1,6 @@
-"""Whether the contact surface's nodes can see the contact strip at all, and whether they fit into memory."""
+"""Checks that the nodes of the contact surface resolve the contact strip, and that the problem fits into
+memory.
+"""
 
 from dataclasses import replace
 from math import ceil, inf, pi, sin, sqrt
@@ -16,7 +18,7 @@ COARSEST = 1.5
 PLANES = 4.0
 """Planes of nodes in the half-length of a contact ellipse, with which its pressure errs by some 3 %."""
 MAX_CUTS = 16
-"""Along the face, of the elements under the flank."""
+"""Largest number of cuts along the face of the elements under the flank."""
 ROUNDING = 1e-9
 DEEPEST = 2.0
 """Depth of the first row below a fillet over its smallest radius, with which root stress errs by some 6 %."""
@@ -27,9 +29,25 @@ MEMORY_ERROR = 1.2
 
 
 def half_width(design: PairDesign, materials: tuple[Material, Material], torque: float) -> float:
-    """Hertz half-width (m) of two pairs sharing a torque (N m) evenly along the face, at the pitch point.
+    """Compute the Hertz half-width of two pairs that share a torque evenly along the face, at the pitch
+    point.
 
-    Line contact of a cylinder with the pinion's radius of curvature r_p sin a0 on the nearly flat gear flank.
+    Line contact of a cylinder with the pinion's radius of curvature r_p sin a0 on the nearly flat gear
+    flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    torque : float
+        On the pinion, N m.
+
+    Returns
+    -------
+    float
+        Half-width, m.
     """
     face = design.face_gear.outer_radius - design.face_gear.inner_radius
     line_load = torque / design.pinion_base_radius / (2 * min(face, design.pinion.width))
@@ -38,7 +56,22 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
 
 
 def flank_nodes(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> float:
-    """Surface nodes of a flank: two an element in both directions."""
+    """Compute the number of surface nodes of a flank: two an element in both directions.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+    plan : ContactPlan
+        Refinement of the elements.
+
+    Returns
+    -------
+    float
+        Number of nodes, not rounded.
+    """
     height = design.face_gear.addendum + design.pinion.addendum
     across = 2 * plan.refinement.profile * height / sizes.profile + 1
     along = 2 * plan.refinement.width * _elements_along(design, sizes) + 1
@@ -46,12 +79,27 @@ def flank_nodes(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> floa
 
 
 def estimated_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> float:
-    """Bytes that a process takes for mesh, elimination and compliance of the larger body, the face gear.
+    """Estimate the memory of a process for mesh, elimination and compliance of the larger body, the face
+    gear.
 
-    They grow with the square of the dof on its flank, its two cut faces and the largest cut through it. The
-    numbers are fitted to what was measured on six meshes, two of them of wide faces or medium size
-    (docs/explanation/contact.md), which they give within a fifth; finer ones are extrapolated. The estimate
-    never falls below the flanks' dense compliance, which is certain.
+    It grows with the square of the dof on the gear's flank, its two cut faces and the largest cut through
+    it. The numbers are fitted to measurements on six meshes, two of them of wide faces or medium size
+    (docs/explanation/contact.md), and reproduce them within a fifth; finer meshes are extrapolated. The
+    estimate never falls below the memory of the flanks' dense compliance, which is certain.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+    plan : ContactPlan
+        Refinement of the elements.
+
+    Returns
+    -------
+    float
+        Memory, bytes.
     """
     nodes, planes = flank_nodes(design, sizes, plan), 2.0 * _elements_along(design, sizes) + 1.0
     dof = 1.75 * nodes + 11.3 * planes * (design.face_gear.rim_thickness / sizes.thickness + 5.3)
@@ -59,18 +107,34 @@ def estimated_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) ->
 
 
 def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, available: float) -> None:
-    """Refuse a mesh that cannot fit into `available` bytes even if the estimate is a fifth too high.
+    """Refuse a mesh that cannot fit into the memory even if the estimate is a fifth too high.
 
-    Raises InvalidInput.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+    plan : ContactPlan
+        Refinement of the elements.
+    available : float
+        Memory, bytes.
+
+    Raises
+    ------
+    InvalidInput
+        Where the mesh does not fit.
     """
-    needed = estimated_memory(design, sizes, plan)
-    if needed > MEMORY_ERROR * available:
-        asked = f"{1e3 * sizes.profile:.3g} mm across the profile, {1e3 * sizes.width:.3g} mm along the face"
-        allowed = (
-            f"coarser: an estimate of the memory for factorisation and compliance is {needed / 1e9:.3g} GB, "
+    memory = estimated_memory(design, sizes, plan)
+    if memory > MEMORY_ERROR * available:
+        sizes_text = (
+            f"{1e3 * sizes.profile:.3g} mm across the profile, {1e3 * sizes.width:.3g} mm along the face"
+        )
+        requirement = (
+            f"coarser: an estimate of the memory for factorisation and compliance is {memory / 1e9:.3g} GB, "
             f"and this machine has {available / 1e9:.3g} GB"
         )
-        raise InvalidInput("element size", asked, allowed)
+        raise InvalidInput("element size", sizes_text, requirement)
 
 
 def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
@@ -78,33 +142,77 @@ def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
 
 
 def node_spacing(sizes: MeshSizes, plan: ContactPlan) -> float:
-    """Distance (m) of the contact surface's nodes across the profile."""
+    """Compute the distance of the contact surface's nodes across the profile.
+
+    Parameters
+    ----------
+    sizes : MeshSizes
+        Element sizes.
+    plan : ContactPlan
+        Refinement of the elements.
+
+    Returns
+    -------
+    float
+        Distance, m.
+    """
     return sizes.profile / plan.refinement.profile / 2
 
 
 def resolves(spacing: float, design: PairDesign, materials: tuple[Material, Material], torque: float) -> bool:
-    """Whether nodes so far apart (m) resolve the contact strip at a torque (N m)."""
+    """Whether nodes resolve the contact strip at a torque.
+
+    Parameters
+    ----------
+    spacing : float
+        Distance of the nodes, m.
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    torque : float
+        On the pinion, N m.
+
+    Returns
+    -------
+    bool
+        True if the distance is at most COARSEST times the half-width.
+    """
     return spacing <= COARSEST * half_width(design, materials, torque)
 
 
 def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material], torque: float) -> float:
-    """Half-length (m) along the face of a crowned pair's contact ellipse at a torque (N m).
+    """Compute the half-length along the face of a crowned pair's contact ellipse.
 
-    inf without lead crowning of either gear, be it a modification or that of its deviations. Two pairs share
-    the torque evenly; each touches the nearly flat gear flank at the pitch point.
+    Two pairs share the torque evenly; each touches the nearly flat gear flank at the pitch point. Lead
+    crowning may be a modification of either gear or part of its deviations.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    torque : float
+        On the pinion, N m.
+
+    Returns
+    -------
+    float
+        Half-length, m; inf without lead crowning of either gear.
     """
-    both = (design.pinion.lead_crowning, design.face_gear.modifications.lead_crowning)
-    crownings = [crowning for crowning in both if crowning.amount > 0.0 and crowning.length > 0.0]
+    lead_crownings = (design.pinion.lead_crowning, design.face_gear.modifications.lead_crowning)
+    crownings = [crowning for crowning in lead_crownings if crowning.amount > 0.0 and crowning.length > 0.0]
     plain = min((crowning.start for crowning in crownings), default=0.0)
-    bent = max(
+    deviation_curvature = max(
         mean_crowning(pair.pinion.flanks.right) + mean_crowning(pair.face_gear.flanks.left)
-        for pair in (design, design.exchanged)
+        for pair in (design, design.with_swapped_flanks)
     )
-    if not crownings and bent == 0.0:
+    if not crownings and deviation_curvature == 0.0:
         return inf
     from facegear.contact.hertz import contact_modulus, longer_semi_axis
 
-    along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings) + bent
+    along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings) + deviation_curvature
     across = 1.0 / (design.pinion_pitch_radius * sin(design.pressure_angle))
     force = torque / design.pinion_base_radius / 2.0
     return plain + longer_semi_axis(force, across, along, contact_modulus(materials))
@@ -113,20 +221,40 @@ def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material]
 def along_the_ellipse(
     design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
 ) -> ContactPlan:
-    """The plan with as many cuts along the face as the contact ellipse of a crowned pair asks for.
+    """Return the plan with as many cuts along the face as the contact ellipse of a crowned pair requires.
 
-    At the smallest torque its half-length holds PLANES planes of nodes. Raises InvalidInput where that takes
-    more than MAX_CUTS cuts.
+    At the smallest torque the ellipse's half-length holds PLANES planes of nodes.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    sizes : MeshSizes
+        Element sizes.
+    plan : ContactPlan
+        Torques and refinement.
+
+    Returns
+    -------
+    ContactPlan
+        Plan with a refinement along the face that is never coarser.
+
+    Raises
+    ------
+    InvalidInput
+        Where more than MAX_CUTS cuts are needed.
     """
     torque = min(plan.torques)
     half = ellipse_half_length(design, materials, torque)
     cuts = max(plan.refinement.width, ceil(PLANES * sizes.width / 2.0 / half - ROUNDING))
     if cuts > MAX_CUTS:
-        needed = 2e3 * MAX_CUTS * half / PLANES
+        largest_size_mm = 2e3 * MAX_CUTS * half / PLANES
         raise InvalidInput(
             "element size",
             f"{1e3 * sizes.width:.3g} mm along the face",
-            f"at most {needed:.3g} mm: at {torque:g} N m the crowned pair's contact ellipse is "
+            f"at most {largest_size_mm:.3g} mm: at {torque:g} N m the crowned pair's contact ellipse is "
             f"{2e3 * half:.3g} mm long",
         )
     return replace(plan, refinement=replace(plan.refinement, width=cuts))
@@ -135,10 +263,23 @@ def along_the_ellipse(
 def check_resolution(
     design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
 ) -> None:
-    """Refuse a mesh whose nodes are too far apart for the contact strip at any torque asked for.
+    """Refuse a mesh whose nodes are too far apart for the contact strip at the smallest torque of the plan.
 
-    Each torque is judged by itself, so that it makes no difference which others stand beside it. Raises
-    InvalidInput.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    sizes : MeshSizes
+        Element sizes.
+    plan : ContactPlan
+        Torques and refinement.
+
+    Raises
+    ------
+    InvalidInput
+        Where the nodes do not resolve the strip.
     """
     spacing, torque = node_spacing(sizes, plan), min(plan.torques)
     strip = half_width(design, materials, torque)
@@ -155,17 +296,29 @@ def check_resolution(
 
 
 def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> None:
-    """Refuse a mesh whose elements are too large for the sharpest fillet, where its stress is asked for.
+    """Refuse a mesh whose elements are too large for the sharpest fillet, if its stress is computed.
 
-    Raises InvalidInput.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+    plan : ContactPlan
+        Whether root stress is computed.
+
+    Raises
+    ------
+    InvalidInput
+        Where the elements are too large.
     """
     radii = {body: smallest_radius(design, body) for body in BODIES}
     sharpest = min(radii, key=lambda body: radii[body])
     radius = radii[sharpest]
     depth = sizes.fillet_depth or sizes.profile
     if plan.root_stress and depth > DEEPEST * radius:
-        allowed = (
+        requirement = (
             f"at most {1e3 * DEEPEST * radius:.3g} mm, {DEEPEST:g} times the smallest radius of the fillets: "
             f"it is too coarse to resolve their stress; a larger `{ROUNDINGS[sharpest]}` rounds them"
         )
-        raise InvalidInput("element size", f"{1e3 * depth:.3g} mm below the fillets", allowed)
+        raise InvalidInput("element size", f"{1e3 * depth:.3g} mm below the fillets", requirement)

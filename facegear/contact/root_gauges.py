@@ -28,7 +28,18 @@ class RootGauges:
     error: Array
 
     def along(self, body: str) -> Array:
-        """Where the gauges stand along the face (b,), m: gear radius, y along the pinion's axis."""
+        """Return the position of the gauges along the face.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+
+        Returns
+        -------
+        (b,) array
+            m: y along the pinion's axis, or radius of the gear.
+        """
         x, y = self.position[..., 0], self.position[..., 1]
         return np.asarray((y if body == "pinion" else np.hypot(x, y)).mean(axis=(0, 1)))
 
@@ -39,17 +50,43 @@ class RootGauges:
 
 
 def fillet_sides(body: str) -> tuple[str, str]:
-    """Sides of a tooth's fillets: below the flank loaded when the pinion drives, then below the other."""
+    """Return the sides of a tooth's fillets: below the flank loaded when the pinion drives, then below the
+    other.
+
+    Parameters
+    ----------
+    body : str
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    tuple[str, str]
+        `left` and `right` in this order.
+    """
     return (LOADED_SIDE[body], "left" if LOADED_SIDE[body] == "right" else "right")
 
 
 def root_gauges(
     tooth: FeTooth, material: Material, errors: SectionErrors | None = None
 ) -> tuple[RootGauges, sp.csr_matrix]:
-    """Gauges of a tooth, and their readings (g, 3 n) by the displacements of the elastic body's nodes.
+    """Place gauges on a tooth, and compute their readings from displacements.
 
-    `errors` of its mesh, nan where they are not measured. A gauge reads the normal stress (Pa) down the
-    fillet, across its lines, with the surface in plane stress.
+    A gauge reads the normal stress (Pa) down the fillet, across its lines, with the surface in plane
+    stress.
+
+    Parameters
+    ----------
+    tooth : FeTooth
+        Mesh of the tooth.
+    material : Material
+        Of the tooth.
+    errors : SectionErrors, optional
+        Errors of its mesh; None where they are not measured, which gives nan.
+
+    Returns
+    -------
+    tuple[RootGauges, sp.csr_matrix]
+        Gauges, and their readings (g, 3 n) by the displacements of the elastic body's n nodes, Pa/m.
     """
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     fillets: list[Gauges] = [

@@ -1,4 +1,4 @@
-"""Where the pairs of teeth can touch at a position."""
+"""Search for the points where pairs of teeth can touch at a position."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ from facegear.contact.basis_functions import Cover, FacingPairs, FacingPoints
 from facegear.contact.bodies.surface import edge_hats
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import FlankPair
-from facegear.contact.loads import EdgePoints, edge_cover, flank_cover, gathered
+from facegear.contact.loads import EdgePoints, edge_cover, flank_cover, gather_points
 from facegear.contact.options import ContactOptions
-from facegear.geometry.opposite import located, tip_edge_feet
+from facegear.geometry.opposite import locate_hits, tip_edge_feet
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.separation import separation, separation_each
 
@@ -36,8 +36,8 @@ class Placements:
     tooth: Integers
 
     @property
-    def all(self) -> tuple[Array, Array, Array]:
-        """Angles and numbers as the geometry takes them."""
+    def angles_and_teeth(self) -> tuple[Array, Array, Array]:
+        """Angles and pair numbers in the form that the geometry takes."""
         return self.phi1, self.phi2, self.tooth.astype(float)
 
 
@@ -48,9 +48,25 @@ def find_candidates(
     limit: float,
     options: ContactOptions,
 ) -> list[Candidates]:
-    """Hats and edges of the pairs `teeth` that a turn of the pinion by `limit` (rad) would close.
+    """Find the basis functions of flanks and edges whose gap a rotation of the pinion would close.
 
-    placement: angles phi1, phi2 (rad) of the unloaded gears. Pairs without any are left out.
+    Parameters
+    ----------
+    pair : FlankPair
+        Flanks that touch.
+    placement : tuple[float, float]
+        Angles phi1, phi2 of the unloaded gears, rad.
+    teeth : (p,) array of int
+        Numbers of the tooth pairs.
+    limit : float
+        Rotation, rad.
+    options : ContactOptions
+        Surfaces that take part.
+
+    Returns
+    -------
+    list[Candidates]
+        Candidates of each pair; pairs without any are left out.
     """
     cover, lattices = cover_of(pair, options), (pair.pinion.lattice, pair.gear.lattice)
     facing_pairs = facing_points(pair, [placement], [teeth], limit, options)[0]
@@ -66,7 +82,21 @@ def find_candidates(
 
 
 def cover_of(pair: FlankPair, options: ContactOptions) -> Cover:
-    """The hats of the gear's tip edge, the pinion's flank, and the pinion's tip edge."""
+    """Return the covers of the basis functions on the gear's tip edge, the pinion's flank and the pinion's
+    tip edge.
+
+    Parameters
+    ----------
+    pair : FlankPair
+        Flanks that touch.
+    options : ContactOptions
+        Surfaces that take part.
+
+    Returns
+    -------
+    Cover
+        Areas that must be covered, and the numbering of the basis functions.
+    """
     pinion, gear = pair.pinion, pair.gear.lattice
     area, first = flank_cover(pinion), gear.shape[1] if options.edges else 0
     if options.edges:
@@ -81,28 +111,51 @@ def facing_points(
     limit: float,
     options: ContactOptions,
 ) -> list[FacingPairs]:
-    """Points near the flank opposite, and those of both tip edges, at several placements, each with its own
-    teeth: those under all hats that a turn by `limit` (rad) would close.
+    """Find the points under all basis functions that a rotation would close, at several placements.
 
-    placements: angles phi1, phi2 (rad) of the unloaded gears.
+    They are points near the opposite flank and those of both tip edges. Each placement has its own teeth.
+
+    Parameters
+    ----------
+    pair : FlankPair
+        Flanks that touch.
+    placements : Sequence[tuple[float, float]]
+        Angles phi1, phi2 of the unloaded gears, rad.
+    teeth : sequence of arrays (p,) of int
+        Numbers of the tooth pairs at each placement.
+    limit : float
+        Rotation, rad.
+    options : ContactOptions
+        Surfaces that take part.
+
+    Returns
+    -------
+    list[FacingPairs]
+        Points of each placement, pair by pair.
     """
     counts = [len(numbers) for numbers in teeth]
     phi1, phi2 = (np.repeat(part, counts) for part in np.array(placements).T)
     all_pairs = Placements(phi1, phi2, np.concatenate(teeth))
-    points, starts = _facing(pair, all_pairs, limit * pair.design.pinion_base_radius + SAG, options)
+    points, starts = _find_facing_points(
+        pair, all_pairs, limit * pair.design.pinion_base_radius + SAG, options
+    )
     parts = []
     for (begin, end), numbers in zip(pairwise(np.cumsum([0, *counts])), teeth, strict=True):
-        begun = starts[begin : end + 1]
-        parts.append(FacingPairs(points.part(slice(begun[0], begun[-1])), begun - begun[0], numbers))
+        pair_starts = starts[begin : end + 1]
+        parts.append(
+            FacingPairs(
+                points.part(slice(pair_starts[0], pair_starts[-1])), pair_starts - pair_starts[0], numbers
+            )
+        )
     return parts
 
 
-def _facing(
+def _find_facing_points(
     pair: FlankPair, placements: Placements, depth: float, options: ContactOptions
 ) -> tuple[FacingPoints, Integers]:
-    """Points of all pairs of teeth, and where those of each begin (p + 1,)."""
+    """Return the points of all pairs of teeth, and the start of each pair's points (p + 1,)."""
     design, gear = pair.design, pair.gear
-    points, flank_count = pair.pinion.facing, len(pair.pinion.area)
+    points, flank_count = pair.pinion.facing_points, len(pair.pinion.area)
     first = gear.lattice.shape[1] if options.edges else 0
     near = _near(pair, placements, depth)
     # the pinion's tip edge is looked at together with its flank, and only where that comes near
@@ -110,14 +163,16 @@ def _facing(
     numbers = [np.concatenate([part, tip]) if part.size else part for part in near]
     counts, number = np.array([part.size for part in numbers]), np.concatenate(numbers)
     surface = SurfacePoints(points.position, points.normal)
-    each = np.repeat(np.arange(len(near)), counts)
-    hits = located(design, separation_each(design, surface, placements.all, each, FARTHEST, number))
+    pair_of_point = np.repeat(np.arange(len(near)), counts)
+    hits = locate_hits(
+        design, separation_each(design, surface, placements.angles_and_teeth, pair_of_point, FARTHEST, number)
+    )
     beside = np.where(number < flank_count, BESIDE * design.module, 0.0)
     on_gear, gap = gear.coordinates(hits, options.fillet, beside), hits.gap
     if not options.fillet:
         gap = np.where(pair.pinion.lattice.in_fillet(points.at[number]), np.inf, gap)
     feet = _feet(pair, placements, options)
-    return gathered(points, first, (number, np.cumsum([0, *counts]), gap, on_gear), feet)
+    return gather_points(points, first, (number, np.cumsum([0, *counts]), gap, on_gear), feet)
 
 
 def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> EdgePoints:
@@ -125,42 +180,47 @@ def _feet(pair: FlankPair, placements: Placements, options: ContactOptions) -> E
     columns = pair.gear.lattice.shape[1]
     _, under, values = edge_hats(columns)
     if not options.edges:
-        nothing = np.zeros((len(placements.tooth), 0))
-        at = np.zeros((*nothing.shape, 2))
-        return EdgePoints(nothing, nothing, at, np.zeros((0, 2)), under[:0], values[:0])
+        no_points = np.zeros((len(placements.tooth), 0))
+        at = np.zeros((*no_points.shape, 2))
+        return EdgePoints(no_points, no_points, at, np.zeros((0, 2)), under[:0], values[:0])
     curve = pair.pinion.fillet_curve if options.fillet else None
     on_gear, points = pair.gear.tip
-    feet = tip_edge_feet(pair.design, points, placements.all, curve, FARTHEST)
+    feet = tip_edge_feet(pair.design, points, placements.angles_and_teeth, curve, FARTHEST)
     at = pair.pinion.coordinates(feet.flank, feet.fillet, feet.y)
     return EdgePoints(feet.gap, feet.lever_arm, at, on_gear, under, values)
 
 
 def _near(pair: FlankPair, placements: Placements, depth: float) -> list[Integers]:
-    """Integration points near nodes of each pinion tooth whose gap is less than `depth` (m), by what probes
-    find in their elements.
+    """Return the integration points near nodes of each pinion tooth whose gap is less than `depth` (m).
+
+    The gaps at nodes are interpolated from probes of their elements.
     """
     pinion = pair.pinion
     probes, elements = pinion.probes
-    seen = separation(pair.design, probes, *placements.all, FARTHEST)
+    probe_gaps = separation(pair.design, probes, *placements.angles_and_teeth, FARTHEST)
     # a gear's edge may lie between a probe and the points that touch: the flank is taken to go on there
-    gaps = np.minimum(seen.gap, seen.continued)
+    gaps = np.minimum(probe_gaps.gap, probe_gaps.continued)
     close = np.any((gaps < depth)[:, elements], axis=2)
     near = [np.zeros(0, np.int64)] * len(gaps)
     rows = np.flatnonzero(close.any(axis=1))
-    known = np.where(np.isfinite(gaps[rows]), gaps[rows], np.nan)
-    nodes = ~(pinion.between_probes @ known.T >= depth)
+    finite_gaps = np.where(np.isfinite(gaps[rows]), gaps[rows], np.nan)
+    nodes = ~(pinion.between_probes @ finite_gaps.T >= depth)
     cells = _beside(nodes.T.reshape(-1, *pinion.shape)).reshape(rows.size, pinion.element.size)
-    for row, marked in zip(rows.tolist(), cells & close[rows][:, pinion.element], strict=True):
-        near[row] = np.flatnonzero(marked[pinion.cell])
+    for row, is_near in zip(rows.tolist(), cells & close[rows][:, pinion.element], strict=True):
+        near[row] = np.flatnonzero(is_near[pinion.cell])
     return near
 
 
 def _beside(nodes: Mask) -> Mask:
-    """Cells (p, m - 1, n - 1) between nodes (p, m, n) that a marked node stands at or beside."""
+    """Return the cells (p, m - 1, n - 1) between nodes (p, m, n) that have a marked node at or
+    beside them.
+    """
     for axis in (1, 2):
-        around = [(1, 1) if axis == other else (0, 0) for other in range(3)]
-        padded = np.moveaxis(np.pad(nodes, around), axis, 0)
-        size = len(padded) - 3
-        beside = padded[:size] | padded[1 : size + 1] | padded[2 : size + 2] | padded[3:]
+        around = [(1, 1) if axis == dimension else (0, 0) for dimension in range(3)]
+        padded_nodes = np.moveaxis(np.pad(nodes, around), axis, 0)
+        size = len(padded_nodes) - 3
+        beside = (
+            padded_nodes[:size] | padded_nodes[1 : size + 1] | padded_nodes[2 : size + 2] | padded_nodes[3:]
+        )
         nodes = np.moveaxis(beside, 0, axis)
     return nodes

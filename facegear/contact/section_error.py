@@ -1,9 +1,9 @@
 """Error of root stress on a tooth's mesh, measured in plane strain against a mesh several times finer.
 
-A section of the tooth with its neighbours is loaded by line forces at several heights of the flank. What the
-mesh of the section misses there is what the mesh of the body misses: the two agree within 0.3 % on the
-paper's pinion (docs/explanation/strength.md). Neither how loads are carried to the nodes nor the distance of
-planes along the face is part of it.
+A section of the tooth with its neighbours is loaded by line forces at several heights of the flank. The
+error of the section's mesh is taken for the error of the body's mesh: the two agree within 0.3 % on the
+paper's pinion (docs/explanation/strength.md). The error includes neither the transfer of loads to the
+nodes nor the distance of planes along the face.
 """
 
 from collections.abc import Callable
@@ -26,15 +26,16 @@ from facegear.mesh.tooth import FeTooth
 Builder = Callable[[PairDesign, MeshSizes], FeTooth]
 
 HEIGHTS = (0.05, 0.25, 0.5, 0.75, 0.9)
-"""Of the loads on the flank, 0 at its tip end to 1 at its root end."""
+"""Heights of the loads on the flank, 0 at its tip end to 1 at its root end."""
 FINER, FINER_INSIDE = 6.0, 4.0
-"""How many times finer the other mesh is, at the surface and inside."""
+"""Factors by which the reference mesh is finer, at the surface and inside."""
 ACROSS_RADIUS = 0.5
-"""Its largest elements in the fillet's smallest radius."""
+"""Largest element size of the reference mesh over the fillet's smallest radius."""
 FINE = 8
-"""Points a gauge at which a maximum down the fillet is looked for."""
+"""Points a gauge at which a maximum down the fillet is searched."""
 TEETH = {"pinion": 5, "face_gear": 3}
-"""Of the section, its ends free: two more change the error by less than a thirtieth."""
+"""Number of teeth in the section of each body, its ends free: two more change the error by less than a
+thirtieth."""
 QUAD = np.array([0, 2, 8, 6, 1, 5, 7, 3, 4])
 """Nodes of a quadrilateral, i + 3 j, in the order of `ElementQuad2`."""
 
@@ -47,31 +48,63 @@ class SectionErrors:
     error: Array
 
     def at(self, along: Array) -> Array:
-        """Error at places (b,) along the face, linear between the planes."""
+        """Interpolate the error linearly between the planes.
+
+        Parameters
+        ----------
+        along : (b,) array
+            Positions along the face, m.
+
+        Returns
+        -------
+        (b,) array
+            Error, relative.
+        """
         return np.interp(along, self.along, self.error)
 
 
 def section_errors(
     design: PairDesign, body: str, build: Builder, sizes: MeshSizes, material: Material
 ) -> SectionErrors:
-    """Of the mesh with `sizes` that `build` makes of a body: in the middle plane of the pinion, in five
-    planes of the gear."""
+    """Estimate the relative root-stress error of a body's mesh: in the middle plane of the pinion, in five
+    planes of the gear.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : str
+        `pinion` or `face_gear`.
+    build : Builder
+        Function that makes the tooth's mesh.
+    sizes : MeshSizes
+        Element sizes of the mesh.
+    material : Material
+        Of the body.
+
+    Returns
+    -------
+    SectionErrors
+        Relative error by position along the face, m.
+    """
     finest = min(sizes.profile / FINER, ACROSS_RADIUS * smallest_radius(design, body))
     full_width = {"width": np.inf}
-    own = build(design, replace(sizes, **full_width))
+    body_tooth = build(design, replace(sizes, **full_width))
     finer = build(design, MeshSizes(finest, np.inf, sizes.thickness / FINER_INSIDE))
-    count = own.surfaces["fillet_right"].nodes.shape[1]
+    count = body_tooth.surfaces["fillet_right"].nodes.shape[1]
     planes = (count // 2,) if body == "pinion" else range(count)
     error, along = [], []
     for plane in planes:
-        tension, reference = (_tensions(tooth, plane, material) for tooth in (own, finer))
+        tension, reference = (_tensions(tooth, plane, material) for tooth in (body_tooth, finer))
         error.append(np.abs(tension / reference - 1.0).max())
-        along.append(_section(own, plane)[1])
+        along.append(_section(body_tooth, plane)[1])
     return SectionErrors(np.array(along), np.array(error))
 
 
 def _section(tooth: FeTooth, plane: int) -> tuple[Array, float]:
-    """Points (n, 2) of a plane of a tooth, m, a gear's laid flat, and where along the face it stands."""
+    """Return the points (n, 2) of a plane of a tooth, m, and its position along the face; a gear's plane is
+    laid flat.
+    """
     count = int(np.ptp(tooth.surfaces["fillet_right"].nodes[0, :2]))
     points = tooth.nodes[count * plane : count * (plane + 1)]
     if tooth.body == "pinion":
@@ -82,43 +115,45 @@ def _section(tooth: FeTooth, plane: int) -> tuple[Array, float]:
 
 
 def _beside(tooth: FeTooth, points: Array, pitches: int, radius: float) -> Array:
-    """Points of the tooth `pitches` further."""
+    """Return the points of the tooth that is `pitches` further."""
     angle = pitches * tooth.pitch
     if tooth.body == "face_gear":
         return points + np.array([radius * angle, 0.0])
-    turned = np.stack([points[:, 0], np.zeros(len(points)), points[:, 1]], axis=1)
-    return tooth.rotated(turned, angle)[:, [0, 2]]
+    points_3d = np.stack([points[:, 0], np.zeros(len(points)), points[:, 1]], axis=1)
+    return tooth.rotated(points_3d, angle)[:, [0, 2]]
 
 
 def _tensions(tooth: FeTooth, plane: int, material: Material) -> Array:
-    """Largest tension (Pa) of the fillet below the loaded flank for line loads of 1 N/m at HEIGHTS."""
+    """Return the largest tension (Pa) of the fillet below the loaded flank for line loads of 1 N/m at
+    HEIGHTS.
+    """
     points, at = _section(tooth, plane)
     count = len(points)
     quads = tooth.hexes[(tooth.hexes < 3 * count).all(axis=1), :9]
     teeth = TEETH[tooth.body]
-    places = range(-(teeth // 2), teeth // 2 + 1)
-    copies = np.concatenate([_beside(tooth, points, pitches, at) for pitches in places])
-    number = _merged(tooth, count, teeth)
+    tooth_offsets = range(-(teeth // 2), teeth // 2 + 1)
+    copies = np.concatenate([_beside(tooth, points, pitches, at) for pitches in tooth_offsets])
+    number = _merge_nodes(tooth, count, teeth)
     nodes = np.empty((number.max() + 1, 2))
     nodes[number] = copies
     cells = number[np.concatenate([quads + count * copy for copy in range(teeth)])]
     back = tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]
-    fixed = number[(np.unique(back[back < count]) + count * np.arange(teeth)[:, None]).ravel()]
-    own = number[count * (teeth // 2) :][:count]
-    flank, fillet = (own[tooth.surfaces[f"{name}_right"].nodes[:, 0]] for name in ("flank", "fillet"))
+    fixed_nodes = number[(np.unique(back[back < count]) + count * np.arange(teeth)[:, None]).ravel()]
+    tooth_nodes = number[count * (teeth // 2) :][:count]
+    flank, fillet = (tooth_nodes[tooth.surfaces[f"{name}_right"].nodes[:, 0]] for name in ("flank", "fillet"))
     loads = np.zeros((nodes.size, len(HEIGHTS)))
     for column, height in enumerate(HEIGHTS):
         _push(loads[:, column].reshape(nodes.shape), nodes, flank, height)
-    free = np.setdiff1d(np.arange(nodes.size), 2 * fixed[:, None] + np.arange(2))
-    moved = np.zeros_like(loads)
-    moved[free] = solve_sparse(_stiffness(nodes, cells, material)[free][:, free].tocsr(), loads[free])
+    free = np.setdiff1d(np.arange(nodes.size), 2 * fixed_nodes[:, None] + np.arange(2))
+    displacements = np.zeros_like(loads)
+    displacements[free] = solve_sparse(_stiffness(nodes, cells, material)[free][:, free].tocsr(), loads[free])
     return np.array(
-        [_tension(field.reshape(nodes.shape)[fillet], nodes[fillet], material) for field in moved.T]
+        [_tension(field.reshape(nodes.shape)[fillet], nodes[fillet], material) for field in displacements.T]
     )
 
 
-def _merged(tooth: FeTooth, count: int, teeth: int) -> Integers:
-    """Number of each node of the copies of a section, those on shared cuts once."""
+def _merge_nodes(tooth: FeTooth, count: int, teeth: int) -> Integers:
+    """Return the number of each node of the copies of a section; nodes on shared cuts have one number."""
     left, right = (cut[cut < count] for cut in (tooth.cut_left, tooth.cut_right))
     number = np.arange(teeth * count)
     for copy in range(1, teeth):
@@ -127,7 +162,10 @@ def _merged(tooth: FeTooth, count: int, teeth: int) -> Integers:
 
 
 def _stiffness(nodes: Array, cells: Integers, material: Material) -> sp.csr_matrix:
-    """Plane strain of quadrilaterals (m, 9) on nodes (n, 2); dof 2 k + i is displacement i of node k."""
+    """Return the plane-strain stiffness of quadrilaterals (m, 9) on nodes (n, 2).
+
+    Dof 2 k + i is displacement i of node k.
+    """
     members = cells[:, QUAD]
     mesh = MeshQuad2(np.ascontiguousarray(nodes.T), np.ascontiguousarray(members.T))
     blocks = element_stiffness(Basis(mesh, ElementQuad2(), intorder=4, disable_doflocs=True), material)
@@ -155,14 +193,16 @@ def _push(load: Array, nodes: Array, flank: Integers, height: float) -> None:
     load[members] += values[:, None] * normal
 
 
-def _tension(moved: Array, points: Array, material: Material) -> float:
-    """Largest stress (Pa) down a fillet of nodes `points` (n, 2) by their displacements (n, 2)."""
+def _tension(displacement: Array, points: Array, material: Material) -> float:
+    """Return the largest stress (Pa) down a fillet of nodes `points` (n, 2) from their
+    displacements (n, 2).
+    """
     stiff = material.young_modulus / (1.0 - material.poisson_ratio**2)
     stress = []
     for station in gauge_coordinates(len(points)):
         first = 2 * int(station // 2)
         slopes = _lagrange(station - first - 1.0)[1]
-        along, moves = slopes @ points[first : first + 3], slopes @ moved[first : first + 3]
+        along, moves = slopes @ points[first : first + 3], slopes @ displacement[first : first + 3]
         stress.append(stiff * float(along @ moves) / float(along @ along))
     kind = CubicSpline(np.arange(len(stress)), stress)
     return float(kind(np.linspace(0.0, len(stress) - 1.0, FINE * len(stress))).max())

@@ -59,32 +59,75 @@ def solve_contact(
     lever_arm: Array,
     torque: float,
     start: Mask | None = None,
-    where: str = "this position",
+    place_text: str = "this position",
 ) -> ContactSolution:
-    """Solve for compliance (n, n) in m/N, gaps (n,) in m, lever arms (n,) in m and a torque > 0 in N m.
+    """Solve for the contact under a torque.
 
-    `start` (n,) is a guess of the points in contact. The result does not depend on it beyond rounding.
-    Raises NotConverged naming `where`.
+    The result does not depend on the guess `start` beyond rounding.
+
+    Parameters
+    ----------
+    compliance : (n, n) array
+        m/N.
+    gap : (n,) array
+        m.
+    lever_arm : (n,) array
+        m.
+    torque : float
+        N m, above 0.
+    start : (n,) array of bool, optional
+        Guess of the points in contact.
+    place_text : str
+        Names the position in errors.
+
+    Returns
+    -------
+    ContactSolution
+        Forces and rotation, in SI units.
+
+    Raises
+    ------
+    NotConverged
+        Names `place_text`.
+    ValueError
+        Where the torque is not positive.
     """
     if not torque > 0.0:
         raise ValueError(f"torque = {torque}: must be positive")
     if not (lever_arm > 0.0).any():
-        raise NotConverged("contact", where, "no candidate point can carry the torque")
+        raise NotConverged("contact", place_text, "no candidate point can carry the torque")
     matrix, gaps, arms = (np.ascontiguousarray(array, float) for array in (compliance, gap, lever_arm))
     begin = np.zeros(gap.size, bool) if start is None else np.ascontiguousarray(start)
     answer = kernels.solve_active_set(matrix, gaps, arms, torque, begin, NEWTON_STEPS, TOLERANCE)
-    check_solved(answer["steps"], answer["residual"], gap.size, where)
+    check_solved(answer["steps"], answer["residual"], gap.size, place_text)
     del answer["force_change"]
     return ContactSolution(torque=torque, **answer)
 
 
-def check_solved(steps: int, residual: float, points: int, where: str) -> None:
-    """Raise NotConverged naming `where` if no solution among so many points was found."""
+def check_solved(steps: int, residual: float, points: int, place_text: str) -> None:
+    """Raise NotConverged if no solution was found.
+
+    Parameters
+    ----------
+    steps : int
+        Steps of the solver, 0 without a solution.
+    residual : float
+        Largest relative violation of the conditions, dimensionless.
+    points : int
+        Number of points that may touch.
+    place_text : str
+        Names the position in the error.
+
+    Raises
+    ------
+    NotConverged
+        Names `place_text`.
+    """
     if not steps:
-        tried = f"{NEWTON_STEPS} Newton and {kernels.exchange_steps(points)} exchange steps"
-        raise NotConverged("contact", where, tried)
+        attempts = f"{NEWTON_STEPS} Newton and {kernels.exchange_steps(points)} exchange steps"
+        raise NotConverged("contact", place_text, attempts)
     if not residual < TOLERANCE * 10:
-        raise NotConverged("contact", where, f"KKT residual {residual:.1e} after {steps} steps")
+        raise NotConverged("contact", place_text, f"KKT residual {residual:.1e} after {steps} steps")
 
 
 def kkt_residual(
@@ -95,7 +138,28 @@ def kkt_residual(
     force: Array,
     rotation: float,
 ) -> float:
-    """Largest relative violation of balance, no tension, no penetration and complementarity."""
+    """Compute the largest relative violation of balance, no tension, no penetration and complementarity.
+
+    Parameters
+    ----------
+    compliance : (n, n) array
+        m/N.
+    gap : (n,) array
+        m.
+    lever_arm : (n,) array
+        m.
+    torque : float
+        N m.
+    force : (n,) array
+        N.
+    rotation : float
+        rad.
+
+    Returns
+    -------
+    float
+        Violation, dimensionless.
+    """
     distance = gap + compliance @ force - rotation * lever_arm
     is_pressed = force != 0.0
     scale = np.abs(rotation * lever_arm).max() + np.abs(gap[is_pressed]).max(initial=0.0)

@@ -1,4 +1,6 @@
-"""What the contact table says of each torque: stiffness, peak-to-peak transmission error, pressure, path."""
+"""Summary of the contact table for each torque: stiffness, peak-to-peak transmission error,
+pressure, path.
+"""
 
 from collections.abc import Sequence
 
@@ -37,41 +39,76 @@ BY_FLANK_COLUMNS = (
 
 
 def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
-    """`contact_summary` and, as its last column, `path_radii`."""
+    """Return the contact summary with the path radius as its last column.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Contact table, columns LTCA_COLUMNS.
+    pressure : Arrays
+        Arrays as PRESSURE_ARRAYS.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a torque, columns COLUMNS and `path_radius_mm`.
+    """
     return contact_summary(ltca).merge(path_radii(pressure), on="torque_n_m", how="left")
 
 
 def by_flank(
     variants: Sequence[pd.DataFrame], different: Sequence[PairDesign], numbers: Integers
 ) -> pd.DataFrame:
-    """Tables of `by_torque` of all gears and flanks, columns as BY_FLANK_COLUMNS.
+    """Join the tables of `by_torque` of all gears and flanks.
 
-    `variants`: those of each of the `different` pairs that the flanks are part of; `numbers` as
-    `distinct_pairs` has them.
+    Parameters
+    ----------
+    variants : Sequence[pd.DataFrame]
+        Result of `by_torque` for each of the `different` pairs.
+    different : Sequence[PairDesign]
+        Pairs that the flanks are part of.
+    numbers : (gears, flanks) array of int
+        Which of the pairs each flank is part of, as in `distinct_pairs`.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns BY_FLANK_COLUMNS, one row a flank and torque.
     """
     parts = []
     for (row, column), number in np.ndenumerate(numbers):
-        met = different[int(number)].assembly
-        known = {
+        assembly = different[int(number)].assembly
+        flank_columns = {
             "gear": GEARS[row],
             "flank": FLANKS[column],
-            "offset_um": 1e6 * met.offset,
-            "shaft_angle_error_deg": np.degrees(met.shaft_angle_error),
-            "axial_shift_um": 1e6 * met.axial_shift,
+            "offset_um": 1e6 * assembly.offset,
+            "shaft_angle_error_deg": np.degrees(assembly.shaft_angle_error),
+            "axial_shift_um": 1e6 * assembly.axial_shift,
         }
-        parts.append(variants[int(number)].assign(**known))
+        parts.append(variants[int(number)].assign(**flank_columns))
     return pd.concat(parts, ignore_index=True)[list(BY_FLANK_COLUMNS)]
 
 
 def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
-    """One row a torque, columns as COLUMNS, of a contact table.
+    """Summarise a contact table, one row a torque.
 
-    A peak-to-peak value is the largest less the smallest of the `positions` solved in a pitch, so it cannot
-    exceed the true one; `ste_peak_to_peak_half_um` takes every second position alone and shows how much
-    their number matters (NaN for an odd number, whose every second position is not spread evenly). The
-    pressure and its error are those of the position where it is largest; line loads and the loaded length of
-    tip edges, the share of the torque that fillets carry and the interference are the largest of all
-    positions, which need not be one position's. A mean stiffness over positions of which one has none is nan.
+    A peak-to-peak value is the largest less the smallest of the `positions` solved in a pitch, so it
+    cannot exceed the true one. `ste_peak_to_peak_half_um` takes every second position alone and shows how
+    much their number matters (NaN for an odd number, whose every second position is not spread evenly).
+    The pressure and its error are taken at the position where the pressure is largest. Line loads and the
+    loaded length of tip edges, the share of the torque that fillets carry and the interference are the
+    largest of all positions, which need not occur at the same one. A mean stiffness is nan if any position
+    has none.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Contact table, columns LTCA_COLUMNS.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns COLUMNS.
     """
     values = dict(zip(ltca.columns, ltca.to_numpy(float).T, strict=True))
     torques = np.unique(values["torque_n_m"])
@@ -85,16 +122,16 @@ def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
 
 
 def _row(torque: float, at: Arrays) -> tuple[float, ...]:
-    """Of columns of the contact table, position by position."""
+    """Return one row of the summary from columns of the contact table, position by position."""
     error, average = at["ste_um"], at["k_average_n_per_m"]
-    known = average[~np.isnan(average)]
-    whole = known.size == average.size
+    finite_average = average[~np.isnan(average)]
+    whole = finite_average.size == average.size
     return (
         torque,
         len(error),
         average.mean(),
-        known.min() if known.size else np.nan,
-        known.max() if known.size else np.nan,
+        finite_average.min() if finite_average.size else np.nan,
+        finite_average.max() if finite_average.size else np.nan,
         at["k_local_n_per_m"].mean() if whole else np.nan,
         float(np.ptp(error)),
         float(np.ptp(error[::2])) if len(error) % 2 == 0 else np.nan,
@@ -110,7 +147,7 @@ def _row(torque: float, at: Arrays) -> tuple[float, ...]:
 
 
 def _largest_pressure(pressure: Array, error: Array) -> tuple[float, float]:
-    """The largest of all positions with its error (MPa); nan where no position has one."""
+    """Return the largest pressure of all positions with its error (MPa); nan where no position has one."""
     if np.isnan(pressure).all():
         return np.nan, np.nan
     at = int(np.nanargmax(pressure))
@@ -118,16 +155,37 @@ def _largest_pressure(pressure: Array, error: Array) -> tuple[float, float]:
 
 
 def path_radii(pressure: Arrays) -> pd.DataFrame:
-    """Columns torque_n_m and path_radius_mm: the centroid of all contact forces over a pitch.
+    """Compute the centroid of all contact forces over a pitch.
 
-    `pressure`: arrays as PRESSURE_ARRAYS. The radius is the distance along the pinion's axis from the axis of
-    the face gear, as assembled without errors.
+    The radius is the distance along the pinion's axis from the axis of the face gear, as assembled without
+    errors.
+
+    Parameters
+    ----------
+    pressure : Arrays
+        Arrays as PRESSURE_ARRAYS.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns torque_n_m and path_radius_mm.
     """
     return _centroids(pressure, ["torque_n_m"])
 
 
 def path_by_position(pressure: Arrays) -> pd.DataFrame:
-    """Columns torque_n_m, position and path_radius_mm: as `path_radii`, of the forces at each position."""
+    """Compute the centroid of the contact forces at each position, with the radius defined in `path_radii`.
+
+    Parameters
+    ----------
+    pressure : Arrays
+        Arrays as PRESSURE_ARRAYS.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns torque_n_m, position and path_radius_mm.
+    """
     return _centroids(pressure, ["torque_n_m", "position"])
 
 

@@ -13,20 +13,40 @@ from facegear.contact.pressure import FlankPressure, LineLoads
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
-    """One row a torque and position, columns as LTCA_COLUMNS.
+    """Tabulate contact results, one row a torque and position.
 
-    nan: pressure where none is inside, average stiffness where the unloaded teeth interfere.
+    nan: pressure where no plane is inside, average stiffness where the unloaded teeth interfere.
+
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+    pressure : FlankPressure
+        Pressure of the same results.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns LTCA_COLUMNS.
     """
     of_each = [
-        (1e6 * r.ste, 1e6 * r.unloaded, r.k_average, r.k_local, r.fillet_share, 1e6 * r.overlap, r.residual)
+        (
+            1e6 * r.ste,
+            1e6 * r.unloaded_error,
+            r.k_average,
+            r.k_local,
+            r.fillet_share,
+            1e6 * r.overlap,
+            r.residual,
+        )
         for r in results
     ]
-    ste, unloaded, average, local, in_fillets, overlap, residual = np.array(of_each).T
+    ste, unloaded_error, average, local, in_fillets, overlap, residual = np.array(of_each).T
     shares = np.array([r.load_share for r in results])
     columns = (
         np.array([r.torque for r in results]),
         np.array([r.position for r in results]),
-        *(ste, unloaded, average, local),
+        *(ste, unloaded_error, average, local),
         np.count_nonzero(shares, axis=1),
         *shares.T,
         *np.array([_pressures(loads) for loads in pressure.loads]).T,
@@ -49,13 +69,27 @@ def _pressures(loads: LineLoads) -> tuple[float, ...]:
 def pressure_arrays(
     results: Sequence[LoadedPosition], surface: PinionSurface, pressure: FlankPressure
 ) -> dict[str, AnyArray]:
-    """Loads and pressures, as PRESSURE_ARRAYS.
+    """Collect loads and pressures as PRESSURE_ARRAYS.
 
-    First the forces of all loaded hats, one a row, whether they act in a fillet, and the lattice (`shape`,
-    `point_m`) of their nodes. Then `line_*`, one loaded plane across the pinion's axis a row: its number, the
-    line load along the contact line and the length it stands for, where it is (a number in EDGES), and what
-    is known of the pressure there: 0 with an error of 0 unless inside. Last the contact lines: a pair's
-    points on the pinion in all planes, whether loaded or not.
+    First come the forces of all loaded basis functions, one a row, whether they act in a fillet, and the
+    lattice (`shape`, `point_m`) of their nodes. Then come `line_*`, one row a loaded plane across the
+    pinion's axis: its number, the line load along the contact line and the length it stands for, its edge
+    (a number in EDGES), and the pressure there: 0 with an error of 0 unless inside. Last come the contact
+    lines: a pair's points on the pinion in all planes, whether loaded or not.
+
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+    surface : PinionSurface
+        Contact surface of the pinion.
+    pressure : FlankPressure
+        Pressure of the same results.
+
+    Returns
+    -------
+    dict of arrays
+        Arrays with the (...) shapes of PRESSURE_ARRAYS.
     """
     lines: dict[str, list[AnyArray]] = {}
     for result, loads in zip(results, pressure.loads, strict=True):
@@ -64,7 +98,7 @@ def pressure_arrays(
             "line_position": np.full(loads.line.size, result.position),
             "line_tooth": pressure.tooth[loads.line],
             "line_plane": loads.plane,
-            "line_where": loads.where,
+            "line_where": loads.edge,
             "line_length_m": loads.length,
             "line_load_n_per_m": loads.line_load,
             "line_pressure_pa": np.nan_to_num(loads.pressure),

@@ -1,4 +1,4 @@
-"""The contact side of a tooth mesh: which surface is loaded, its exact points, where the body is held."""
+"""Contact side of a tooth mesh: loaded surface, its exact points, and supports of the body."""
 
 from dataclasses import dataclass
 
@@ -43,18 +43,34 @@ class ContactSide:
 
 
 def contact_side(design: PairDesign, tooth: FeTooth, side: str | None = None) -> ContactSide:
-    """The surface of a tooth that can touch; `side` None takes the one loaded when the pinion drives."""
+    """Return the surface of a tooth that can touch: its flank and the fillet rows that the other gear's tip
+    can reach.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    tooth : FeTooth
+        Mesh of the tooth.
+    side : str, optional
+        `left` or `right`; None takes the flank loaded when the pinion drives.
+
+    Returns
+    -------
+    ContactSide
+        Nodes and parameters of the surface.
+    """
     side = side or LOADED_SIDE[tooth.body]
     flank, fillet = (tooth.surfaces[f"{name}_{side}"] for name in ("flank", "fillet"))
     points = tooth.nodes[fillet.nodes]
     if tooth.body == "pinion":
         height = np.hypot(points[..., 0], points[..., 2])
-        reached = design.pinion_pitch_radius - design.face_gear.addendum + design.pinion.profile_shift
+        reached_height = design.pinion_pitch_radius - design.face_gear.addendum + design.pinion.profile_shift
     else:
         height = points[..., 2]
-        reached = -design.pinion_tip_radius
-    touched = (height[:-1:2] > reached - FILLET_MARGIN * design.module).any(axis=1)
-    elements = int(np.flatnonzero(touched).max() + 1) if touched.any() else 0
+        reached_height = -design.pinion_tip_radius
+    is_touched = (height[:-1:2] > reached_height - FILLET_MARGIN * design.module).any(axis=1)
+    elements = int(np.flatnonzero(is_touched).max() + 1) if is_touched.any() else 0
     rows = slice(1, 2 * elements + 1)
     return ContactSide(
         nodes=np.concatenate([flank.nodes, fillet.nodes[rows]]),
@@ -68,7 +84,24 @@ def contact_side(design: PairDesign, tooth: FeTooth, side: str | None = None) ->
 def elastic_tooth(
     design: PairDesign, tooth: FeTooth, material: Material, side: str | None = None
 ) -> tuple[ElasticBody, ContactSide]:
-    """The tooth as an elastic body, bore or rim back clamped, and its contact surface."""
+    """Return the tooth as an elastic body, bore or rim back clamped, and its contact surface.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    tooth : FeTooth
+        Mesh of the tooth.
+    material : Material
+        Of the tooth.
+    side : str, optional
+        `left` or `right`; None takes the flank loaded when the pinion drives.
+
+    Returns
+    -------
+    tuple[ElasticBody, ContactSide]
+        Body and surface.
+    """
     surface = contact_side(design, tooth, side)
     rows = surface.flank_rows
     if tooth.body == "pinion":
@@ -81,16 +114,16 @@ def elastic_tooth(
     if (side or LOADED_SIDE[tooth.body]) == "left":
         normals = normals * np.array([-1.0, 1.0, 1.0])
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
-    held = np.zeros(tooth.nodes.shape, dtype=bool)
-    held[number[tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]]] = True
+    is_held = np.zeros(tooth.nodes.shape, dtype=bool)
+    is_held[number[tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]]] = True
     mirror = np.zeros(len(tooth.nodes), dtype=np.int64)
-    mirror[number] = number[_mirrored(tooth)]
+    mirror[number] = number[_mirror_nodes(tooth)]
     body = ElasticBody(
         mesh=mesh,
         material=material,
         flank=number[surface.nodes],
         normals=normals,
-        held=held,
+        is_held=is_held,
         left=number[tooth.cut_left],
         right=number[tooth.cut_right],
         turn=tooth.rotated(np.eye(3), tooth.pitch).T,
@@ -99,8 +132,8 @@ def elastic_tooth(
     return body, surface
 
 
-def _mirrored(tooth: FeTooth) -> Integers:
-    """Node (N,) of the plane as far from the other end of the face."""
+def _mirror_nodes(tooth: FeTooth) -> Integers:
+    """Return the node (N,) of the plane that is as far from the other end of the face, for each node."""
     planes = tooth.surfaces["flank_right"].nodes.shape[1]
     return np.arange(len(tooth.nodes)).reshape(planes, -1)[::-1].ravel()
 
@@ -109,13 +142,30 @@ def _symmetric(tooth: FeTooth) -> bool:
     """Whether both halves of the face are mirror images, as those of a pinion without modifications are."""
     image = tooth.nodes * np.array([1.0, -1.0, 1.0])
     image[:, 1] += tooth.nodes[:, 1].min() + tooth.nodes[:, 1].max()
-    return bool(np.abs(tooth.nodes[_mirrored(tooth)] - image).max() <= ROUNDING * np.abs(image).max())
+    return bool(np.abs(tooth.nodes[_mirror_nodes(tooth)] - image).max() <= ROUNDING * np.abs(image).max())
 
 
 def pinion_points(
     design: PairDesign, side: ContactSide, refinement: Refinement, lattice: Array
 ) -> SurfacePoints:
-    """Exact points of the pinion's surface, modifications included, at refined lattice coordinates (n, 2)."""
+    """Compute exact points of the pinion's surface, modifications included.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    side : ContactSide
+        Contact surface of the pinion.
+    refinement : Refinement
+        Relates the lattice to the nodes of `side`.
+    lattice : (n, 2) array
+        Refined lattice coordinates, dimensionless.
+
+    Returns
+    -------
+    SurfacePoints
+        Points and normals (n, 3), m.
+    """
     coarse = lattice / np.array([refinement.profile, refinement.width])
     weights = interpolation(coarse, side.shape)
     gamma = side.u.copy()
@@ -123,9 +173,9 @@ def pinion_points(
     u, v, gamma = (weights @ part.ravel() for part in (side.u, side.v, gamma))
     on_flank = coarse[:, 0] <= side.flank_rows - 1
     position, normal = np.empty((2, len(lattice), 3))
-    for where, points in (
+    for rows, points in (
         (on_flank, flank_points(design, u[on_flank], v[on_flank])),
         (~on_flank, fillet_points(design, gamma[~on_flank], v[~on_flank])),
     ):
-        position[where], normal[where] = points.position, points.normal
+        position[rows], normal[rows] = points.position, points.normal
     return SurfacePoints(position, normal)

@@ -1,11 +1,11 @@
-"""How single teeth that deviate from the mean of their gear disturb a mesh, tooth by tooth.
+"""Transmission error from single teeth that deviate from the mean of their gear, tooth by tooth.
 
 A tooth numbered m, from 0 in the order in which teeth come into mesh, is at the place s = u - m of its way
-through the mesh, where u counts mesh cycles of its gear. Without load, the pair whose flanks come first says
-where the gears stand: the transmission error is the largest of all pairs' own. Under load all pairs in
-contact share it: what a deviation adds to the transmission error at a given load is, to first order, its mean
-over what each place carries of a little more load (Maxwell's theorem: the approach changes with a gap as the
-force there does with the load).
+through the mesh, where u counts mesh cycles of its gear. Without load, the pair whose flanks come first
+determines the relative position of the gears: the transmission error is the largest of those of all pairs.
+Under load all pairs in contact share it. To first order, a deviation adds to the transmission error at a
+given load its mean over the share that each place carries of a little more load (Maxwell's theorem: the
+approach changes with a gap as the force there does with the load).
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,19 +27,33 @@ from facegear.geometry.placement import pinion_angle
 from facegear.geometry.unloaded import PAIRS, unloaded_motion
 
 Teeth = Sequence[DeviationGrid | None]
-"""By the number of a tooth, what its flank deviates by from the mean of its gear."""
+"""Deviation of each tooth's flank from the mean of its gear, by the number of the tooth; None without."""
 
 PLANES = 121
 """Planes across the pinion's axis in which the flanks' gaps are looked at: on 25 mm of face within 2 nm."""
 
 CLOSER_LOOKS, LOOKS = (6, 2, 2), 9
-"""Places about which each closer look at an extreme is taken, and positions about each of them."""
+"""Number of positions around which each closer search for an extreme is made, and number of samples around
+each of them."""
 
 
-def at_places(teeth: Teeth, places: tuple[Array, Array]) -> Array:
-    """Deviations (teeth, ...) m at places along face and profile (m) as in `DeviationGrid`."""
+def at_places(teeth: Teeth, positions: tuple[Array, Array]) -> Array:
+    """Compute the deviations of all teeth at positions on the flank.
+
+    Parameters
+    ----------
+    teeth : Teeth
+        Deviation of each tooth.
+    positions : tuple of arrays (...)
+        Distances along face and profile, m, as in `DeviationGrid`.
+
+    Returns
+    -------
+    (teeth, ...) array
+        Deviations, m.
+    """
     different = list(dict.fromkeys(teeth))
-    values = np.stack([deviation(grid, *places) for grid in different])
+    values = np.stack([deviation(grid, *positions) for grid in different])
     return values[[different.index(grid) for grid in teeth]]
 
 
@@ -51,31 +65,66 @@ def loaded_curves(
     teeth: Mapping[Body, Teeth],
     variant: int = 0,
 ) -> dict[Body, Array]:
-    """Of each gear what its teeth add to the transmission error (teeth x positions,) m over one of its turns.
+    """Compute what the teeth of each gear add to the transmission error over one of its turns, under load.
 
-    At a torque (N m), by the forces at those of `loads`, arrays LOAD_ARRAYS of stage contact; of its
-    `variant`. Forces of a little more load are differences over neighbouring torques, with no load as one.
+    Forces of a little more load are differences over neighbouring torques, with no load as one of them.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sides : Mapping[Body, ContactSide]
+        Contact surface of each gear.
+    loads : Arrays
+        Arrays LOAD_ARRAYS of stage contact.
+    torque : float
+        On the pinion, N m.
+    teeth : Mapping[Body, Teeth]
+        Deviations of each gear's teeth.
+    variant : int
+        Variant of the assembly errors in `loads`.
+
+    Returns
+    -------
+    dict of arrays
+        Transmission error (teeth * positions,) by gear, m.
     """
     cases = loads["variant"] == variant
     torques, positions = (np.unique(loads[name][cases]) for name in ("torque_n_m", "position"))
     nodes = np.concatenate([[0.0], torques]) / design.pinion_base_radius
     slopes: Array = np.asarray(np.gradient(np.eye(nodes.size), nodes, axis=0))
-    added = [np.interp(torque / design.pinion_base_radius, nodes, column) for column in slopes.T[1:]]
+    load_weights = [np.interp(torque / design.pinion_base_radius, nodes, column) for column in slopes.T[1:]]
     curves = {}
     for body in BODIES:
         forces = loads_by_tooth(loads, body, variant=variant)
         values = at_places(teeth[body], node_places(design, body, sides[body]))
         curve = np.zeros((len(teeth[body]), positions.size))
         for pair, matrix in forces.items():
-            own = (matrix @ values.T).reshape(torques.size, positions.size, -1)
-            mean = np.tensordot(np.array(added), own, axes=1)
+            tooth_error = (matrix @ values.T).reshape(torques.size, positions.size, -1)
+            mean = np.tensordot(np.array(load_weights), tooth_error, axes=1)
             curve += np.roll(mean.T, pair, axis=0)
         curves[body] = curve.ravel()
     return curves
 
 
 def node_places(design: PairDesign, body: Body, side: ContactSide) -> tuple[Array, Array]:
-    """Face and profile (m) of the nodes of a contact surface, those in the fillet at the flank's end."""
+    """Compute the positions of a contact surface's nodes on the flank; fillet nodes are placed at the flank's
+    end.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : Body
+        Gear of the surface.
+    side : ContactSide
+        Contact surface.
+
+    Returns
+    -------
+    tuple of arrays
+        Distances (nodes,) along face and profile, m.
+    """
     rows = side.flank_rows
     if body == "pinion":
         roll = side.u.copy()
@@ -90,34 +139,41 @@ def node_places(design: PairDesign, body: Body, side: ContactSide) -> tuple[Arra
 
 @dataclass(frozen=True, eq=False)
 class PairGaps:
-    """Least gaps (m) of the mean flanks, (5 pairs, positions, 2, planes): in planes across the pinion's axis,
-    and of points along the gear's tip edge; inf where there is none. `places`: where they are on each gear,
-    face and profile (m). `mean`: the transmission error (positions,) m that they are of.
+    """Least gaps (m) of the mean flanks, and where they are.
+
+    `gap` (5 pairs, positions, 2, planes): in planes across the pinion's axis, and of points along the
+    gear's tip edge; inf where there is none. `positions`: distances along face and profile on each gear,
+    m. `mean`: transmission error (positions,) m at which the gaps are taken.
     """
 
     mean: Array
     gap: Array
-    places: Mapping[Body, tuple[Array, Array]]
+    positions: Mapping[Body, tuple[Array, Array]]
 
 
-def pair_gaps(design: PairDesign, places: Array, planes: int = PLANES) -> PairGaps:
-    """Compute the gaps at the unloaded transmission error, at some positions of the mesh cycle.
+def pair_gaps(design: PairDesign, cycle_positions: Array, planes: int = PLANES) -> PairGaps:
+    """Compute the gaps at the unloaded transmission error, at several positions of the mesh cycle.
 
     Parameters
     ----------
-    design
-        The pair with its mean flanks.
-    places : (positions,)
+    design : PairDesign
+        Pair with its mean flanks.
+    cycle_positions : (positions,) array
         In pitches, from 0 to below 1.
-    planes
-        Planes across the pinion's axis, and points of the gear's tip edge.
+    planes : int
+        Number of planes across the pinion's axis, and of points of the gear's tip edge.
+
+    Returns
+    -------
+    PairGaps
+        Gaps, m.
 
     Raises
     ------
     NotConverged
         Where the flanks' touch is not found.
     """
-    positions, phi1 = len(places), pinion_angle(design, places)
+    positions, phi1 = len(cycle_positions), pinion_angle(design, cycle_positions)
     phi2, error = unloaded_motion(design, phi1)
     gear, half = design.face_gear, design.pinion.width / 2
     first = max(gear.inner_radius, design.mean_radius - half)
@@ -149,7 +205,9 @@ def pair_gaps(design: PairDesign, places: Array, planes: int = PLANES) -> PairGa
 def _tip_edge_gaps(
     design: PairDesign, placement: tuple[Array, Array, Array], count: int
 ) -> tuple[Array, ...]:
-    """Gap, roll (rad) and y on the pinion, radius and depth on the gear (p, count) along its tip edge."""
+    """Return gap, roll (rad) and y on the pinion, radius and depth on the gear (p, count) along its
+    tip edge.
+    """
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, count)
     edge = tip_edge_as_made(design, radius) * np.array([-1.0, 1.0, 1.0])
     top, bottom = design.pinion_tip_roll**2, pinion.junction_roll(design) ** 2
@@ -160,8 +218,23 @@ def _tip_edge_gaps(
 
 
 def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) -> Array:
-    """Transmission error (cycles, positions) m without load; pair j of cycle k: tooth k - j of both gears."""
-    values = {body: at_places(teeth[body], gaps.places[body]) for body in BODIES}
+    """Compute the transmission error without load; pair j of cycle k consists of tooth k - j of both gears.
+
+    Parameters
+    ----------
+    gaps : PairGaps
+        Gaps of the mean flanks.
+    teeth : Mapping[Body, Teeth]
+        Deviations of each gear's teeth.
+    cycles : int
+        Number of mesh cycles.
+
+    Returns
+    -------
+    (cycles, positions) array
+        Transmission error, m.
+    """
+    values = {body: at_places(teeth[body], gaps.positions[body]) for body in BODIES}
     best = np.full((cycles, gaps.mean.size), -np.inf)
     for number, pair in enumerate(PAIRS):
         if not np.isfinite(gaps.gap[number]).any():
@@ -176,30 +249,38 @@ def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) ->
 def located_range(design: PairDesign, teeth: Mapping[Body, Teeth], errors: Array) -> tuple[float, float]:
     """Locate the extremes of the unloaded transmission error between even positions.
 
-    Around the positions with the largest and with the smallest values all mesh cycles are looked at again,
-    more closely each time.
+    Around the positions with the largest and with the smallest values all mesh cycles are computed again,
+    on a finer grid each time.
 
     Parameters
     ----------
-    design, teeth
-        As for unloaded_errors().
-    errors : (cycles, positions)
-        unloaded_errors() at even positions, m.
+    design : PairDesign
+        Pair with its mean flanks.
+    teeth : Mapping[Body, Teeth]
+        Deviations of each gear's teeth.
+    errors : (cycles, positions) array
+        Result of `unloaded_errors` at even positions, m.
 
     Returns
     -------
     peak_to_peak, left
-        Largest less smallest value, and by how much the last closer look changed it, m.
+        Largest less smallest value, and by how much the last closer search changed it, m.
     """
     cycles, positions = errors.shape
     peak_to_peak, left = 0.0, 0.0
     for sign in (1.0, -1.0):
-        values, places, step = (sign * errors).max(axis=0), np.arange(positions) / positions, 1.0 / positions
+        values, cycle_positions, step = (
+            (sign * errors).max(axis=0),
+            np.arange(positions) / positions,
+            1.0 / positions,
+        )
         largest = before = float(values.max())
-        for kept in CLOSER_LOOKS:
-            centres = places[np.argsort(values)[-kept:]]
-            places = np.unique((centres[:, None] + step * np.linspace(-1.0, 1.0, LOOKS)).ravel() % 1.0)
-            values = (sign * unloaded_errors(pair_gaps(design, places), teeth, cycles)).max(axis=0)
+        for position_count in CLOSER_LOOKS:
+            centres = cycle_positions[np.argsort(values)[-position_count:]]
+            cycle_positions = np.unique(
+                (centres[:, None] + step * np.linspace(-1.0, 1.0, LOOKS)).ravel() % 1.0
+            )
+            values = (sign * unloaded_errors(pair_gaps(design, cycle_positions), teeth, cycles)).max(axis=0)
             largest, before = max(largest, float(values.max())), largest
             step *= 2.0 / (LOOKS - 1)
         peak_to_peak, left = peak_to_peak + largest, left + largest - before
@@ -207,6 +288,21 @@ def located_range(design: PairDesign, teeth: Mapping[Body, Teeth], errors: Array
 
 
 def orders(error: Array, length: int, count: int) -> Array:
-    """Amplitudes (count,) m of orders 1, 2, ... of a gear with `length` teeth in errors (cycles, n)."""
+    """Compute the amplitudes of orders 1, 2, ... of a gear in its transmission error.
+
+    Parameters
+    ----------
+    error : (cycles, n) array
+        Transmission error, m.
+    length : int
+        Number of teeth of the gear.
+    count : int
+        Number of orders.
+
+    Returns
+    -------
+    (count,) array
+        Amplitudes, m.
+    """
     spectrum = 2.0 * np.abs(np.fft.rfft(error.ravel())) / error.size
     return spectrum[np.arange(1, count + 1) * (len(error) // length)]

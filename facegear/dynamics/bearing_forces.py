@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.at_instants import add_ring_forces
-from facegear.dynamics.integrator.reduction import Reduced
+from facegear.dynamics.integrator.reduction import Reduction
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.steady_state.statistics import moments
@@ -20,6 +20,7 @@ from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_bearing_forces
 
 DIRECTIONS = ("x", "y", "z", "radial")
+"""Directions in which the bearing forces of a body are tabulated; radial is the magnitude of x and y."""
 BEARING_COLUMNS = (
     "body",
     "direction",
@@ -34,107 +35,170 @@ BEARING_COLUMNS = (
 
 
 def bearing_history(model: Model, response: SteadyState) -> Array:
-    """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N, as bearing_forces() has
-    them.
+    """Compute the force of every body on its bearing at each sample, see bearing_forces().
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    (K, bodies, 3) array
+        Forces along x, y, z, N.
     """
     return np.moveaxis(bearing_forces(model, track(response)), -1, 0)
 
 
 def bearing_forces(model: Model, motion: Track) -> Array:
-    """Force of every body on its bearing along x, y, z, shape (bodies, 3, K), N.
+    """Compute the force of every body on its bearing: springs, their damping of equation (21), and dampers.
 
-    Springs, their damping of equation (21) and dampers: K q + beta K q' + D q'. Mass damping acts from
-    outside and is no bearing's. With clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its
-    damping is beta dF/dt.
+    The force is K q + beta K q' + D q'. Mass damping acts from outside and not through a bearing. With
+    clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    motion : Track
+        Motion of the model's coordinates at K instants.
+
+    Returns
+    -------
+    (bodies, 3, K) array
+        Forces along x, y, z, N.
     """
-    linear, felt = model.machine.linear, _felt(model.machine.alike, model.reduced)
+    linear, maps = model.machine.linear, _bearing_maps(model.machine.without_errors, model.reduction)
     rings = linear.rings
-    moving_parts = motion.along(felt.places, felt.speeds)
+    moving_parts = motion.along(maps.displacement_columns, maps.velocity_columns)
     first = len(moving_parts) - 4 * rings.body.size
-    forces = np.zeros((felt.alone.size, motion.count))
-    forces[felt.alone] = moving_parts[:first]
+    forces = np.zeros((maps.alone.size, motion.count))
+    forces[maps.alone] = moving_parts[:first]
     forces = forces.reshape(*linear.translations.shape, -1)
     if rings.body.size:
-        moved, moving = moving_parts[first:].reshape(2, rings.body.size, 2, -1)
-        held = rings.stiffness, rings.clearance, linear.bearing_damping
-        add_ring_forces(moved, moving, *held, rings.body, forces)
+        displacements, rates = moving_parts[first:].reshape(2, rings.body.size, 2, -1)
+        ring_properties = rings.stiffness, rings.clearance, linear.bearing_damping
+        add_ring_forces(displacements, rates, *ring_properties, rings.body, forces)
     return forces
 
 
-class _Felt(NamedTuple):
-    """What bearings feel of a motion: places and speeds (n, columns) that make the forces of those `alone`
-    (3 bodies,), on which no ring acts, then place and speed of each body in a ring along x and y.
+class _BearingMaps(NamedTuple):
+    """Matrices that map reduced displacement and velocity to bearing forces.
+
+    `alone` (3 bodies,) marks the components on which no ring acts. The columns of displacement and velocity
+    (n, columns) give the forces of those, then displacement and velocity of each body in a ring along x and
+    y.
     """
 
     alone: Mask
-    places: Array
-    speeds: Array
+    displacement_columns: Array
+    velocity_columns: Array
 
 
 @lru_cache(maxsize=8)
-def _felt(machine: Machine, reduced: Reduced) -> _Felt:
+def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
     linear = machine.linear
-    places, speeds = _held(linear, reduced, linear.translations.ravel())
+    displacement_columns, velocity_columns = _force_matrices(linear, reduction, linear.translations.ravel())
     in_rings = np.zeros(linear.translations.shape, dtype=bool)
     in_rings[linear.rings.body, :2] = True
-    alone = (places.any(axis=0) | speeds.any(axis=0)) & ~in_rings.ravel()
-    rows = reduced.basis[linear.ring_coordinates.ravel()].T
-    nothing = np.zeros_like(rows)
-    return _Felt(
+    alone = (displacement_columns.any(axis=0) | velocity_columns.any(axis=0)) & ~in_rings.ravel()
+    rows = reduction.basis[linear.ring_coordinates.ravel()].T
+    zeros = np.zeros_like(rows)
+    return _BearingMaps(
         alone,
-        np.concatenate([places[:, alone], rows, nothing], axis=1),
-        np.concatenate([speeds[:, alone], nothing, rows], axis=1),
+        np.concatenate([displacement_columns[:, alone], rows, zeros], axis=1),
+        np.concatenate([velocity_columns[:, alone], zeros, rows], axis=1),
     )
 
 
-def _held(linear: LinearModel, reduced: Reduced, coordinates: Integers) -> tuple[Array, Array]:
-    """What a place and a speed of the reduced coordinates (n, coordinates) give to the force or moment on
-    springs and dampers along some coordinates.
+def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Integers) -> tuple[Array, Array]:
+    """Matrices (n, coordinates) that map reduced displacement and velocity to the force or moment on springs
+    and dampers along some coordinates.
     """
-    basis = reduced.basis
+    basis = reduction.basis
     springs = basis.T @ linear.stiffness[:, coordinates]
     return springs, linear.bearing_damping * springs + basis.T @ linear.dampers[coordinates].T
 
 
 def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) -> Array:
-    """Loads of pinions' shafts on their bearings, (K, bearings, 5), N and N m, as shaft_bearing_loads() has
-    them.
+    """Compute the loads of the pinion shafts on their bearings, see shaft_bearing_loads(). Shaft mass is
+    neglected.
 
-    forces (K, bodies, 3): bearing_history() of the response. Masses of shafts count nothing.
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    response : SteadyState
+        Response.
+    forces : (K, bodies, 3) array
+        bearing_history() of the response, N.
+
+    Returns
+    -------
+    (K, bearings, 5) array
+        Forces, N, and moments, N m.
     """
     line = model.machine.drive_line
     if line is None:
         return np.zeros((len(forces), 0, 5))
     motion = track(response)
-    linear, reduced = model.machine.linear, model.reduced
-    moments = {i: motion.along(*_held(linear, reduced, line.tilts(i))).T for i in line.tilting}
+    linear, reduction = model.machine.linear, model.reduction
+    moments = {i: motion.along(*_force_matrices(linear, reduction, line.tilts(i))).T for i in line.tilting}
     return shaft_bearing_loads(line, forces, moments)
 
 
 def velocities(response: SteadyState) -> Array:
-    """Time derivatives of the coordinates (K, n), 1/s, from cubic splines through the samples."""
-    each = np.eye(response.coordinates.shape[1])
-    return track(response).along(0.0 * each, each).T
+    """Compute the time derivatives of the coordinates from cubic splines through the samples.
+
+    Parameters
+    ----------
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    (K, n) array
+        Velocities, in the coordinates' unit per second (1/s).
+    """
+    identity = np.eye(response.coordinates.shape[1])
+    return track(response).along(0.0 * identity, identity).T
 
 
 def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
-    """BEARING_COLUMNS, four rows a body: along x, y, z, and the magnitude of x and y together. Below them the
-    same of each bearing of a pinion's shaft, `right input bearing A`.
+    """Tabulate the bearing forces: four rows a body, along x, y, z, and the magnitude of x and y together.
 
-    static: at rest under the mean torques; peak: the largest magnitude, located between the samples;
-    interval: 95 % half-width, 0 for a periodic motion. A pinion's x is tangential and y along the gears'
-    axis, both radial for its bearing; a face gear's axis is z.
+    Below them stand the rows of each bearing of a pinion's shaft, such as `right input bearing A`. A pinion's
+    x is tangential and y along the gears' axis, both radial for its bearing; a face gear's axis is z.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    DataFrame
+        BEARING_COLUMNS. `static_n`: at rest under the mean torques; `peak_n`: the largest magnitude, located
+        between the samples; `ac_rms_interval_n`: 95 % half-width, 0 for a periodic motion.
     """
     machine = model.machine
-    history, resting = bearing_history(model, response), static_bearing_forces(at_rest(machine))[None]
+    history, static_forces = bearing_history(model, response), static_bearing_forces(at_rest(machine))[None]
     bodies = list(machine.layout.body_names)
     if (line := machine.drive_line) is not None:
         bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
-        own = shaft_bearing_history(model, response, history)[..., :3]
-        history = np.concatenate([history, own], axis=1)
-        resting = np.concatenate([resting, shaft_bearing_loads(line, resting)[..., :3]], axis=1)
-    moving, static = _with_radial(history), _with_radial(resting)[0]
-    statistics = moments(moving.reshape(len(moving), -1), response.per_period, response.period > 0)
+        shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
+        history = np.concatenate([history, shaft_forces], axis=1)
+        static_forces = np.concatenate(
+            [static_forces, shaft_bearing_loads(line, static_forces)[..., :3]], axis=1
+        )
+    dynamic_forces, static = _with_radial(history), _with_radial(static_forces)[0]
+    statistics = moments(
+        dynamic_forces.reshape(len(dynamic_forces), -1), response.per_period, response.period > 0
+    )
     names = [(body, direction) for body in bodies for direction in DIRECTIONS]
     table = pd.DataFrame(names, columns=["body", "direction"])
     values = (

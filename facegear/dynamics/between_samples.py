@@ -1,4 +1,4 @@
-"""Extremes of what is known at even samples, located between them."""
+"""Extrema of quantities known at even samples, located between the samples."""
 
 import numpy as np
 import scipy
@@ -6,15 +6,15 @@ import scipy
 from facegear.arrays import Array, Integers, Mask
 
 REACH = 3
-"""Samples on each side of the largest one through which a polynomial is laid."""
-COMPARED = 64
-"""Samples of each column, those with the largest values, among which peaks are looked for."""
+"""Number of samples on each side of the largest one through which a polynomial is laid."""
+NUM_COMPARED = 64
+"""Number of samples of each column, those with the largest values, among which peaks are sought."""
 CANDIDATES = 2
-"""Samples of each column that are looked at: those with the largest parabolas."""
+"""Number of samples of each column that are examined: those with the largest parabolas."""
 LOOKS = 16
-"""Parts of the time between two samples at whose ends the polynomial is evaluated."""
+"""Number of parts of the time between two samples at whose ends the polynomial is evaluated."""
 FINE_STEPS = np.linspace(-1.0, 1.0, 2 * LOOKS + 1)
-"""Where values_around() is evaluated, in samples from that of the row."""
+"""Positions at which values_around() is evaluated, in samples from that of the row."""
 
 
 def located_extremes(values: Array, wraps: bool) -> tuple[Array, Array]:
@@ -56,23 +56,45 @@ def max_peaks(values: Array, wraps: bool) -> tuple[Integers, Mask]:
         Whether that sample is a peak: a column may have fewer.
     """
     count = len(values)
-    kept = min(COMPARED, count)
-    at = np.argpartition(values, count - kept, axis=0)[-kept:]
+    num_compared = min(NUM_COMPARED, count)
+    at = np.argpartition(values, count - num_compared, axis=0)[-num_compared:]
     heights, peak = _parabolas(values, at, wraps)
     best = np.argsort(np.where(peak, heights, -np.inf), axis=0)[-CANDIDATES:]
     return np.take_along_axis(at, best, axis=0), np.take_along_axis(peak, best, axis=0)
 
 
 def values_around(values: Array, rows: Integers) -> Array:
-    """Values (2 LOOKS + 1, R, columns) of the polynomials from one sample before each of `rows` (R,) to one
-    after it.
+    """Evaluate the polynomials from one sample before each row to one after it.
+
+    Parameters
+    ----------
+    values : (K, columns) array
+        Samples at even distances in time, any unit.
+    rows : (R,) array
+        Numbers of samples.
+
+    Returns
+    -------
+    (2 LOOKS + 1, R, columns) array
+        Values at FINE_STEPS, in the unit of the samples.
     """
     steps = np.arange(-REACH, REACH + 1)
     return np.asarray(np.tensordot(_POLYNOMIAL, values[(rows + steps[:, None]) % len(values)], 1))
 
 
 def top_of(fine: Array) -> Array:
-    """Largest (...) of fine even samples (n, ...), by the parabola through the largest three."""
+    """Largest value of fine even samples, by the parabola through the largest three.
+
+    Parameters
+    ----------
+    fine : (n, ...) array
+        Samples at even distances, any unit.
+
+    Returns
+    -------
+    (...) array
+        Largest values, in the unit of the samples.
+    """
     best = np.clip(fine.argmax(axis=0), 1, len(fine) - 2)
     low, middle, high = (np.take_along_axis(fine, (best + step)[None], axis=0)[0] for step in (-1, 0, 1))
     bend, slope = 2.0 * middle - low - high, 0.5 * (high - low)
@@ -106,10 +128,25 @@ def located_by_cycle(values: Array, wraps: bool) -> Array:
 
 
 def finer(values: Array, factor: int, wraps: bool) -> Array:
-    """Values (factor K,) at so many times as many instants, by a cubic spline through even samples (K,).
+    """Interpolate even samples by a cubic spline at a multiple of their instants.
 
-    Where two neighbouring samples have no opposite signs the values between have none either: a contact that
-    is open at both is open between them. Without wrapping the last value goes on after the last sample.
+    Where two neighbouring samples do not differ in sign, the values between have no other sign: a contact
+    that is open at both is open between them. Without wrapping the last value is repeated after the last
+    sample.
+
+    Parameters
+    ----------
+    values : (K,) array
+        Samples at even distances in time, any unit.
+    factor : int
+        Number of instants for each sample.
+    wraps : bool
+        Whether the first sample follows the last, as those of whole periods of a periodic motion do.
+
+    Returns
+    -------
+    (factor K,) array
+        Values, in the unit of the samples.
     """
     count = len(values)
     after = np.append(values[1:], values[0] if wraps else values[-1])
@@ -133,25 +170,25 @@ def _located_maxima(values: Array, wraps: bool) -> Array:
 
 
 def _parabolas(values: Array, rows: Integers, wraps: bool) -> tuple[Array, Mask]:
-    """Height of the parabola through each sample of `rows` (R, columns) and its neighbours, and whether there
-    is a smooth peak beside it.
+    """Height of the parabola through each sample of `rows` (R, columns) and its neighbours, and whether it is
+    a peak.
 
-    The curve must bend down at the sample and at its higher neighbour, between which the peak lies: not so
-    where a contact opens and its force stays zero.
+    The curve must bend down at the sample and at its higher neighbour, between which the peak lies. It does
+    not where a contact opens and its force stays zero.
     """
     count = len(values)
 
     def beside(step: int | Integers) -> Array:
         return np.take_along_axis(values, (rows + step) % count, axis=0)
 
-    before, here, after = beside(-1), beside(0), beside(1)
+    before, middle, after = beside(-1), beside(0), beside(1)
     higher = np.where(after >= before, 1, -1)
-    bend = 2.0 * here - before - after
-    bends_on = 2.0 * beside(higher) - here - beside(2 * higher) > 0.0
-    peak = (here >= before) & (here >= after) & (bend > 0.0) & bends_on
+    bend = 2.0 * middle - before - after
+    bends_on = 2.0 * beside(higher) - middle - beside(2 * higher) > 0.0
+    peak = (middle >= before) & (middle >= after) & (bend > 0.0) & bends_on
     if not wraps:
         peak &= (rows >= REACH) & (rows < count - REACH)
-    return here + (after - before) ** 2 / np.where(peak, 8.0 * bend, 1.0), peak
+    return middle + (after - before) ** 2 / np.where(peak, 8.0 * bend, 1.0), peak
 
 
 def _tops(values: Array, rows: Integers) -> Array:

@@ -10,12 +10,12 @@ from facegear.dynamics.at_instants import press_in, split_loads
 from facegear.dynamics.steady_state.mesh_samples import errors_of_period
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.track import Track
-from facegear.transmission.flanks import NO_LOAD, carried
+from facegear.transmission.flanks import NO_LOAD, significant_forces
 
 
 @dataclass(frozen=True, eq=False)
 class DenseMotion:
-    """A response at K evenly spaced instants, per_period of them in each mesh period."""
+    """A response at K evenly spaced instants, `per_period` of them in each mesh period."""
 
     response: SteadyState
     per_period: int
@@ -23,7 +23,7 @@ class DenseMotion:
 
     @cached_property
     def beyond(self) -> Array:
-        """How far each mesh or flank is pressed in (contacts, periods, per_period), m."""
+        """Compression of each mesh or flank (contacts, periods, per_period), m."""
         system = self.response.system
         jacobian = system.mesh_jacobian[: system.contacts].T
         deflections = self.track.along(jacobian, np.zeros_like(jacobian))
@@ -34,15 +34,15 @@ class DenseMotion:
 
     @cached_property
     def deepest(self) -> Array:
-        """How far each mesh or flank is pressed in at most (contacts,), m."""
+        """Largest compression of each mesh or flank (contacts,), m."""
         return np.maximum(self.beyond.max(axis=(1, 2)), -self.beyond.min(axis=(1, 2)))
 
     @cached_property
     def forces(self) -> Array:
-        """Elastic mesh forces (meshes, K), N; with two flanks what both transmit."""
+        """Elastic mesh forces (meshes, K), N; with two flanks the difference of both."""
         system, cycles = self.response.system, np.arange(self.per_period) / self.per_period
-        each = system.law.force(cycles, np.moveaxis(self.beyond, 0, -1))
-        forces = np.moveaxis(each, -1, 0).reshape(system.contacts, -1)
+        contact_forces = system.law.force(cycles, np.moveaxis(self.beyond, 0, -1))
+        forces = np.moveaxis(contact_forces, -1, 0).reshape(system.contacts, -1)
         if not system.two_flanks:
             return forces
         drive, back = np.split(forces, 2)
@@ -50,20 +50,20 @@ class DenseMotion:
 
     @cached_property
     def loads(self) -> Array:
-        """The same without those that are rounding beside the largest."""
-        return carried(self.forces)
+        """Elastic mesh forces (meshes, K), N, without those that are rounding beside the largest."""
+        return significant_forces(self.forces)
 
     @property
     def flank_loads(self) -> Array:
-        """The same of drive flanks, then back flanks (2 meshes, K), none negative."""
+        """Elastic forces (2 meshes, K), N, of the drive flanks, then of the back flanks, none negative."""
         loads = np.empty((2 * len(self.forces), self.track.count))
         split_loads(self.forces, NO_LOAD, loads)
         return loads
 
     @property
     def past_law(self) -> Array:
-        """Fraction of the instants (contacts,) at which a contact is pressed in past the last level of its
-        law.
+        """Fraction of the instants (contacts,) at which a contact is compressed beyond the last level of
+        its law.
         """
         law = self.response.system.law
         if law.straight:

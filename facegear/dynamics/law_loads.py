@@ -1,4 +1,4 @@
-"""Where the forces of the meshes lie in the table of their load-dependent law."""
+"""Position of the mesh forces in the table of their load-dependent law."""
 
 import pandas as pd
 
@@ -9,21 +9,33 @@ LAW_LOAD_COLUMNS = (
     *("last_level_n", "smallest_n", "mean_n", "largest_n", "past_fraction"),
     *("sweep_largest_n", "sweep_past_fraction"),
 )
+"""Columns of law_loads_table() after mesh and flank."""
 
 
 def law_loads_table(
     levels: pd.DataFrame, response: pd.DataFrame, summary: pd.DataFrame, sweep: pd.DataFrame
 ) -> pd.DataFrame:
-    """A row a mesh: mesh, flank, and LAW_LOAD_COLUMNS.
+    """Tabulate where the forces of each mesh lie in the table of its law.
 
-    - last_level_n: mean force at the last level of the table of the flank that carries the load
-    - smallest_n, mean_n, largest_n: elastic force at the nominal speed, counted on that flank; extremes are
-      located between the samples
-    - past_fraction: largest fraction of the samples past the last level there
-    - sweep_largest_n, sweep_past_fraction: the largest of both over the sweep
+    Parameters
+    ----------
+    levels : DataFrame
+        Table of stage mesh_law, in which one gear alone is the upper.
+    response, summary : DataFrame
+        Tables of stage dynamics_response.
+    sweep : DataFrame
+        Table of stage dynamics_sweep.
 
-    `levels`: table of stage mesh_law, in which one gear alone is the upper; `response`, `summary` of stage
-    dynamics_response; `sweep` of stage dynamics_sweep.
+    Returns
+    -------
+    DataFrame
+        One row a mesh: mesh, flank, and LAW_LOAD_COLUMNS.
+
+        - last_level_n: mean force at the last level of the table of the flank that carries the load
+        - smallest_n, mean_n, largest_n: elastic force at the nominal speed, counted on that flank; extremes
+          are located between the samples
+        - past_fraction: largest fraction of the samples past the last level there
+        - sweep_largest_n, sweep_past_fraction: the largest of both over the sweep
     """
     last = levels.groupby(["gear", "flank"])["force_n"].max()
     sides = {name.rpartition("/")[2] for name in response["mesh"]}
@@ -32,15 +44,15 @@ def law_loads_table(
         sign = 1.0 if forces.mean() >= 0.0 else -1.0
         side = str(mesh).rpartition("/")[2] if len(sides) > 1 else "upper"
         flank = "drive" if sign > 0.0 else "back"
-        carried = sign * forces
-        located = located_extremes(carried.to_numpy()[:, None], whole)
-        smallest, largest = (float(extreme[0]) for extreme in located)
+        flank_forces = sign * forces
+        extremes = located_extremes(flank_forces.to_numpy()[:, None], whole)
+        smallest, largest = (float(extreme[0]) for extreme in extremes)
         rows.append(
             (
                 mesh,
                 flank,
                 last[side, flank],
-                *(smallest, carried.mean(), largest),
+                *(smallest, flank_forces.mean(), largest),
                 _largest(summary, "past_law_fraction", mesh),
                 _largest(sweep, "largest_elastic_force_n", mesh),
                 _largest(sweep, "past_law_fraction", mesh),

@@ -1,9 +1,9 @@
-"""The csv tables of the response at one speed."""
+"""Tables of the response at one speed."""
 
 import numpy as np
 import pandas as pd
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.steady_state.spectra import MAX_ORDER, spectrum
@@ -13,10 +13,24 @@ from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
 
 SHOWN_PERIODS = 32
+"""Largest number of mesh periods in the table of the response."""
 
 
 def response_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
-    """Columns mesh_cycle, time_s, mesh, deflection_um, elastic_force_n over at most 32 mesh periods."""
+    """Tabulate the mesh deflections and forces over at most SHOWN_PERIODS mesh periods.
+
+    Parameters
+    ----------
+    layout : Layout
+        Names of the meshes.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    DataFrame
+        Columns mesh_cycle, time_s, mesh, deflection_um, elastic_force_n.
+    """
     count = min(response.periods, SHOWN_PERIODS) * response.per_period
     cycles = response.phases[:count]
     frames = [
@@ -37,36 +51,77 @@ def response_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
 def shows_a_period(response: pd.DataFrame, summary: pd.DataFrame) -> bool:
     """Whether the history in the table of the response at one speed is one period of a periodic motion.
 
-    `summary`: the table beside it, whose column `class` names the motion.
+    Parameters
+    ----------
+    response : DataFrame
+        Table of response_table().
+    summary : DataFrame
+        Table beside it, whose column `class` names the motion.
+
+    Returns
+    -------
+    bool
+        False where the motion is not periodic or the history is cut.
     """
     cycles = int(response["mesh_cycle"].max()) + 1
     return bool((summary["class"] == f"period-{cycles}").any())
 
 
 def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float) -> dict[str, float]:
-    """Mean loss (W) of each mesh by name, of a machine with friction; `response`: its response_table()."""
+    """Mean friction loss of each mesh, for a machine with friction.
+
+    Parameters
+    ----------
+    machine : Machine
+        Machine with friction.
+    response : DataFrame
+        Table of response_table().
+    speed_rpm : float
+        Pinion speed, rpm.
+
+    Returns
+    -------
+    dict
+        Loss of each mesh by name, W.
+
+    Raises
+    ------
+    ValueError
+        If the machine has no friction.
+    """
     layout, friction = machine.layout, machine.friction
     if friction is None:
         raise ValueError("a machine with friction is needed")
     forces = response["elastic_force_n"].to_numpy().reshape(len(layout.meshes), -1).T
     cycles = response["mesh_cycle"].to_numpy()[: len(forces)]
-    taken = friction.loss(machine.phases, cycles, forces).mean(axis=0)
-    return dict(zip(layout.mesh_names, speed_rpm * TAU / 60.0 * layout.pinion_arm * taken, strict=True))
+    mean_losses = friction.loss(machine.phases, cycles, forces).mean(axis=0)
+    return dict(zip(layout.mesh_names, speed_rpm * TAU / 60.0 * layout.pinion_arm * mean_losses, strict=True))
 
 
 def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
-    """Columns mesh, order (multiple of the mesh frequency), frequency_hz, amplitude_um of the whole
-    response.
+    """Tabulate the amplitude spectra of the mesh deflections over the whole response.
+
+    Parameters
+    ----------
+    layout : Layout
+        Names of the meshes.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    DataFrame
+        Columns mesh, order (multiple of the mesh frequency), frequency_hz, amplitude_um.
     """
     orders, lines = spectrum(response.deflections, response.per_period, response.period > 0)
-    kept = orders <= MAX_ORDER
+    is_shown = orders <= MAX_ORDER
     frames = [
         pd.DataFrame(
             {
                 "mesh": name,
-                "order": orders[kept],
-                "frequency_hz": orders[kept] * response.frequency / TAU,
-                "amplitude_um": UM * lines[kept, m],
+                "order": orders[is_shown],
+                "frequency_hz": orders[is_shown] * response.frequency / TAU,
+                "amplitude_um": UM * lines[is_shown, m],
             }
         )
         for m, name in enumerate(layout.mesh_names)
@@ -75,14 +130,38 @@ def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
 
 
 def summary_of_response(model: Model, speed_rpm: float, response: SteadyState) -> pd.DataFrame:
-    """The numbers that a sweep keeps, at one speed: its columns but for those of the run over speed."""
+    """Tabulate the numbers that a sweep stores, at one speed.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    speed_rpm : float
+        Pinion speed, rpm.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    DataFrame
+        Columns of sweep_table() without `direction` and `after_irregular`.
+    """
     table = sweep_table(model.machine.layout, "none", collect(model, iter([(speed_rpm, response)])))
     return table.drop(columns=["direction", "after_irregular"])
 
 
 def multiplier_table(response: SteadyState) -> pd.DataFrame:
-    """Columns real, imaginary, magnitude of the Floquet multipliers; empty where the motion is not
-    periodic.
+    """Tabulate the Floquet multipliers.
+
+    Parameters
+    ----------
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    DataFrame
+        Columns real, imaginary, magnitude; empty where the motion is not periodic.
     """
     values = np.zeros(0, dtype=complex) if response.multipliers is None else response.multipliers
     return pd.DataFrame({"real": values.real, "imaginary": values.imag, "magnitude": np.abs(values)})

@@ -9,9 +9,9 @@ import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import make_runner, packed_system
 from facegear.dynamics.integrator.integrator import Integrator, RunResult, result_of, run_machines
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.integrator.kernel_system import make_runner, packed_system
+from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
 
 WIDTH: int = motion.ABREAST
@@ -53,7 +53,7 @@ def run_many(
         Result of each machine.
     """
     stretches = [
-        Stretch(integrator, start, periods, samples=samples)
+        RunRequest(integrator, start, periods, samples=samples)
         for integrator, start in zip(integrators, starts, strict=True)
     ]
     runs = []
@@ -65,13 +65,13 @@ def run_many(
 
 
 def run_stretches(
-    stretches: Sequence[Stretch], last_periods: int | None = None, fewest: int = FEWEST
+    stretches: Sequence[RunRequest], last_periods: int | None = None, fewest: int = FEWEST
 ) -> list[RunResult | NotConverged]:
     """Run stretches of many machines, side by side where they share a structure and a request.
 
     Parameters
     ----------
-    stretches : sequence of Stretch
+    stretches : sequence of RunRequest
         The stretches, in any order.
     last_periods : int, optional
         Number of last periods whose end states are returned; all if None.
@@ -95,7 +95,7 @@ def run_stretches(
     ]
 
 
-def _groups(stretches: Sequence[Stretch]) -> list[list[int]]:
+def _groups(stretches: Sequence[RunRequest]) -> list[list[int]]:
     """Numbers of the stretches that may run side by side."""
     structures: list[motion.System] = []
     structure_of: dict[motion.System, int] = {}
@@ -107,7 +107,7 @@ def _groups(stretches: Sequence[Stretch]) -> list[list[int]]:
             structure_of[system] = next(fitting, len(structures))
             if structure_of[system] == len(structures):
                 structures.append(system)
-        groups[(structure_of[system], stretch.integrator.order, *stretch.asks)].append(number)
+        groups[(structure_of[system], stretch.integrator.order, *stretch.kind)].append(number)
     return list(groups.values())
 
 
@@ -132,7 +132,7 @@ def _busy(lengths: Sequence[int], lanes: int) -> int:
     return max(ends)
 
 
-def _alone(stretch: Stretch, last_periods: int | None) -> RunResult | NotConverged:
+def _alone(stretch: RunRequest, last_periods: int | None) -> RunResult | NotConverged:
     try:
         run = stretch.run()
     except NotConverged as failure:
@@ -142,7 +142,9 @@ def _alone(stretch: Stretch, last_periods: int | None) -> RunResult | NotConverg
     return replace(run, ends=run.ends[max(stretch.periods - last_periods, 0) :])
 
 
-def _side_by_side(stretches: Sequence[Stretch], last_periods: int | None) -> list[RunResult | NotConverged]:
+def _side_by_side(
+    stretches: Sequence[RunRequest], last_periods: int | None
+) -> list[RunResult | NotConverged]:
     """Run stretches of one structure and request in lanes."""
     first, periods = stretches[0], [stretch.periods for stretch in stretches]
     integrators = [stretch.integrator for stretch in stretches]
@@ -161,7 +163,7 @@ def _side_by_side(stretches: Sequence[Stretch], last_periods: int | None) -> lis
     return [_result(log, number, stretch) for number, stretch in enumerate(stretches)]
 
 
-def _result(log: motion.Log, number: int, stretch: Stretch) -> RunResult | NotConverged:
+def _result(log: motion.Log, number: int, stretch: RunRequest) -> RunResult | NotConverged:
     """Return the result of one machine of a run, or the error that it failed with."""
     try:
         return result_of(log, number, stretch.integrator, stretch.periods)

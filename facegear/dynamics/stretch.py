@@ -1,4 +1,4 @@
-"""A stretch of a motion that a machine is asked to run."""
+"""A run over whole mesh periods that is requested of a machine."""
 
 from dataclasses import dataclass
 
@@ -9,8 +9,8 @@ from facegear.dynamics.integrator.integrator import Integrator, RunResult
 
 
 @dataclass(frozen=True, eq=False)
-class Stretch:
-    """Whole mesh periods from a state (2, n) by phase, with what `Integrator.run` can be asked for.
+class RunRequest:
+    """Whole mesh periods from a state (2, n) by phase, with the options of `Integrator.run`.
 
     Without batches, samples or tangents there are no fractions of time in contact.
     """
@@ -24,7 +24,18 @@ class Stretch:
     growth: bool = False
 
     def run(self) -> RunResult:
-        """Run it by itself. Raises NotConverged."""
+        """Run the request by itself.
+
+        Returns
+        -------
+        RunResult
+            Result of the run.
+
+        Raises
+        ------
+        NotConverged
+            If a step fails.
+        """
         return self.integrator.run(
             self.state,
             self.periods,
@@ -36,10 +47,10 @@ class Stretch:
 
     @property
     def disturbances(self) -> Array:
-        """The tangents (columns, 2, n), which may be none."""
+        """Tangents (columns, 2, n); there may be none."""
         return np.zeros((0, *self.state.shape)) if self.tangents is None else self.tangents
 
     @property
-    def asks(self) -> tuple[object, ...]:
-        """What must be the same for machines that run side by side."""
+    def kind(self) -> tuple[object, ...]:
+        """Options that must be the same for machines that run side by side."""
         return len(self.disturbances), self.samples, self.batches, self.growth

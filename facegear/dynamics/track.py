@@ -1,7 +1,7 @@
-"""Any linear function of a motion and of its velocity, at evenly spaced instants.
+"""Linear functions of a motion and of its velocity, at evenly spaced instants.
 
-A periodic motion is the Fourier series through its samples, so that the instants may lie closer than those;
-any other one has its samples alone.
+A periodic motion is the Fourier series through its samples, so that the instants may lie closer than the
+samples. Any other motion has its samples alone.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, ComplexArray
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.response import SteadyState
 
 
@@ -23,35 +23,66 @@ class Track(Protocol):
     def count(self) -> int:
         """The number K of instants."""
 
-    def along(self, places: Array, speeds: Array) -> Array:
-        """y places + dy/dt speeds (columns, K) of matrices (n, columns)."""
+    def along(self, displacement_weights: Array, velocity_weights: Array) -> Array:
+        """Compute y displacement_weights + dy/dt velocity_weights at each instant.
+
+        Parameters
+        ----------
+        displacement_weights, velocity_weights : (n, columns) array
+            Weights of the coordinates and of their velocities, any unit.
+
+        Returns
+        -------
+        (columns, K) array
+            Values, in the unit of the weighted coordinates.
+        """
 
 
 @dataclass(frozen=True, eq=False)
 class PeriodicTrack:
-    """waves (n, W): complex amplitudes of the coordinates times K; step: time between two instants, s.
+    """A periodic motion at K evenly spaced instants.
 
     Velocities are the slopes of the periodic cubic spline through the K instants. Its slopes m satisfy
     m[i-1] + 4 m[i] + m[i+1] = 3 (f[i+1] - f[i-1]) / step, which a Fourier series solves wave by wave.
+
+    Attributes
+    ----------
+    waves : (n, W) array
+        Complex amplitudes of the coordinates times K.
+    count : int
+        Number K of instants.
+    step : float
+        Time between two instants, s.
     """
 
     waves: ComplexArray
     count: int
     step: float
 
-    def along(self, places: Array, speeds: Array) -> Array:
-        """y places + dy/dt speeds (columns, K)."""
+    def along(self, displacement_weights: Array, velocity_weights: Array) -> Array:
+        """Compute y displacement_weights + dy/dt velocity_weights at each instant.
+
+        Parameters
+        ----------
+        displacement_weights, velocity_weights : (n, columns) array
+            Weights of the coordinates and of their velocities, any unit.
+
+        Returns
+        -------
+        (columns, K) array
+            Values, in the unit of the weighted coordinates.
+        """
         parts, angle = self.waves.view(np.float64), TAU * np.arange(self.waves.shape[1]) / self.count
-        total = (places.T @ parts).view(np.complex128)
-        moving = speeds.any(axis=0)
+        total = (displacement_weights.T @ parts).view(np.complex128)
+        has_velocity = velocity_weights.any(axis=0)
         slope = 3.0j * np.sin(angle) / ((2.0 + np.cos(angle)) * self.step)
-        total[moving] += (speeds.T[moving] @ parts).view(np.complex128) * slope
+        total[has_velocity] += (velocity_weights.T[has_velocity] @ parts).view(np.complex128) * slope
         return np.asarray(np.fft.irfft(total, self.count, axis=1))
 
 
 @dataclass(frozen=True, eq=False)
 class SampledTrack:
-    """samples (K, n) of the coordinates; step: time between two of them, s.
+    """Samples (K, n) of the coordinates, `step` (s) apart.
 
     Velocities are the slopes of the cubic spline through all samples.
     """
@@ -70,18 +101,40 @@ class SampledTrack:
         time = np.arange(self.count) * self.step
         return np.asarray(scipy.interpolate.CubicSpline(time, self.samples)(time, 1))
 
-    def along(self, places: Array, speeds: Array) -> Array:
-        """y places + dy/dt speeds (columns, K)."""
-        total = places.T @ self.samples.T
-        moving = speeds.any(axis=0)
-        if moving.any():
-            total[moving] += speeds.T[moving] @ self.rates.T
+    def along(self, displacement_weights: Array, velocity_weights: Array) -> Array:
+        """Compute y displacement_weights + dy/dt velocity_weights at each instant.
+
+        Parameters
+        ----------
+        displacement_weights, velocity_weights : (n, columns) array
+            Weights of the coordinates and of their velocities, any unit.
+
+        Returns
+        -------
+        (columns, K) array
+            Values, in the unit of the weighted coordinates.
+        """
+        total = displacement_weights.T @ self.samples.T
+        has_velocity = velocity_weights.any(axis=0)
+        if has_velocity.any():
+            total[has_velocity] += velocity_weights.T[has_velocity] @ self.rates.T
         return total
 
 
 def track(response: SteadyState, factor: int = 1) -> Track:
-    """The track of a response with `factor` instants for each sample, which only a periodic one may have
-    more than one of.
+    """Make the track of a response.
+
+    Parameters
+    ----------
+    response : SteadyState
+        Response.
+    factor : int
+        Number of instants for each sample; above 1 only for a periodic response.
+
+    Returns
+    -------
+    Track
+        Motion at evenly spaced instants.
     """
     step = TAU / (response.frequency * response.per_period)
     if response.period == 0:
@@ -90,7 +143,22 @@ def track(response: SteadyState, factor: int = 1) -> Track:
 
 
 def periodic_track(samples: Array, step: float, factor: int = 1) -> PeriodicTrack:
-    """Through even samples (K, n) of a period, `step` (s) apart, with `factor` instants for each."""
+    """Make the track through the samples of a periodic motion.
+
+    Parameters
+    ----------
+    samples : (K, n) array
+        Evenly spaced samples of a whole period, any unit.
+    step : float
+        Time between two samples, s.
+    factor : int
+        Number of instants for each sample.
+
+    Returns
+    -------
+    PeriodicTrack
+        Motion at `factor` K instants.
+    """
     count = len(samples)
     waves = np.fft.rfft(np.ascontiguousarray(samples.T), axis=1)
     if factor > 1 and count % 2 == 0:

@@ -14,7 +14,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import numpy as np
 
 from facegear.arrays import AnyArray
-from facegear.dynamics.integrator.compiled import system_numbers
+from facegear.dynamics.integrator.kernel_system import system_numbers
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
 from facegear.io.atomic import atomic_path
@@ -147,13 +147,13 @@ def unique_words(names: Sequence[str]) -> list[str]:
     smallest number from 2 on that no other variable has.
     """
     words = [re.sub(r"\W+", "_", name) for name in names]
-    taken = set(words)
+    used_words = set(words)
     numbered_words: list[str] = []
     for word in words:
         unique = word
         if word in numbered_words:
-            unique = next(candidate for n in count(2) if (candidate := f"{word}_{n}") not in taken)
-            taken.add(unique)
+            unique = next(candidate for n in count(2) if (candidate := f"{word}_{n}") not in used_words)
+            used_words.add(unique)
         numbered_words.append(unique)
     return numbered_words
 
@@ -161,13 +161,15 @@ def unique_words(names: Sequence[str]) -> list[str]:
 def _header(model: Model, speed_rpm: float) -> str:
     """Write the numbers of the machine as C++; TOKEN stands for what the sources are recognised by."""
     machine, linear, law = model.machine, model.machine.linear, model.system.law
-    spins = model.reduced.basis[machine.torque_coordinates].T  # load of each coordinate by each body's torque
+    spins = model.reduction.basis[
+        machine.torque_coordinates
+    ].T  # load of each coordinate by each body's torque
     load = model.system.load.copy()
     load[:, 1, 0] -= spins @ machine.torques
     kernel_law = type(law.kernel_law).__name__
-    held = linear.translations.ravel()
-    bearing = linear.stiffness[held] @ model.reduced.basis
-    dampers = linear.bearing_damping * bearing + linear.dampers[held] @ model.reduced.basis
+    translations = linear.translations.ravel()
+    bearing = linear.stiffness[translations] @ model.reduction.basis
+    dampers = linear.bearing_damping * bearing + linear.dampers[translations] @ model.reduction.basis
     in_rings = (3 * linear.rings.body[:, None] + [0, 1]).ravel()  # their forces are the motion's own
     bearing[in_rings] = dampers[in_rings] = 0.0
     constants = {
@@ -298,16 +300,21 @@ def _description(variables: Sequence[Variable], mesh_period: float, token: str) 
         "stepSize": mesh_period / STEPS_PER_PERIOD,
     }
     Xml.SubElement(root, "DefaultExperiment", {key: repr(value) for key, value in experiment.items()})
-    listed = Xml.SubElement(root, "ModelVariables")
+    variables_element = Xml.SubElement(root, "ModelVariables")
     Xml.SubElement(
-        listed, "Float64", name="time", valueReference="0", causality="independent", variability="continuous"
+        variables_element,
+        "Float64",
+        name="time",
+        valueReference="0",
+        causality="independent",
+        variability="continuous",
     )
     for reference, variable in enumerate(variables, start=1):
         keys = {"name": variable.name, "valueReference": str(reference), "causality": variable.causality}
         keys |= {"variability": "continuous", "description": variable.description, "unit": variable.unit}
         for key, value in (("min", variable.minimum), ("start", variable.start)):
             keys |= {} if value is None else {key: repr(value)}
-        Xml.SubElement(listed, "Float64", keys)
+        Xml.SubElement(variables_element, "Float64", keys)
     structure = Xml.SubElement(root, "ModelStructure")
     for kind in ("Output", "InitialUnknown"):
         for reference, variable in enumerate(variables, start=1):

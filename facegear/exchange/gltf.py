@@ -35,9 +35,9 @@ def write_gltf(
 
     path, plain = Path(path), replace(design, assembly=AssemblyErrors())
     scene = trimesh.Scene()
-    placed = [(f"{side} face gear", BODIES[1], gear_transform(plain, side)) for side in sides]
-    placed += [(name, BODIES[0], pinion_transform(plain, angle)) for name, angle in pinions]
-    for name, body, transform in placed:
+    placements = [(f"{side} face gear", BODIES[1], gear_transform(plain, side)) for side in sides]
+    placements += [(name, BODIES[0], pinion_transform(plain, angle)) for name, angle in pinions]
+    for name, body, transform in placements:
         if body not in scene.geometry:
             corners = _corners(plain, body)  # once, however many of them there are
             shape = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3))
@@ -74,9 +74,9 @@ def gear_transform(design: PairDesign, side: str) -> Array:
     if side == "upper":
         return np.eye(4)
     transform = np.eye(4)
-    turned = rotation(np.array([0.0, 1.0, 0.0]), pi)
+    half_turn = rotation(np.array([0.0, 1.0, 0.0]), pi)
     shift = pi / design.face_gear.teeth if design.pinion.teeth % 2 else 0.0
-    transform[:3, :3] = turned @ body_rotation("face_gear", shift)
+    transform[:3, :3] = half_turn @ body_rotation("face_gear", shift)
     return transform
 
 

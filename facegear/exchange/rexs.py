@@ -13,14 +13,14 @@ from facegear.errors import FacegearError, plain_reason
 from facegear.io.atomic import atomic_path
 
 VERSION = "2.0"
-LOST = (
+LOST_CONTENT = (
     "face gears: their teeth and shapes; each is a shaft with its mass and bearing alone",
     "distribution angles, torques with their excitations, backlash, errors and damping",
     "inertias; REXS takes them from the shapes of bodies",
     "bearing stiffness along x and y where they differ: the smaller one is written",
     "tooth thickness, addendum, dedendum, profile shift and modifications of the pinion",
 )
-"""What a file does not hold of a machine."""
+"""Content of a machine that a file cannot hold."""
 
 READ_UNITS = {
     "mass_of_component": "kg",
@@ -73,8 +73,13 @@ class _Model:
     """A document that grows: components and relations are numbered from 1."""
 
     def __init__(self, date: str, version: str) -> None:
-        given = {"version": VERSION, "applicationId": "facegear", "applicationVersion": version, "date": date}
-        self.root = Xml.Element("model", given)
+        attributes = {
+            "version": VERSION,
+            "applicationId": "facegear",
+            "applicationVersion": version,
+            "date": date,
+        }
+        self.root = Xml.Element("model", attributes)
         self.relations, self.components = (
             Xml.SubElement(self.root, name) for name in ("relations", "components")
         )
@@ -109,7 +114,7 @@ def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
         model.relation("side", ("assembly", bearing), ("inner_part", number), ("outer_part", casing))
         if shaft.spur is not None:
             _add_gear(model, shaft.name, shaft.spur, number, material)
-    model.root.insert(0, Xml.Comment(" Lost, as REXS has no face gear: " + "; ".join(LOST) + " "))
+    model.root.insert(0, Xml.Comment(" Lost, as REXS has no face gear: " + "; ".join(LOST_CONTENT) + " "))
     Xml.indent(model.root)
     with atomic_path(path) as temporary:
         Xml.ElementTree(model.root).write(temporary, encoding="UTF-8", xml_declaration=True)
@@ -209,8 +214,10 @@ def _of_kind(parts: Parts, *types: str) -> Iterable[str]:
 def _attribute(element: Xml.Element, name: str) -> str:
     """An attribute that every element of its kind must have."""
     if name not in element.attrib:
-        known = ", ".join(f"{key}={value[:40]!r}" for key, value in element.attrib.items()) or "no attribute"
-        raise _Fault(f"an element {element.tag} ({known}) has no attribute {name}")
+        attribute_text = (
+            ", ".join(f"{key}={value[:40]!r}" for key, value in element.attrib.items()) or "no attribute"
+        )
+        raise _Fault(f"an element {element.tag} ({attribute_text}) has no attribute {name}")
     return element.attrib[name]
 
 
@@ -221,13 +228,13 @@ def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
         if kind == "assembly" and members.get("assembly") == number and "part" in members
     ]
     teeth = next((gear for gear in gears if parts[gear].attrib["type"] == "cylindrical_gear"), None)
-    held = [
+    components = [
         members["assembly"]
         for kind, members in relations
         if kind == "side" and number in members.values() and "assembly" in members
     ]
     bearing = next(
-        (parts[member] for member in held if parts[member].attrib["type"] == "concept_bearing"), None
+        (parts[member] for member in components if parts[member].attrib["type"] == "concept_bearing"), None
     )
     return Shaft(
         name=parts[number].attrib.get("name", number),
@@ -273,14 +280,14 @@ def _flanks_of(gear: str, relations: Relations) -> list[str]:
 
 def _value(part: Xml.Element | None, key: str) -> float | None:
     """A finite number of a component in the unit of REXS; None where it is not given."""
-    given = [] if part is None else part.findall(f"attribute[@id='{key}']")
-    if part is not None and len(given) > 1:
+    attributes = [] if part is None else part.findall(f"attribute[@id='{key}']")
+    if part is not None and len(attributes) > 1:
         raise _Fault(f"component {part.attrib['id']}: attribute {key} stands twice: must be unique")
-    text = given[0].text if given else None
+    text = attributes[0].text if attributes else None
     if (
         part is not None
-        and given
-        and (unit := given[0].attrib.get("unit", READ_UNITS[key])) != READ_UNITS[key]
+        and attributes
+        and (unit := attributes[0].attrib.get("unit", READ_UNITS[key])) != READ_UNITS[key]
     ):
         raise _Fault(
             f"component {part.attrib['id']}: unit of {key} = {unit[:40]!r}: must be {READ_UNITS[key]!r}"

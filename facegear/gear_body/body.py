@@ -1,4 +1,4 @@
-"""A gear body solved in all orders: modes with the hub held, and how the rim gives way below the teeth."""
+"""Gear body solved in all orders: modes with the hub held, and the compliance of the rim below the teeth."""
 
 from dataclasses import dataclass
 
@@ -19,30 +19,32 @@ from facegear.gear_body.patch import Patch
 from facegear.gear_body.section import Section
 
 STATIC_ORDERS = 60
-"""Orders that a local load is made of; those above add 2e-4 of a mesh's own compliance."""
+"""Largest order in a local load; those above add 2e-4 of a mesh's own compliance."""
 SMOOTH = 8
 """Order up to which every compliance is computed; beyond, every order that is GROWTH times the one before."""
 GROWTH = 1.2
+"""Ratio of the orders beyond SMOOTH at which compliances are computed."""
 COARSE = (1, 25.0)
 """Elements across the thinnest wall and refinement at corners of the mesh by which errors are estimated."""
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedBody:
-    """What is known of a body with its hub held.
+    """Modes and compliances of a body with its hub held.
 
     Attributes
     ----------
     section, mesh, elements
-        What it was computed from.
+        Section, mesh and elements from which it was computed.
     orders
         Modes of the orders 0, 1, 2, ...
     compliances : (orders, 3, 3)
-        Of the means <W>, <V> and <W / r> below the teeth, from order 0 up to the last that a load needs.
+        Compliance of the means <W>, <V> and <W / r> below the teeth, from order 0 up to the last that a
+        load needs.
     slopes : (orders, 1, 4)
         <W>, <V>, <W / r> and slope dW/dr by a unit moment on that slope, 1/N and rad/(N m).
     changes
-        Of every order the relative change (m,) of its frequencies from a coarser mesh.
+        Relative change (m,) of the frequencies of every order from a coarser mesh.
     """
 
     section: Section
@@ -54,15 +56,48 @@ class SolvedBody:
     changes: tuple[Array, ...]
 
     def static(self, patch: Patch) -> Array:
-        """H_n (orders, 2, 2) with the hub held, m/N."""
+        """Return the compliances H_n with the hub held.
+
+        Parameters
+        ----------
+        patch : Patch
+            Area on which a mesh presses.
+
+        Returns
+        -------
+        (orders, 2, 2) array
+            m/N.
+        """
         return np.stack([patch.compliance(order, below) for order, below in enumerate(self.compliances)])
 
     def leaning(self, patch: Patch) -> Array:
-        """W_p, V_p (1/N) and slope (rad/(N m)) by a unit moment on the slope, hub held, (orders, 3)."""
+        """Return W_p, V_p and slope by a unit moment on the slope, hub held.
+
+        Parameters
+        ----------
+        patch : Patch
+            Area on which a mesh presses.
+
+        Returns
+        -------
+        (orders, 3) array
+            1/N and rad/(N m).
+        """
         return np.stack([patch.leaning(order, below[0]) for order, below in enumerate(self.slopes)])
 
     def modal(self, patch: Patch) -> Array:
-        """The part of `static` that the modes hold, (orders, 2, 2), m/N."""
+        """Return the part of `static` that the modes hold.
+
+        Parameters
+        ----------
+        patch : Patch
+            Area on which a mesh presses.
+
+        Returns
+        -------
+        (orders, 2, 2) array
+            m/N.
+        """
         result = np.zeros((len(self.compliances), 2, 2))
         for modes in self.orders[: len(result)]:
             result[modes.order] = patch.compliance(modes.order, modal_compliance(modes))
@@ -70,10 +105,30 @@ class SolvedBody:
 
 
 def solve_body(section: Section, max_frequency: float, last_order: int, teeth: int) -> SolvedBody:
-    """Modes up to the frequency `max_frequency` (Hz) of the orders 0 to `last_order`, and static compliances.
+    """Compute modes and static compliances of a body.
 
-    teeth: their number, of which the waves that a discrete ring can tell apart follow. Raises InvalidInput
-    for a section that cannot be meshed, NotConverged.
+    Parameters
+    ----------
+    section : Section
+        The section.
+    max_frequency : float
+        Highest frequency of the modes, Hz.
+    last_order : int
+        Last order of the modes.
+    teeth : int
+        Number of teeth, from which follow the waves that a discrete ring can tell apart.
+
+    Returns
+    -------
+    SolvedBody
+        SI units.
+
+    Raises
+    ------
+    InvalidInput
+        If the section cannot be meshed.
+    NotConverged
+        If the modes are not found.
     """
     last_static = min(STATIC_ORDERS, (teeth - 1) // 2)
     last_order = min(last_order, last_static)
@@ -84,8 +139,8 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
     for order in sorted({*range(last_order + 1), *sampled_orders(last_static)}):
         solve = held_solver(body, order)
         if order <= last_order:
-            expected = modes[-1].frequencies.size if modes else FIRST_TRY
-            modes.append(order_modes(body, order, max_frequency, solve, expected))
+            expected_count = modes[-1].frequencies.size if modes else FIRST_TRY
+            modes.append(order_modes(body, order, max_frequency, solve, expected_count))
         if order <= last_static:
             compliances[order] = mean_compliance(body, solve)
             slopes[order] = slope_compliance(body, solve)
@@ -101,7 +156,18 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
 
 
 def sampled_orders(last: int) -> list[int]:
-    """Orders from 0 to `last` at which compliances are computed."""
+    """Return the orders at which compliances are computed.
+
+    Parameters
+    ----------
+    last : int
+        Last order.
+
+    Returns
+    -------
+    list of int
+        From 0 to `last`.
+    """
     orders = list(range(min(SMOOTH, last) + 1))
     while orders[-1] < last:
         orders.append(min(max(orders[-1] + 1, round(GROWTH * orders[-1])), last))
@@ -109,7 +175,7 @@ def sampled_orders(last: int) -> list[int]:
 
 
 def _changes(section: Section, fine: list[OrderModes]) -> tuple[Array, ...]:
-    """Relative change of the frequencies of each order from a coarser mesh."""
+    """Return the relative change of the frequencies of each order from a coarser mesh."""
     coarse = body_matrices(section, body_mesh(section, *COARSE))
     changes = []
     for modes in fine:
@@ -117,6 +183,6 @@ def _changes(section: Section, fine: list[OrderModes]) -> tuple[Array, ...]:
         if not count:
             changes.append(np.zeros(0))
             continue
-        other = order_modes(coarse, modes.order, np.inf, expected=count - 1).frequencies
-        changes.append(np.abs(other - modes.frequencies) / modes.frequencies)
+        coarse_frequencies = order_modes(coarse, modes.order, np.inf, expected_count=count - 1).frequencies
+        changes.append(np.abs(coarse_frequencies - modes.frequencies) / modes.frequencies)
     return tuple(changes)

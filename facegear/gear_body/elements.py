@@ -20,9 +20,11 @@ with extras_named():
     from skfem import Basis, ElementQuad2, MeshQuad
 
 U, V, W = range(3)
+"""Numbers of the components U, V, W."""
 DEGREE = 6
+"""Degree of the polynomials that the quadrature integrates exactly."""
 Rows = list[dict[int, Array]]
-"""Rows of an operator: what each component's scalar shapes contribute, (shapes, elements, points)."""
+"""Rows of an operator: contribution of each component's scalar shapes, (shapes, elements, points)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +59,24 @@ class Elements:
         return 3 * int(self.basis.N)
 
     @property
-    def places(self) -> Array:
+    def shape_points(self) -> Array:
         """r and height (2, shapes) of every scalar shape, at which its own value is 1."""
         return np.asarray(self.basis.doflocs)
 
 
 def elements_of(mesh: BodyMesh) -> Elements:
-    """Elements of a mesh."""
+    """Return the elements of a mesh.
+
+    Parameters
+    ----------
+    mesh : BodyMesh
+        The mesh.
+
+    Returns
+    -------
+    Elements
+        Shapes at the quadrature points.
+    """
     basis = Basis(MeshQuad(mesh.nodes.T.copy(), mesh.quads.T.copy()), ElementQuad2(), intorder=DEGREE)
     fields = [shape[0] for shape in basis.basis]
     r = np.asarray(basis.global_coordinates())[0]
@@ -80,7 +93,18 @@ def elements_of(mesh: BodyMesh) -> Elements:
 
 
 def strains(elements: Elements) -> tuple[Array, Array]:
-    """Strains rr, pp, zz, rz, rp, zp as A0 + n A1 of the shapes; two operators (6, 27, elements, points)."""
+    """Return the strains rr, pp, zz, rz, rp, zp of the shapes as A0 + n A1.
+
+    Parameters
+    ----------
+    elements : Elements
+        The elements.
+
+    Returns
+    -------
+    pair of (6, 27, elements, points) arrays
+        Operators A0 and A1, 1/m.
+    """
     v, by_r, by_height = elements.value, elements.by_r, elements.by_height
     over_r = v / elements.r
     plain: Rows = [
@@ -96,7 +120,18 @@ def strains(elements: Elements) -> tuple[Array, Array]:
 
 
 def gradients(elements: Elements) -> tuple[Array, Array]:
-    """Derivatives of (U, V, W) by r, height and round the axis: A0 + n A1, each (9, 27, elements, points)."""
+    """Return the derivatives of (U, V, W) by r, height and round the axis as A0 + n A1.
+
+    Parameters
+    ----------
+    elements : Elements
+        The elements.
+
+    Returns
+    -------
+    pair of (9, 27, elements, points) arrays
+        Operators A0 and A1, 1/m.
+    """
     over_r = elements.value / elements.r
     plain: Rows = [{part: elements.by_r} for part in (U, V, W)]
     plain += [{part: elements.by_height} for part in (U, V, W)]
@@ -106,12 +141,34 @@ def gradients(elements: Elements) -> tuple[Array, Array]:
 
 
 def displacements(elements: Elements) -> Array:
-    """U, V, W of the shapes, (3, 27, elements, points)."""
+    """Return U, V, W of the shapes.
+
+    Parameters
+    ----------
+    elements : Elements
+        The elements.
+
+    Returns
+    -------
+    (3, 27, elements, points) array
+        m/m.
+    """
     return operator([{part: elements.value} for part in (U, V, W)])
 
 
 def operator(rows: Rows) -> Array:
-    """Rows of an operator on the 27 shapes of each element."""
+    """Return the rows of an operator on the 27 shapes of each element.
+
+    Parameters
+    ----------
+    rows : Rows
+        Contribution of each component's scalar shapes to each row.
+
+    Returns
+    -------
+    (rows, 27, elements, points) array
+        In the unit of the contributions, 1 or 1/m.
+    """
     shapes, elements, points = next(values for row in rows for values in row.values()).shape
     result = np.zeros((len(rows), 3 * shapes, elements, points))
     for number, row in enumerate(rows):
@@ -121,11 +178,28 @@ def operator(rows: Rows) -> Array:
 
 
 def form(elements: Elements, left: Array, tensor: Array, right: Array) -> sp.csr_matrix:
-    """Integral of left^T tensor right over the section; tensor (i, j, elements, points or 1)."""
-    weighed = np.einsum("ijeq,jbeq->eiqb", tensor * elements.weight, right, optimize=True)
-    count, rows, points, shapes = weighed.shape
+    """Assemble the integral of left^T tensor right over the section.
+
+    Parameters
+    ----------
+    elements : Elements
+        The elements.
+    left : (i, 27, elements, points) array
+        Operator, any unit.
+    tensor : (i, j, elements, points or 1) array
+        Material, any unit.
+    right : (j, 27, elements, points) array
+        Operator, any unit.
+
+    Returns
+    -------
+    (dofs, dofs) sparse matrix
+        In the product of these units times m3.
+    """
+    weighted_terms = np.einsum("ijeq,jbeq->eiqb", tensor * elements.weight, right, optimize=True)
+    count, rows, points, shapes = weighted_terms.shape
     flat = left.transpose(2, 1, 0, 3).reshape(count, shapes, rows * points)
-    blocks = flat @ weighed.reshape(count, rows * points, shapes)
+    blocks = flat @ weighted_terms.reshape(count, rows * points, shapes)
     row = np.repeat(elements.dofs.T[:, :, None], shapes, axis=2)
     column = np.repeat(elements.dofs.T[:, None, :], shapes, axis=1)
     size = elements.size
@@ -133,17 +207,41 @@ def form(elements: Elements, left: Array, tensor: Array, right: Array) -> sp.csr
 
 
 def isotropic(material: Material) -> Array:
-    """Elasticity (6, 6) of strains in the order of `strains`, Pa."""
+    """Return the elasticity of strains in the order of `strains`.
+
+    Parameters
+    ----------
+    material : Material
+        The material.
+
+    Returns
+    -------
+    (6, 6) array
+        Pa.
+    """
     modulus, ratio = material.young_modulus, material.poisson_ratio
     return orthotropic(np.full(3, modulus), ratio, np.full(3, 0.5 * modulus / (1.0 + ratio)))
 
 
 def orthotropic(moduli: Array, ratio: float, shear: Array) -> Array:
-    """Elasticity (6, 6), Pa, from Young's moduli along r, round the axis and along it, and moduli of shear in
-    rz, rp and zp.
+    """Return the elasticity of an orthotropic material.
 
     Poisson's ratio of each pair of directions is `ratio` times the root of the ratio of their moduli, so that
     the compliance is symmetric and positive for every choice of moduli.
+
+    Parameters
+    ----------
+    moduli : (3,) array
+        Young's moduli along r, round the axis and along it, Pa.
+    ratio : float
+        Poisson's ratio for equal moduli, dimensionless.
+    shear : (3,) array
+        Shear moduli in rz, rp and zp, Pa.
+
+    Returns
+    -------
+    (6, 6) array
+        Pa, for strains in the order of `strains`.
     """
     roots = np.sqrt(moduli)
     compliance = ((1.0 + ratio) * np.eye(3) - ratio) / np.outer(roots, roots)

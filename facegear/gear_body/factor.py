@@ -9,10 +9,22 @@ from scipy.sparse.linalg import splu
 from facegear.arrays import Array
 
 Solve = Callable[[Array], Array]
+"""Function from right-hand sides (n,) or (n, m) to solutions of the same shape."""
 
 
 def solver(matrix: sp.spmatrix) -> Solve:
-    """What solves with a symmetric positive definite matrix for right-hand sides (n,) or (n, m)."""
+    """Factorise a symmetric positive definite matrix.
+
+    Parameters
+    ----------
+    matrix : sp.spmatrix
+        The matrix (n, n).
+
+    Returns
+    -------
+    Solve
+        Function that solves for right-hand sides (n,) or (n, m).
+    """
     factor = splu(
         matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )

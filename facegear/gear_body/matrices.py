@@ -44,7 +44,18 @@ class Polynomial:
     parts: tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]
 
     def at(self, order: int) -> sp.csr_matrix:
-        """The matrix of an order."""
+        """Return the matrix of an order.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+
+        Returns
+        -------
+        sparse matrix
+            In the unit of the parts.
+        """
         constant, linear, square = self.parts
         return around(order) * (constant + order * linear + order**2 * square)
 
@@ -56,7 +67,7 @@ class BodyMatrices:
     Attributes
     ----------
     section, elements
-        What they were made of.
+        Section and elements from which they were assembled.
     free : (f,)
         Degrees of freedom that are not held.
     stiffness, stress
@@ -92,12 +103,36 @@ class BodyMatrices:
 
 
 def around(order: int) -> float:
-    """Integral of the square of a wave's cosine round the axis."""
+    """Return the integral of the square of a wave's cosine round the axis.
+
+    Parameters
+    ----------
+    order : int
+        The order n.
+
+    Returns
+    -------
+    float
+        rad: 2 pi for order 0, else pi.
+    """
     return 2.0 * np.pi if order == 0 else np.pi
 
 
 def body_matrices(section: Section, mesh: BodyMesh) -> BodyMatrices:
-    """Assemble all matrices of a section."""
+    """Assemble all matrices of a section.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    mesh : BodyMesh
+        Its mesh.
+
+    Returns
+    -------
+    BodyMatrices
+        SI units.
+    """
     elements = elements_of(mesh)
     elasticity, density = _materials(section, mesh, elements)
     plain, by_order = strains(elements)
@@ -122,15 +157,30 @@ def body_matrices(section: Section, mesh: BodyMesh) -> BodyMatrices:
 
 
 def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> Polynomial:
-    """K of every order alone, of the elements of a mesh."""
+    """Assemble the stiffness K of every order alone.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    mesh : BodyMesh
+        Its mesh.
+    elements : Elements
+        Elements of the mesh.
+
+    Returns
+    -------
+    Polynomial
+        N/m.
+    """
     return _polynomial(elements, *strains(elements), _materials(section, mesh, elements)[0])
 
 
 def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array) -> Polynomial:
-    mixed = form(elements, plain, tensor, by_order)
+    cross_terms = form(elements, plain, tensor, by_order)
     parts = (
         form(elements, plain, tensor, plain),
-        mixed + mixed.T,
+        cross_terms + cross_terms.T,
         form(elements, by_order, tensor, by_order),
     )
     return Polynomial(parts)
@@ -155,15 +205,15 @@ def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Ar
 
 
 def _free(section: Section, elements: Elements) -> Integers:
-    """Degrees of freedom of the shapes that stand on no held edge."""
-    held = np.zeros(elements.places.shape[1], bool)
-    places = elements.places.T
-    for (first, last), fixed in zip(section.edges, section.held, strict=True):
-        if fixed:
+    """Return the degrees of freedom of the shapes that stand on no held edge."""
+    is_held = np.zeros(elements.shape_points.shape[1], bool)
+    points = elements.shape_points.T
+    for (first, last), is_fixed in zip(section.edges, section.is_edge_held, strict=True):
+        if is_fixed:
             way = last - first
-            fraction = np.clip((places - first) @ way / (way @ way), 0.0, 1.0)
-            held |= np.linalg.norm(places - first - fraction[:, None] * way, axis=1) < ON_EDGE
-    return np.flatnonzero(np.repeat(~held, 3))
+            fraction = np.clip((points - first) @ way / (way @ way), 0.0, 1.0)
+            is_held |= np.linalg.norm(points - first - fraction[:, None] * way, axis=1) < ON_EDGE
+    return np.flatnonzero(np.repeat(~is_held, 3))
 
 
 def _centrifugal_stresses(
@@ -174,15 +224,15 @@ def _centrifugal_stresses(
     density: Array,
     free: Integers,
 ) -> Array:
-    """Stress tensor (3, 3, elements, points) of r, height and the way round, at 1 rad/s; Pa s2."""
+    """Return the stress tensor (3, 3, elements, points) of r, height and the way round, at 1 rad/s; Pa s2."""
     outward = np.zeros(elements.size)
     loads = (elements.value * density * elements.r * elements.weight).sum(axis=2)
     np.add.at(outward, elements.dofs[U::3].ravel(), loads.ravel())
-    moving = free[free % 3 != V]
+    active_dofs = free[free % 3 != V]
     if free.size == elements.size:
-        moving = moving[moving != W]  # it floats: one point keeps its height
+        active_dofs = active_dofs[active_dofs != W]  # it floats: one point keeps its height
     motion = np.zeros(elements.size)
-    motion[moving] = solver(stiffness.parts[0][moving][:, moving])(outward[moving])
+    motion[active_dofs] = solver(stiffness.parts[0][active_dofs][:, active_dofs])(outward[active_dofs])
     strained = np.einsum("ibeq,be->ieq", strain, motion[elements.dofs])
     stress = np.einsum("ijeq,jeq->ieq", np.broadcast_to(elasticity, (6, 6, *strained.shape[1:])), strained)
     tensor = np.zeros((3, 3, *stress.shape[1:]))
@@ -192,10 +242,26 @@ def _centrifugal_stresses(
 
 
 def rigid_motions(elements: Elements, order: int) -> Array:
-    """Motions (dofs, 2) of the body as a rigid whole: in order 0 along and round the axis, in order 1
-    sideways and tilting about a diameter at height 0, each by 1 m or 1 rad.
+    """Return the motions of the body as a rigid whole, each by 1 m or 1 rad.
+
+    Parameters
+    ----------
+    elements : Elements
+        The elements.
+    order : int
+        0: along and round the axis; 1: sideways and tilting about a diameter at height 0.
+
+    Returns
+    -------
+    (dofs, 2) array
+        m.
+
+    Raises
+    ------
+    ValueError
+        For an order above 1.
     """
-    r, height = elements.places
+    r, height = elements.shape_points
     motions = np.zeros((elements.size, 2))
     if order == 0:
         motions[W::3, 0] = 1.0
@@ -209,7 +275,20 @@ def rigid_motions(elements: Elements, order: int) -> Array:
 
 
 def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Array]:
-    """Means <W>, <V> and <W / r> (dofs,) of the shapes along height 0 between the radii of the teeth."""
+    """Return means of the shapes along height 0 between the radii of the teeth.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    elements : Elements
+        The elements.
+
+    Returns
+    -------
+    tuple of three (dofs,) arrays
+        Means <W> and <V>, m/m, and <W / r>, 1/m.
+    """
     plain = along_teeth(section, elements, lambda parts, r: parts)
     means = np.zeros((3, elements.size))
     means[0, W::3], means[1, V::3] = plain, plain
@@ -217,11 +296,27 @@ def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Arr
     return means[0], means[1], means[2]
 
 
-def along_teeth(section: Section, elements: Elements, weigh: Callable[[Array, Array], Array]) -> Array:
-    """Mean (shapes,) of each shape times a function of r along height 0 between the radii of the teeth.
+def along_teeth(
+    section: Section, elements: Elements, convert_weights: Callable[[Array, Array], Array]
+) -> Array:
+    """Return the mean of each shape times a function of r along height 0 between the radii of the teeth.
 
-    weigh: what makes of the parts that points have in a plain mean, and of their r, those in this one.
     Along a straight edge of an element the shapes are the quadratic ones of its two ends and its middle.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    elements : Elements
+        The elements.
+    convert_weights : Callable[[Array, Array], Array]
+        Function that maps the weights of a plain mean (points, edges), and the r of the points, to the
+        weights of this mean.
+
+    Returns
+    -------
+    (shapes,) array
+        In the unit of these weights: 1 for the plain mean.
     """
     mesh, dofs, (inner, outer) = elements.basis.mesh, elements.basis.dofs, section.teeth
     ends = mesh.p[:, mesh.facets]
@@ -233,6 +328,6 @@ def along_teeth(section: Section, elements: Elements, weigh: Callable[[Array, Ar
     shapes = np.stack([0.5 * at * (at - 1.0), 0.5 * at * (at + 1.0), 1.0 - at**2])
     weights = 0.5 * GAUSS[1][:, None] * np.abs(last - first) / (outer - inner)
     r = 0.5 * (first + last) + 0.5 * at * (last - first)
-    mean = np.zeros(elements.places.shape[1])
-    np.add.at(mean, numbers, (shapes * weigh(weights, r)).sum(axis=1))
+    mean = np.zeros(elements.shape_points.shape[1])
+    np.add.at(mean, numbers, (shapes * convert_weights(weights, r)).sum(axis=1))
     return mean

@@ -1,4 +1,4 @@
-"""Modes of a gear body whose hub is held, and what turning does to them."""
+"""Modes of a gear body whose hub is held, and the effect of rotation on them."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from facegear.gear_body.matrices import BodyMatrices, around, rigid_motions
 from facegear.number_format import count_noun
 
 FIRST_TRY = 6
-"""Modes of an order that are looked for at first."""
+"""Number of modes of an order that are computed at first, and by which the number grows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,20 @@ class OrderModes:
 
 
 def held_solver(body: BodyMatrices, order: int) -> Solve:
-    """What gives displacements (dofs, ...) of the held body by loads (dofs, ...) in an order."""
+    """Return a function that solves for the displacements of the held body in an order.
+
+    Parameters
+    ----------
+    body : BodyMatrices
+        Matrices of the body.
+    order : int
+        The order n.
+
+    Returns
+    -------
+    Solve
+        Function from loads (dofs, ...) to displacements (dofs, ...), SI units.
+    """
     free = body.free
     solve = solver(body.stiffness.at(order)[free][:, free])
 
@@ -86,13 +99,33 @@ def order_modes(
     order: int,
     max_frequency: float,
     solve: Solve | None = None,
-    expected: int = FIRST_TRY,
+    expected_count: int = FIRST_TRY,
 ) -> OrderModes:
-    """All modes of an order up to `max_frequency` (Hz), or where it is infinite the first `expected` + 1.
+    """Compute all modes of an order up to a frequency, or where it is infinite the first `expected_count` +
+    1.
 
-    Raises NotConverged.
+    Parameters
+    ----------
+    body : BodyMatrices
+        Matrices of the body.
+    order : int
+        The order n.
+    max_frequency : float
+        Highest frequency, Hz.
+    solve : Solve or None
+        Function of `held_solver`, where it was made already.
+    expected_count : int
+        Approximate number of modes.
 
-    solve: of `held_solver`, where it was made already; expected: about how many modes there are.
+    Returns
+    -------
+    OrderModes
+        SI units.
+
+    Raises
+    ------
+    NotConverged
+        If the eigenvalue solver does not converge.
     """
     free = body.free
     solve = solve or held_solver(body, order)
@@ -104,7 +137,7 @@ def order_modes(
         whole[free] = loads
         return solve(whole)[free]
 
-    count = expected + 1
+    count = expected_count + 1
     while True:
         squared, vectors = _smallest(stiffness, mass, inverse, min(count, free.size - 2), order)
         if (
@@ -114,16 +147,16 @@ def order_modes(
         ):
             break
         count += FIRST_TRY
-    kept = squared <= (2.0 * np.pi * max_frequency) ** 2
-    shapes = np.zeros((body.elements.size, int(kept.sum())))
-    shapes[free] = vectors[:, kept]
-    return _reduced(body, order, np.sqrt(squared[kept]) / (2.0 * np.pi), _signed(shapes))
+    is_in_range = squared <= (2.0 * np.pi * max_frequency) ** 2
+    shapes = np.zeros((body.elements.size, int(is_in_range.sum())))
+    shapes[free] = vectors[:, is_in_range]
+    return _reduce_matrices(body, order, np.sqrt(squared[is_in_range]) / (2.0 * np.pi), _fix_signs(shapes))
 
 
 def _smallest(
     stiffness: sp.csr_matrix, mass: sp.csr_matrix, inverse: Solve, count: int, order: int
 ) -> tuple[Array, Array]:
-    """Squares of the smallest angular frequencies and their shapes."""
+    """Return the squares of the smallest angular frequencies and their shapes."""
     operator = LinearOperator(stiffness.shape, matvec=inverse, dtype=float)
     start = np.ones(stiffness.shape[0])
     try:
@@ -136,15 +169,15 @@ def _smallest(
     return squared[ascending], vectors[:, ascending]
 
 
-def _signed(shapes: Array) -> Array:
-    """Shapes whose largest entry is positive."""
+def _fix_signs(shapes: Array) -> Array:
+    """Return the shapes with signs such that their largest entry is positive."""
     if not shapes.size:
         return shapes
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
     return shapes * np.sign(largest)
 
 
-def _reduced(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
+def _reduce_matrices(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
     factor = around(order)
     rigid = rigid_motions(body.elements, order) if order < 2 else np.zeros((body.elements.size, 2))
     return OrderModes(
@@ -162,10 +195,22 @@ def _reduced(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) 
 
 
 def wave_frequencies(modes: OrderModes, speed: float) -> tuple[Array, Array]:
-    """Frequencies (m,) in Hz at which the forward and the backward wave of each mode pass a point in space.
+    """Return the frequencies at which the waves of each mode pass a point in space.
 
-    `speed`: of the body, rad/s. Forward waves travel as the body turns. Modes of an order are taken one by
-    one, f = sqrt(w^2 + (B + c^2) W^2) / 2 pi, f +- (n + c) W / 2 pi; order 0 has no waves, so both are f.
+    Forward waves travel as the body turns. Modes of an order are taken one by one, f = sqrt(w^2 + (B + c^2)
+    W^2) / 2 pi, f +- (n + c) W / 2 pi; order 0 has no waves, so both are f.
+
+    Parameters
+    ----------
+    modes : OrderModes
+        The m modes of one order.
+    speed : float
+        Speed of the body, rad/s.
+
+    Returns
+    -------
+    pair of (m,) arrays
+        Forward and backward wave, Hz.
     """
     w = 2.0 * np.pi * modes.frequencies
     c = modes.gyroscopic_factors if modes.order else np.zeros(w.size)
@@ -175,17 +220,30 @@ def wave_frequencies(modes: OrderModes, speed: float) -> tuple[Array, Array]:
 
 
 def resonant_speeds(modes: OrderModes, teeth: int, harmonic: int) -> tuple[Array, Array]:
-    """Speeds of the body (m,), rad/s, at which a harmonic of the mesh frequency meets each forward and each
-    backward wave; NaN where it never does.
+    """Return the speeds of the body at which a harmonic of the mesh frequency meets each wave.
 
     k N W / 2 pi = f(W) +- (n + c) W / 2 pi with f^2 = (w^2 + (B + c^2) W^2) / 4 pi^2, solved for W.
+
+    Parameters
+    ----------
+    modes : OrderModes
+        The m modes of one order.
+    teeth : int
+        Number of teeth N.
+    harmonic : int
+        Number k of the harmonic.
+
+    Returns
+    -------
+    pair of (m,) arrays
+        Forward and backward wave, rad/s; NaN where the harmonic never meets the wave.
     """
     w = 2.0 * np.pi * modes.frequencies
     c = modes.gyroscopic_factors if modes.order else np.zeros(w.size)
-    added = modes.stiffening_factors + c**2
-    met = []
+    stiffening = modes.stiffening_factors + c**2
+    speeds = []
     for sign in (1.0, -1.0):
         slope = harmonic * teeth - sign * ((modes.order + c) if modes.order else 0.0 * c)
-        below = slope**2 - added
-        met.append(np.where((below > 0.0) & (slope > 0.0), w / np.sqrt(np.maximum(below, 1e-300)), np.nan))
-    return met[0], met[1]
+        below = slope**2 - stiffening
+        speeds.append(np.where((below > 0.0) & (slope > 0.0), w / np.sqrt(np.maximum(below, 1e-300)), np.nan))
+    return speeds[0], speeds[1]

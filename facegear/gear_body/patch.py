@@ -1,4 +1,4 @@
-"""Where a mesh presses on the body of a face gear.
+"""Area on which a mesh presses on the body of a face gear.
 
 A flank force turned into force and moment on height 0, spread along the ring as a raised cosine, moves the
 pitch point in order n by W_p = c_n <W> axially and by V_p = c_n (<V> + n h <W / r>) round the axis, with c_n
@@ -15,36 +15,86 @@ from facegear.arrays import Array
 
 @dataclass(frozen=True)
 class Patch:
-    """Where a mesh presses on the body.
+    """Area on which a mesh presses on the body.
 
     Attributes
     ----------
     height
-        Of the pitch plane over height 0, m.
+        Height of the pitch plane over height 0, m.
     half_width
-        Of the raised cosine along the ring, rad.
+        Half width of the raised cosine along the ring, rad.
     """
 
     height: float
     half_width: float
 
     def factor(self, order: int) -> float:
-        """c_n: the part of a wave of order n that the patch feels."""
+        """Return c_n: the part of a wave of order n that the patch feels.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+
+        Returns
+        -------
+        float
+            Dimensionless, a factor.
+        """
         angle = order * self.half_width
         if abs(angle - np.pi) < 1e-6:
             return 0.5
         return float(np.sinc(angle / np.pi) / (1.0 - (angle / np.pi) ** 2))
 
     def rows(self, order: int, teeth: Array) -> Array:
-        """W_p and V_p, (2, ...), from <W>, <V> and <W / r> (3, ...)."""
+        """Return W_p and V_p from the means below the teeth.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+        teeth : (3, ...) array
+            <W>, <V> (m) and <W / r> (m/m).
+
+        Returns
+        -------
+        (2, ...) array
+            m.
+        """
         lever = order * self.height
         return self.factor(order) * (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, lever]]) @ teeth)
 
-    def leaning(self, order: int, given: Array) -> Array:
-        """W_p, V_p and slope (3,) by a unit moment on the slope, from <W>, <V>, <W / r> and slope (4,)."""
+    def leaning(self, order: int, responses: Array) -> Array:
+        """Return W_p, V_p and slope by a unit moment on the slope.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+        responses : (4,) array
+            <W>, <V>, <W / r> and slope by a unit moment on the slope, 1/N and rad/(N m).
+
+        Returns
+        -------
+        (3,) array
+            1/N and rad/(N m).
+        """
         factor = self.factor(order)
-        return factor * np.append(self.rows(order, given[:3]), factor * given[3])
+        return factor * np.append(self.rows(order, responses[:3]), factor * responses[3])
 
     def compliance(self, order: int, below: Array) -> Array:
-        """H_n (2, 2), m/N: motions W_p and V_p by unit loads on them, from that of the means (3, 3)."""
+        """Return H_n: motions W_p and V_p by unit loads on them.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+        below : (3, 3) array
+            Compliance of the means <W>, <V> and <W / r>, m/N.
+
+        Returns
+        -------
+        (2, 2) array
+            m/N.
+        """
         return self.rows(order, self.rows(order, below).T)

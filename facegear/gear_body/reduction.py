@@ -1,4 +1,4 @@
-"""From a solved body to its modes alone."""
+"""Reduce a solved body to its modes."""
 
 import numpy as np
 import scipy.linalg
@@ -6,7 +6,7 @@ import scipy.linalg
 from facegear.arrays import Array
 from facegear.gear_body.body import SolvedBody
 from facegear.gear_body.patch import Patch
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.section import section_properties
 
 
@@ -15,7 +15,21 @@ def reduced_body(
 ) -> ReducedBody:
     """Return the modes of a body and its static compliance below a mesh.
 
-    damping_ratio: part of the critical damping of every mode; stiffness_damping: beta (s) of D = beta K.
+    Parameters
+    ----------
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+    damping_ratio : float
+        Damping ratio of every mode.
+    stiffness_damping : float
+        beta of D = beta K, s.
+
+    Returns
+    -------
+    ReducedBody
+        SI units.
     """
     orders = body.orders
     order = np.concatenate([np.full(modes.frequencies.size, modes.order) for modes in orders])

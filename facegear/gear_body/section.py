@@ -14,10 +14,11 @@ from facegear.errors import InvalidInput
 from facegear.geometry.design import Material
 
 GAUSS = np.polynomial.legendre.leggauss(4)
+"""Points and weights of the Gauss rule with four points on [-1, 1]."""
 OPPOSITE = 0.5
 """Cosine of the angle between the normals of two edges beyond which they bound a wall."""
-SAME = 1e-9
-"""Distance (m) below which two points of a section are one."""
+COINCIDENCE = 1e-9
+"""Distance (m) below which two points of a section coincide."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,18 @@ class Layer:
     taper: float = 0.0
 
     def density_at(self, height: Array) -> Array:
-        """Fraction of the body's density at heights (m)."""
+        """Return the fraction of the body's density at heights.
+
+        Parameters
+        ----------
+        height : array of any shape (...)
+            Heights, m.
+
+        Returns
+        -------
+        array of the same shape (...)
+            Relative to the body's density.
+        """
         return self.density * (1.0 + self.taper * (self.back + self.front - 2.0 * height) / self.depth)
 
     @property
@@ -83,22 +95,22 @@ class Layer:
 
     @property
     def corners(self) -> Array:
-        """Corners (4, 2)."""
+        """Corners (4, 2), m."""
         return rectangle(self.inner_radius, self.outer_radius, self.back, self.front)
 
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """What a body is made of.
+    """Section of a body with its material and its supports.
 
     Attributes
     ----------
     corners : (n, 2)
-        r and height, anticlockwise (r to the right, height upwards).
-    held : (n,)
+        r and height, anticlockwise (r to the right, height upwards), m.
+    is_edge_held : (n,)
         Whether the edge from each corner to the next is held.
     teeth
-        Inner and outer radius of the teeth.
+        Inner and outer radius of the teeth, m.
     material
         Elasticity.
     density
@@ -108,7 +120,7 @@ class Section:
     """
 
     corners: Array
-    held: tuple[bool, ...]
+    is_edge_held: tuple[bool, ...]
     teeth: tuple[float, float]
     material: Material
     density: float
@@ -121,14 +133,48 @@ class Section:
 
 
 def rectangle(inner: float, outer: float, back: float, front: float) -> Array:
-    """Corners (4, 2) anticlockwise."""
+    """Return the corners of a rectangle.
+
+    Parameters
+    ----------
+    inner : float
+        Inner radius, m.
+    outer : float
+        Outer radius, m.
+    back : float
+        Height of its back, m.
+    front : float
+        Height of its front, m.
+
+    Returns
+    -------
+    (4, 2) array
+        r and height, anticlockwise, m.
+    """
     return np.array([(inner, back), (outer, back), (outer, front), (inner, front)])
 
 
 def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
-    """Corners (n, 2) of hub, web and rim, anticlockwise.
+    """Return the corners of hub, web and rim.
 
-    Raises InvalidInput where they do not make one body: see `require_wheel`.
+    Parameters
+    ----------
+    hub : Hub
+        The hub.
+    web : Web
+        The web.
+    rim : Rim
+        The rim.
+
+    Returns
+    -------
+    (n, 2) array
+        r and height, anticlockwise, m.
+
+    Raises
+    ------
+    InvalidInput
+        If they do not make one body: see `require_wheel`.
     """
     require_wheel(hub, web, rim)
     (low_in, high_in), (low_out, high_out) = web_ends(hub, web, rim)
@@ -150,7 +196,22 @@ def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
 
 
 def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Lower and upper height of the web at the hub, and at the rim."""
+    """Return lower and upper height of the web at the hub, and at the rim.
+
+    Parameters
+    ----------
+    hub : Hub
+        The hub.
+    web : Web
+        The web.
+    rim : Rim
+        The rim.
+
+    Returns
+    -------
+    pair of pairs of float
+        m.
+    """
     middle = web.offset - web.slope * (rim.inner_radius - hub.outer_radius)
     at_hub = (middle - 0.5 * web.hub_thickness, middle + 0.5 * web.hub_thickness)
     at_rim = (web.offset - 0.5 * web.rim_thickness, web.offset + 0.5 * web.rim_thickness)
@@ -158,7 +219,17 @@ def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[f
 
 
 def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
-    """Raises InvalidInput unless the hub lies inside the rim and the web ends on both."""
+    """Raise InvalidInput unless the hub lies inside the rim and the web ends on both.
+
+    Parameters
+    ----------
+    hub : Hub
+        The hub.
+    web : Web
+        The web.
+    rim : Rim
+        The rim.
+    """
     if hub.outer_radius >= rim.inner_radius:
         limit = f"below `inner radius of the rim`, {1e3 * rim.inner_radius:g} mm"
         raise InvalidInput("outer radius of the hub", 1e3 * hub.outer_radius, limit)
@@ -169,7 +240,7 @@ def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
     for part, body, (low, high) in (("hub", hub, at_hub), ("rim", rim, at_rim)):
         if body.back >= body.front:
             raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * body.front:g} mm")
-        if low < body.back - SAME or high > body.front + SAME:
+        if low < body.back - COINCIDENCE or high > body.front + COINCIDENCE:
             limit = (
                 f"such that the web, {1e3 * low:.4g} to {1e3 * high:.4g} mm at the {part}, stays between the "
                 f"{part}'s faces, {1e3 * body.back:g} and {1e3 * body.front:g} mm"
@@ -178,23 +249,51 @@ def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
 
 
 def distinct(corners: Array) -> Array:
-    """Corners without those that repeat the one before."""
-    apart = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1) > SAME
+    """Remove the corners that repeat the one before.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of a polygon, m.
+
+    Returns
+    -------
+    (k, 2) array
+        m.
+    """
+    apart = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1) > COINCIDENCE
     return corners[apart]
 
 
 def anticlockwise(corners: Array) -> Array:
-    """The same polygon in the sense in which r turns towards the height; it begins at the same corner."""
+    """Return a polygon in the sense in which r turns towards the height; it begins at the same corner.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of the polygon, m.
+
+    Returns
+    -------
+    (n, 2) array
+        m.
+    """
     return corners if _area(corners) > 0.0 else np.roll(corners[::-1], 1, axis=0)
 
 
 def _area(corners: Array) -> float:
-    following = np.roll(corners, -1, axis=0)
-    return float(0.5 * np.sum(corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]))
+    next_corners = np.roll(corners, -1, axis=0)
+    return float(0.5 * np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0]))
 
 
 def require_simple(corners: Array) -> None:
-    """Raises InvalidInput for a polygon that crosses or touches itself, or has no area."""
+    """Raise InvalidInput for a polygon that crosses or touches itself, or has no area.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of the polygon, m.
+    """
     count = len(corners)
     if count < 3:
         raise InvalidInput("corners of the section", count, "three points or more")
@@ -202,25 +301,38 @@ def require_simple(corners: Array) -> None:
     for i, j in combinations(range(count), 2):
         if (j - i) % count == 1 or (i - j) % count == 1:
             continue
-        if distance_between(ends[i], ends[j]) <= SAME:
-            allowed = f"a line that does not cross itself; edges {i + 1} and {j + 1} meet"
-            raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), allowed)
-    if abs(_area(corners)) < SAME**2 or _folds(ends):
-        allowed = "a line that does not fold back on itself"
-        raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), allowed)
+        if distance_between(ends[i], ends[j]) <= COINCIDENCE:
+            requirement = f"a line that does not cross itself; edges {i + 1} and {j + 1} meet"
+            raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), requirement)
+    if abs(_area(corners)) < COINCIDENCE**2 or _folds(ends):
+        requirement = "a line that does not fold back on itself"
+        raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), requirement)
 
 
 def _folds(ends: Array) -> bool:
     """Whether two edges after one another lie on one another."""
     ways = ends[:, 1] - ends[:, 0]
-    following = np.roll(ways, -1, axis=0)
-    cross = ways[:, 0] * following[:, 1] - ways[:, 1] * following[:, 0]
-    lengths = np.linalg.norm(ways, axis=1) * np.linalg.norm(following, axis=1)
-    return bool(((np.abs(cross) <= 1e-9 * lengths) & ((ways * following).sum(axis=1) < 0.0)).any())
+    next_edges = np.roll(ways, -1, axis=0)
+    cross = ways[:, 0] * next_edges[:, 1] - ways[:, 1] * next_edges[:, 0]
+    lengths = np.linalg.norm(ways, axis=1) * np.linalg.norm(next_edges, axis=1)
+    return bool(((np.abs(cross) <= 1e-9 * lengths) & ((ways * next_edges).sum(axis=1) < 0.0)).any())
 
 
 def distance_between(first: Array, second: Array) -> float:
-    """Smallest distance of two straight edges (2, 2); 0 where they cross."""
+    """Return the smallest distance of two straight edges.
+
+    Parameters
+    ----------
+    first : (2, 2) array
+        Ends of the first edge, m.
+    second : (2, 2) array
+        Ends of the second edge, m.
+
+    Returns
+    -------
+    float
+        m; 0 where they cross.
+    """
     a, b = first[1] - first[0], second[1] - second[0]
     offset, cross = second[0] - first[0], a[0] * b[1] - a[1] * b[0]
     if cross != 0.0:
@@ -239,8 +351,18 @@ def _from_edge(point: Array, edge: Array) -> float:
 
 
 def thinnest(corners: Array) -> float:
-    """Smallest distance (m) through the material between two edges of an anticlockwise polygon that face
-    away from each other: the thinnest wall of the section.
+    """Return the smallest distance through the material between two edges that face away from each other: the
+    thinnest wall of the section.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of an anticlockwise polygon, m.
+
+    Returns
+    -------
+    float
+        m.
     """
     ends = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
     ways = ends[:, 1] - ends[:, 0]
@@ -256,16 +378,28 @@ def thinnest(corners: Array) -> float:
 
 
 def mass_properties(corners: Array, density: float) -> tuple[float, float, float, float]:
-    """Mass (kg), moments of inertia (kg m2) about the axis and about a diameter at height 0, and the static
-    moment, mass times the height of its centre (kg m), of a full turn.
+    """Return mass, moments of inertia and static moment of a full turn of a polygon.
 
     Exact: each edge makes a triangle with the origin, over which a form of degree d is 1 / (d + 2) of its
     integral along the edge times twice the area.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of an anticlockwise polygon, m.
+    density : float
+        kg/m3.
+
+    Returns
+    -------
+    tuple of four floats
+        Mass (kg), moments of inertia (kg m2) about the axis and about a diameter at height 0, and the static
+        moment, mass times the height of its centre (kg m).
     """
     first, last = corners, np.roll(corners, -1, axis=0)
     double = first[:, 0] * last[:, 1] - first[:, 1] * last[:, 0]
-    places = 0.5 * (GAUSS[0] + 1.0)[:, None, None]
-    r, height = np.moveaxis(first + places * (last - first), -1, 0)
+    points = 0.5 * (GAUSS[0] + 1.0)[:, None, None]
+    r, height = np.moveaxis(first + points * (last - first), -1, 0)
 
     def integral(values: Array, degree: int) -> float:
         return float(double @ (0.5 * GAUSS[1] @ values)) / (degree + 2)
@@ -277,19 +411,43 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
 
 
 def section_properties(section: Section) -> tuple[float, float, float, float]:
-    """Mass, moments of inertia and static moment as `mass_properties`, teeth included."""
-    own = np.array(mass_properties(section.corners, section.density))
+    """Return mass, moments of inertia and static moment as `mass_properties`, teeth included.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+
+    Returns
+    -------
+    tuple of four floats
+        kg, kg m2, kg m2 and kg m.
+    """
+    properties = np.array(mass_properties(section.corners, section.density))
     if section.layer is not None:
         layer = section.layer
-        own += mass_properties(layer.corners, layer.density * section.density)
+        properties += mass_properties(layer.corners, layer.density * section.density)
         area = np.pi * (layer.outer_radius**2 - layer.inner_radius**2)
-        moved = area * layer.depth**2 * (layer.back + layer.front) / 6.0
-        own[2] -= layer.taper * layer.density * section.density * moved
-        own[3] -= layer.taper * layer.density * section.density * area * layer.depth**2 / 6.0
-    return float(own[0]), float(own[1]), float(own[2]), float(own[3])
+        volume_moment = area * layer.depth**2 * (layer.back + layer.front) / 6.0
+        properties[2] -= layer.taper * layer.density * section.density * volume_moment
+        properties[3] -= layer.taper * layer.density * section.density * area * layer.depth**2 / 6.0
+    return float(properties[0]), float(properties[1]), float(properties[2]), float(properties[3])
 
 
 def inertia_about(section: Section, height: float) -> float:
-    """Moment of inertia (kg m2) about a diameter at a height (m)."""
+    """Return the moment of inertia about a diameter at a height.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    height : float
+        Height, m.
+
+    Returns
+    -------
+    float
+        kg m2.
+    """
     mass, _, across, moment = section_properties(section)
     return across - 2.0 * height * moment + mass * height**2

@@ -19,9 +19,10 @@ TURN = np.radians(7.5)
 """Angle by which the edges of a curve may turn from one to the next."""
 EQUAL = 1e-6
 """Distance (mm) below which two points are one."""
-ALIKE = 2e-5
+MAX_DIFFERENCE = 2e-5
 """Relative difference of areas, volumes and centres below which a solid is one of revolution: OpenCASCADE
-integrates the area inside a circle to 6e-6."""
+integrates the area inside a circle to 6e-6.
+"""
 CUTS = (0.7, 2.9)
 """Angles (rad) about the axis at which a solid is cut."""
 SMALLEST, LARGEST = 1.0, 1e4
@@ -37,18 +38,32 @@ class StepFault(Exception):
 
 
 def read_section(path: str | Path) -> list[tuple[float, float]]:
-    """Return the corners (r, z) in mm of the body in a STEP file, anticlockwise from the innermost one.
+    """Read the section of the body in a STEP file.
 
     The axis is that of z through the origin. A half section may lie in any half plane through it: r is the
-    distance from the axis. The file names its own unit. Curves become straight edges within CHORD. Raises
-    StepFault for anything but one solid of revolution or one face in such a half plane, with a bore.
+    distance from the axis. The file names its own unit. Curves become straight edges within CHORD.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    list of tuple of float
+        Corners (r, z) in mm, anticlockwise from the innermost one.
+
+    Raises
+    ------
+    StepFault
+        For anything but one solid of revolution or one face in such a half plane, with a bore.
     """
     _require_file(Path(path))
     with gmsh_session("section"):
         gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
         dimension, tag = _read_shape(path)
         points = _outline(tag) if dimension == 2 else _cut(tag)
-    return [(float(r), float(z)) for r, z in _ordered(points).round(DECIMALS)]
+    return [(float(r), float(z)) for r, z in _order_corners(points).round(DECIMALS)]
 
 
 def _require_file(path: Path) -> None:
@@ -63,18 +78,18 @@ def _require_file(path: Path) -> None:
 
 
 def _read_shape(path: str | Path) -> tuple[int, int]:
-    """Dimension and tag of the only solid or face of the file."""
+    """Return dimension and tag of the only solid or face of the file."""
     try:
         shapes = gmsh.model.occ.importShapes(str(path), format="step")
     except Exception as error:  # the only class that gmsh raises
         raise StepFault(f"gmsh cannot read it ({' '.join(str(error).split())[:100]})") from None
     gmsh.model.occ.synchronize()
     if len(shapes) != 1 or shapes[0][0] not in (2, 3):
-        raise StepFault(f"it holds {_counted(shapes)}")
+        raise StepFault(f"it holds {_count_shapes(shapes)}")
     return shapes[0]
 
 
-def _counted(shapes: list[tuple[int, int]]) -> str:
+def _count_shapes(shapes: list[tuple[int, int]]) -> str:
     dimensions = [dimension for dimension, _ in shapes]
     names = {3: "solids", 2: "faces without a solid", 1: "curves", 0: "points"}
     counts = [f"{dimensions.count(key)} {name}" for key, name in names.items() if key in dimensions]
@@ -103,29 +118,31 @@ def _cut(solid: int) -> Array:
 
 
 def _require_revolution(solid: int, faces: list[int]) -> None:
-    """Both cuts are alike, the centre of mass is on the axis, and area times its way round is the volume."""
+    """Raise StepFault unless both cuts are alike, the centre of mass is on the axis, and area times its way
+    round is the volume.
+    """
     occ = gmsh.model.occ
     cuts = []
     for face in faces:
         x, y, z = occ.getCenterOfMass(2, face)
         cuts.append((occ.getMass(2, face), float(np.hypot(x, y)), z))
-    (area, radius, height), other = cuts
-    apart = np.hypot(other[1] - radius, other[2] - height)
-    if abs(other[0] - area) > ALIKE * area or apart > ALIKE * radius:
+    (area, radius, height), second_cut = cuts
+    apart = np.hypot(second_cut[1] - radius, second_cut[2] - height)
+    if abs(second_cut[0] - area) > MAX_DIFFERENCE * area or apart > MAX_DIFFERENCE * radius:
         raise StepFault("its body is not one of revolution about the z axis: two cuts differ")
     beside = float(np.hypot(*occ.getCenterOfMass(3, solid)[:2]))
-    if beside > ALIKE * radius:
-        where = f"its centre of mass lies {beside:.3g} mm beside the z axis"
-        raise StepFault(f"its body is not one of revolution: {where}")
+    if beside > MAX_DIFFERENCE * radius:
+        distance_text = f"its centre of mass lies {beside:.3g} mm beside the z axis"
+        raise StepFault(f"its body is not one of revolution: {distance_text}")
     volume, around = occ.getMass(3, solid), 2.0 * np.pi * area * radius
-    if abs(volume - around) > ALIKE * around:
-        turned = f"that of its section turned about the z axis {around:.7g} mm3"
-        raise StepFault(f"its body is not one of revolution: its volume is {volume:.7g} mm3, {turned}")
+    if abs(volume - around) > MAX_DIFFERENCE * around:
+        volume_text = f"that of its section turned about the z axis {around:.7g} mm3"
+        raise StepFault(f"its body is not one of revolution: its volume is {volume:.7g} mm3, {volume_text}")
 
 
 def _outline(face: int) -> Array:
     """Corners (n, 2) of the closed line round a face through the axis, in mm."""
-    curves = {tag: _sampled(tag) for _, tag in gmsh.model.getBoundary([(2, face)], oriented=False)}
+    curves = {tag: _sample_curve(tag) for _, tag in gmsh.model.getBoundary([(2, face)], oriented=False)}
     first = next(iter(curves))
     line = [curves.pop(first)]
     while curves:
@@ -133,8 +150,8 @@ def _outline(face: int) -> Array:
         tag = min(near, key=lambda tag: float(near[tag].min()))
         if near[tag].min() > EQUAL:
             raise StepFault("its section has a hole or an open line")
-        following = curves.pop(tag)
-        line.append(following if near[tag][0] <= near[tag][1] else following[::-1])
+        next_part = curves.pop(tag)
+        line.append(next_part if near[tag][0] <= near[tag][1] else next_part[::-1])
     if np.linalg.norm(line[-1][-1] - line[0][0]) > EQUAL:
         raise StepFault("its section has a hole or an open line")
     points = np.concatenate([part[:-1] for part in line])
@@ -159,13 +176,13 @@ def _require_size(radius: float) -> None:
         raise StepFault(f"its outer radius is {radius:.4g} mm by the unit of the file; {bounds}")
 
 
-def _sampled(curve: int) -> Array:
+def _sample_curve(curve: int) -> Array:
     """Points (n, 3) of a curve from end to end, close enough for straight edges."""
     (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
 
     def points(count: int) -> Array:
-        places = np.linspace(low, high, count + 1)
-        return np.reshape(gmsh.model.getValue(1, curve, places), (-1, 3))
+        parameters = np.linspace(low, high, count + 1)
+        return np.reshape(gmsh.model.getValue(1, curve, parameters), (-1, 3))
 
     if gmsh.model.getType(1, curve) == "Line":
         return points(1)
@@ -181,20 +198,22 @@ def _close(fine: Array) -> bool:
     ways = np.diff(corners, axis=0)
     lengths = np.linalg.norm(ways, axis=1)
     offsets = np.stack([fine[part::4] - corners[:-1] for part in (1, 2, 3)], axis=1)
-    missed = np.linalg.norm(np.cross(offsets, ways[:, None]), axis=2) / lengths[:, None]
+    deviations = np.linalg.norm(np.cross(offsets, ways[:, None]), axis=2) / lengths[:, None]
     turns = [np.linalg.norm(np.cross(a, b)) for a, b in pairwise(ways / lengths[:, None])]
-    return bool(missed.max() <= CHORD and max(turns) <= np.sin(TURN))
+    return bool(deviations.max() <= CHORD and max(turns) <= np.sin(TURN))
 
 
-def _ordered(points: Array) -> Array:
-    """The outline without corners on a straight line, anticlockwise from the one of smallest r, then z."""
+def _order_corners(points: Array) -> Array:
+    """Return the outline without corners on a straight line, anticlockwise from the one of smallest r, then
+    z.
+    """
     before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
     corners = points[np.abs(cross) > 1e-9 * lengths]
     r, z = corners.T
-    following = np.roll(corners, -1, axis=0)
-    if np.sum(r * following[:, 1] - z * following[:, 0]) < 0.0:
+    next_corners = np.roll(corners, -1, axis=0)
+    if np.sum(r * next_corners[:, 1] - z * next_corners[:, 0]) < 0.0:
         corners = corners[::-1]
     start = np.lexsort(corners.round(6).T[::-1])[0]
     return np.roll(corners, -start, axis=0)

@@ -14,9 +14,11 @@ from facegear.gear_body.patch import Patch
 from facegear.gear_body.section import section_properties
 
 RPM = 30.0 / np.pi
+"""rpm for 1 rad/s."""
 DRAWN_MODES = 2
 """Modes of each order whose shapes are stored."""
 DRAWN_ORDERS = 7
+"""Number of orders, from 0, whose shapes are stored."""
 COUPLINGS = ("hub_axial_sqrt_kg", "hub_spin_sqrt_kg_m", "hub_sideways_sqrt_kg", "hub_tilt_sqrt_kg_m")
 """Columns of Q with the hub's motion along the axis, round it, sideways, and tilting about a diameter at
 height 0."""
@@ -25,15 +27,33 @@ height 0."""
 def body_table(
     gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array
 ) -> pd.DataFrame:
-    """One row: mass (kg) and inertia (kg m2) of the section, coordinates that its modes make, own compliance
-    along the line of action (m/N), the part of it that the modes hold, compliances that they leave out (m/N,
-    magnitudes): between the drive and the back flank of one mesh, and the largest one between flanks of two
-    meshes at angles (n,) rad, NaN for a single mesh; and the largest relative change of a frequency from a
-    coarser mesh.
+    """Return mass, inertia and compliance of a body.
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+    pressure_angle : float
+        Pressure angle, rad.
+    angles : (n,) array
+        Angles of the meshes, rad.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row: mass (kg) and inertia (kg m2) of the section, number of coordinates of its modes, own
+        compliance along the line of action (m/N), the fraction of it that the modes hold, compliances that
+        they leave out (m/N, magnitudes): between the drive and the back flank of one mesh, and the largest
+        one between flanks of two meshes, NaN for a single mesh; and the largest relative change of a
+        frequency from a coarser mesh.
     """
     mass, polar, diametral, _ = section_properties(body.section)
     drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
-    missing = body.static(patch) - body.modal(patch)
+    residual = body.static(patch) - body.modal(patch)
     whole = influence(body.static(patch), 0.0, drive, drive)
     changes = np.concatenate([*body.changes, np.zeros(1)])
     waves = sum(modes.frequencies.size * (2 if modes.order else 1) for modes in body.orders)
@@ -47,21 +67,23 @@ def body_table(
             "coordinates": [waves],
             "own_compliance_m_per_n": [whole],
             "modal_fraction": [influence(body.modal(patch), 0.0, drive, drive) / whole],
-            "left_out_between_flanks_m_per_n": [abs(influence(missing, 0.0, drive, back))],
-            "left_out_between_meshes_m_per_n": [_left_out(missing, drive, back, angles)],
+            "left_out_between_flanks_m_per_n": [abs(influence(residual, 0.0, drive, back))],
+            "left_out_between_meshes_m_per_n": [_left_out(residual, drive, back, angles)],
             "frequency_change": [float(changes.max())],
         }
     )
 
 
-def _left_out(missing: Array, drive: Array, back: Array, angles: Array) -> float:
+def _left_out(residual: Array, drive: Array, back: Array, angles: Array) -> float:
     """Return the largest influence (m/N) between flanks of two meshes by compliances (orders, 2, 2).
 
     drive, back (2,): directions of a force on either flank; angles (n,) of the meshes, rad.
     """
     apart = (angles[:, None] - angles)[~np.eye(angles.size, dtype=bool)]
-    pairs = [(angle, other) for angle in apart.tolist() for other in (drive, back)]
-    return max((abs(influence(missing, angle, drive, other)) for angle, other in pairs), default=np.nan)
+    pairs = [(angle, direction) for angle in apart.tolist() for direction in (drive, back)]
+    return max(
+        (abs(influence(residual, angle, drive, direction)) for angle, direction in pairs), default=np.nan
+    )
 
 
 def mode_table(
@@ -72,16 +94,36 @@ def mode_table(
     ratio: float,
     damping: tuple[float, float] = (0.0, 0.0),
 ) -> pd.DataFrame:
-    """One row a mode, hub held: frequencies in Hz at rest and of waves in space at the body's speed (rad/s),
-    and speeds of the pinions (rpm, `ratio` times the body's) at which the mesh frequency meets each wave.
+    """Return frequencies, coefficients and resonant speeds of all modes, hub held.
 
     Coefficients of a mode of unit modal mass are c (gyroscopic_factor), B (stiffening_factor), the damping
-    ratio and the four Q (COUPLINGS). damping: ratio of every mode, and beta (s) of D = beta K.
+    ratio and the four Q (COUPLINGS).
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    speed : float
+        Speed of the body, rad/s.
+    teeth : int
+        Number of its teeth.
+    ratio : float
+        Speed of the pinions over that of the body, a ratio.
+    damping : tuple[float, float]
+        Damping ratio of every mode, and beta (s) of D = beta K.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a mode: frequencies in Hz at rest and of waves in space at the body's speed, and speeds of the
+        pinions (rpm) at which the mesh frequency meets each wave.
     """
     parts = []
     for modes, changes in zip(body.orders, body.changes, strict=True):
         forward, backward = wave_frequencies(modes, speed)
-        met = [ratio * RPM * speeds for speeds in resonant_speeds(modes, teeth, 1)]
+        resonances_rpm = [ratio * RPM * speeds for speeds in resonant_speeds(modes, teeth, 1)]
         parts.append(
             pd.DataFrame(
                 {
@@ -97,8 +139,8 @@ def mode_table(
                     "speed_rpm": ratio * RPM * speed,
                     "forward_hz": forward,
                     "backward_hz": backward,
-                    "forward_met_rpm": met[0],
-                    "backward_met_rpm": met[1],
+                    "forward_met_rpm": resonances_rpm[0],
+                    "backward_met_rpm": resonances_rpm[1],
                     "frequency_change": changes,
                 }
             )
@@ -107,10 +149,20 @@ def mode_table(
 
 
 def hub_couplings(modes: OrderModes) -> dict[str, Array]:
-    """Return Q of every mode (m,) by COUPLINGS: mass between the mode and a motion of the hub.
+    """Return Q of every mode: mass between the mode and a motion of the hub.
 
     Q = int rho X . R over the body, X the shape for unit modal mass and R the body moved as a rigid whole by
     1 m or 1 rad. Modes of two nodal diameters and more have none.
+
+    Parameters
+    ----------
+    modes : OrderModes
+        The m modes of one order.
+
+    Returns
+    -------
+    dict of str to (m,) array
+        By COUPLINGS, in the units of their names (sqrt(kg), m).
     """
     couplings = np.zeros((4, modes.frequencies.size))
     if modes.order == 0:
@@ -123,10 +175,28 @@ def hub_couplings(modes: OrderModes) -> dict[str, Array]:
 def crossing_table(
     gear: str, body: SolvedBody, teeth: int, ratio: float, last_rpm: float, angles: Array
 ) -> pd.DataFrame:
-    """One row a crossing of a mesh harmonic with a wave, hub held, up to the pinion speed `last_rpm`.
+    """Return the crossings of mesh harmonics with waves, hub held, up to a pinion speed.
 
-    phase_factor: how many times the force of one mesh drives the wave where all meshes of the gear, at angles
-    (n,), carry the same force; their number where all add up, 0 where they cancel.
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    teeth : int
+        Number of its teeth.
+    ratio : float
+        Speed of the pinions over that of the body, a ratio.
+    last_rpm : float
+        Highest speed of the pinions, rpm.
+    angles : (n,) array
+        Angles of the meshes, rad.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a crossing. phase_factor: how many times the force of one mesh drives the wave where all
+        meshes of the gear carry the same force; their number where all add up, 0 where they cancel.
     """
     rows = []
     for modes in body.orders:
@@ -134,8 +204,8 @@ def crossing_table(
         for harmonic in HARMONICS:
             speeds = resonant_speeds(modes, teeth, harmonic)
             factors = phase_factors(modes.order, harmonic, teeth, angles)
-            for wave, met, factor in zip(waves, speeds, factors, strict=False):
-                for number, speed in enumerate(met):
+            for wave, wave_speeds, factor in zip(waves, speeds, factors, strict=False):
+                for number, speed in enumerate(wave_speeds):
                     frequency = harmonic * teeth * speed / (2.0 * np.pi)
                     rpm = ratio * RPM * speed
                     if rpm <= last_rpm:
@@ -145,7 +215,22 @@ def crossing_table(
 
 
 def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
-    """One row an order: motions along the axis and round it below a mesh by unit forces, m/N."""
+    """Return the motions along the axis and round it below a mesh by unit forces.
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row an order, m/N.
+    """
     static = body.static(patch)
     return pd.DataFrame(
         {
@@ -161,29 +246,61 @@ def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
 def influence_table(
     gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, sign: float, meshes: dict[str, float]
 ) -> pd.DataFrame:
-    """One row for two flanks: motion of the first against its force by a force on the second, m/N, hub held.
+    """Return the motion of one flank against its force by a force on another, hub held.
 
-    meshes: angle (rad) of each pinion as the upper gear turns; sign: 1 for the upper gear, -1 for the lower.
+    Parameters
+    ----------
+    gear : str
+        Name of the gear.
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+    pressure_angle : float
+        Pressure angle, rad.
+    sign : float
+        1 for the upper gear, -1 for the lower, dimensionless.
+    meshes : dict[str, float]
+        Angle of each pinion as the upper gear turns, rad, by its name.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for two flanks, m/N.
     """
     static = body.static(patch)
     flanks = {name: flank_direction(pressure_angle, name == "back") for name in ("drive", "back")}
     rows = []
     for first, second in combinations_with_replacement(meshes, 2):
         angle = sign * (meshes[first] - meshes[second])
-        for own, other in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
-            value = influence(static, angle, flanks[own], flanks[other])
-            rows.append((gear, first, own, second, other, value))
+        for first_flank, second_flank in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
+            value = influence(static, angle, flanks[first_flank], flanks[second_flank])
+            rows.append((gear, first, first_flank, second, second_flank, value))
     columns = ["gear", "first", "first_flank", "second", "second_flank", "compliance_m_per_n"]
     return pd.DataFrame(rows, columns=columns)
 
 
 def shape_arrays(gear: str, body: SolvedBody) -> dict[str, Array]:
-    """Nodes, quadrilaterals and displacements (U, V, W) at the nodes of the first modes, for pictures."""
-    places = body.elements.basis.dofs.nodal_dofs[0]
+    """Return nodes, quadrilaterals and displacements (U, V, W) at the nodes of the first modes, for pictures.
+
+    Parameters
+    ----------
+    gear : str
+        Name of the gear, with which the names of the arrays begin.
+    body : SolvedBody
+        The solved body.
+
+    Returns
+    -------
+    dict of str to array
+        nodes (n, 2) in m, quads (e, 4) as an index of nodes, shapes (k, n, 3) for unit modal mass, labels (k,
+        2): order and number of the mode.
+    """
+    node_shapes = body.elements.basis.dofs.nodal_dofs[0]
     shapes, labels = [], []
     for modes in body.orders[:DRAWN_ORDERS]:
         for number in range(min(DRAWN_MODES, modes.frequencies.size)):
-            shapes.append(modes.shapes[:, number].reshape(-1, 3)[places])
+            shapes.append(modes.shapes[:, number].reshape(-1, 3)[node_shapes])
             labels.append((modes.order, number + 1))
     return {
         f"{gear}_nodes": body.mesh.nodes,

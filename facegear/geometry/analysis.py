@@ -11,11 +11,11 @@ from facegear.geometry.clearance import Gap, smallest_gaps
 from facegear.geometry.curvature import relative_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.limits import RadiusLimits
-from facegear.geometry.placement import conjugate_angle, mirrored, pinion_angle
+from facegear.geometry.placement import conjugate_angle, mirror_design, pinion_angle
 from facegear.geometry.unloaded import UnloadedContact, unloaded_contact
 from facegear.geometry.validate import check
 
-TOUCHING = {("flank", "flank"), ("flank", "tip edge"), ("tip land", "flank")}
+REGULAR_CONTACTS = {("flank", "flank"), ("flank", "tip edge"), ("tip land", "flank")}
 """Pairs of parts (pinion, gear) that touch in regular contact: flanks, and flanks with tip edges."""
 
 
@@ -38,20 +38,38 @@ class PairAnalysis:
 
 
 def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) -> PairAnalysis:
-    """Analyse the pair at `positions` even angles of one pitch, centred on zero.
+    """Analyse the pair at even angles of one pitch, centred on zero.
 
-    A part that reaches deeper than `tolerance` (m) into the other gear counts as interference.
-    Raises GeometryError for a design that cannot exist, NotConverged where contact is not found.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    positions : int
+        Number of angles.
+    tolerance : float
+        Depth above which a part that reaches into the other gear counts as interference, m.
+
+    Returns
+    -------
+    PairAnalysis
+        All geometry, in m and rad.
+
+    Raises
+    ------
+    GeometryError
+        For a design that cannot exist.
+    NotConverged
+        Where contact is not found.
     """
     limits = check(design)
     phi1 = pinion_angle(design, (np.arange(positions) + 0.5) / positions)
     drive = unloaded_contact(design, phi1)
-    back = drive if design == mirrored(design) else unloaded_contact(mirrored(design), phi1)
+    back = drive if design == mirror_design(design) else unloaded_contact(mirror_design(design), phi1)
     # the back side of phi1 is the mirrored pair at -phi1: positions are symmetric, so it is the reversed list
     backlash = (-back.phi2[::-1] - drive.phi2) * design.gear_base_radius
     gaps = _refined_gaps(design, drive)
     deepest = min(gaps.values(), key=lambda gap: gap.gap)
-    others = [gap for parts, gap in gaps.items() if parts not in TOUCHING]
+    irregular_gaps = [gap for parts, gap in gaps.items() if parts not in REGULAR_CONTACTS]
     interference = deepest if deepest.gap < -tolerance else None
     return PairAnalysis(
         limits=limits,
@@ -61,15 +79,15 @@ def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) ->
         backlash=backlash,
         gaps=gaps,
         interference=interference,
-        smallest=min(others, key=lambda gap: gap.gap),
+        smallest=min(irregular_gaps, key=lambda gap: gap.gap),
     )
 
 
 def _refined_gaps(design: PairDesign, drive: UnloadedContact) -> dict[tuple[str, str], Gap]:
     """Smallest gaps at the positions of `drive` and at finer ones around the most critical of them."""
     gaps = smallest_gaps(design, drive.phi1, drive.phi2)
-    others = [gap for parts, gap in gaps.items() if parts not in TOUCHING]
-    worst = min(others, key=lambda gap: gap.gap).phi1
+    irregular_gaps = [gap for parts, gap in gaps.items() if parts not in REGULAR_CONTACTS]
+    worst = min(irregular_gaps, key=lambda gap: gap.gap).phi1
     step = drive.phi1[1] - drive.phi1[0]
     phi1 = worst + np.linspace(-step, step, 17)
     error = np.interp(phi1, drive.phi1, drive.transmission_error, period=2 * pi / design.pinion.teeth)
@@ -79,10 +97,21 @@ def _refined_gaps(design: PairDesign, drive: UnloadedContact) -> dict[tuple[str,
 
 
 def section_contact_ratio(design: PairDesign) -> float:
-    """Unloaded contact ratio of the nominal assembly in the section of the pitch point path.
+    """Compute the unloaded contact ratio of the nominal assembly in the section of the pitch point path.
 
-    From the gear's tip (or where the pinion's involute begins) to the pinion's tip (or where the gear's flank
-    ends), over the base pitch; the section at m N2 / 2 where the local pressure angle is the nominal one.
+    From the gear's tip (or where the pinion's involute begins) to the pinion's tip (or where the gear's
+    flank ends), over the base pitch; the section at m N2 / 2 where the local pressure angle is the nominal
+    one.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        Contact ratio, dimensionless.
     """
     angle, base = design.pressure_angle, design.pinion_base_radius
     tip = min(
@@ -96,9 +125,17 @@ def section_contact_ratio(design: PairDesign) -> float:
 
 
 def path_curvatures(design: PairDesign) -> tuple[Array, Array, Array, Array]:
-    """33 points along the nominal path: pinion roll (rad), relative curvatures (1/m), slope (rad).
+    """Compute relative curvatures at 33 points along the nominal path, see `relative_curvatures`.
 
-    Larger and smaller curvature and the slope of the contact line as `relative_curvatures` gives them.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple of (33,) arrays
+        Pinion roll, rad, larger and smaller curvature, 1/m, and slope of the contact line, rad.
     """
     angle, base = design.pressure_angle, design.pinion_base_radius
     rolling = design.gear_tip_plane + design.pinion_pitch_radius

@@ -6,28 +6,44 @@ import numpy as np
 
 from facegear.geometry.conjugate import exact_contact
 from facegear.geometry.design import AssemblyErrors, PairDesign
-from facegear.geometry.placement import mirrored, pinion_angle
+from facegear.geometry.placement import mirror_design, pinion_angle
 
 POSITIONS = 4
 
 
 @lru_cache(maxsize=256)
 def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float:
-    """Backlash (m) along the line of action, smallest of a few positions of a pitch; negative where it jams.
+    """Compute the backlash along the line of action, smallest of a few positions of a pitch.
 
-    beside: positions at which `unloaded_motion` of the pair will be asked for, too: one search finds both.
-    Without assembly errors and deviations it is the thinning of the pinion's teeth. Raises NotConverged where
-    the flanks do not face each other.
+    Without assembly errors and deviations it is the thinning of the pinion's teeth.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    beside : tuple[float, ...]
+        Positions at which `unloaded_motion` of the pair will be needed, too, in pitches: one search finds
+        both.
+
+    Returns
+    -------
+    float
+        m; negative where it jams.
+
+    Raises
+    ------
+    NotConverged
+        Where the flanks do not face each other.
     """
-    if design.assembly == AssemblyErrors() and not (design.deviates or design.exchanged.deviates):
+    if design.assembly == AssemblyErrors() and not (design.deviates or design.with_swapped_flanks.deviates):
         return design.pinion.thinning
-    drive, back = exact_contact(design), exact_contact(mirrored(design))
+    drive, back = exact_contact(design), exact_contact(mirror_design(design))
     if drive is not None and back is not None:
         return -back.transmission_error - drive.transmission_error
-    return _searched(design, beside)
+    return _search_backlash(design, beside)
 
 
-def _searched(design: PairDesign, beside: tuple[float, ...]) -> float:
+def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
     from facegear.geometry.unloaded import unloaded_motion
 
@@ -36,5 +52,5 @@ def _searched(design: PairDesign, beside: tuple[float, ...]) -> float:
     if beside:
         unloaded_motion(design, pinion_angle(design, np.union1d(positions, beside)))
     drive, _ = unloaded_motion(design, phi1)
-    back = drive if design == mirrored(design) else unloaded_motion(mirrored(design), phi1)[0]
+    back = drive if design == mirror_design(design) else unloaded_motion(mirror_design(design), phi1)[0]
     return float(((-back[::-1] - drive) * design.gear_base_radius).min())

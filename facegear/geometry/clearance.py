@@ -15,7 +15,7 @@ from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
 from facegear.geometry.gear_modifications import fillet_as_made, flank_as_made
 from facegear.geometry.outline import PINION_PARTS, pinion_outline, signed_distance
-from facegear.geometry.placement import mirrored, to_pinion_section
+from facegear.geometry.placement import mirror_design, to_pinion_section
 
 TOOTH_NUMBERS = np.arange(-2.0, 3.0)
 
@@ -38,22 +38,36 @@ class Gap:
 
 
 def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[tuple[str, str], Gap]:
-    """Smallest gap of each pair of parts (pinion, gear) over the placements phi1, phi2 (rad, shape (p,)).
+    """Compute the smallest gap of each pair of parts over the placements, on both sides of the teeth.
 
-    Both sides of the teeth are looked at. Pairs of parts that never come within half a module are left out.
+    Pairs of parts that never come within half a module are left out.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : (p,) array_like
+        Pinion angle, rad.
+    phi2 : (p,) array_like
+        Gear angle, rad.
+
+    Returns
+    -------
+    dict[tuple[str, str], Gap]
+        Gap by (pinion part, gear part).
     """
     phi1, phi2 = np.atleast_1d(np.asarray(phi1, float)), np.atleast_1d(np.asarray(phi2, float))
     gaps: dict[tuple[str, str], Gap] = {}
-    for side, pair, sign in (("drive", design, 1.0), ("back", mirrored(design), -1.0)):
+    for side, pair, sign in (("drive", design, 1.0), ("back", mirror_design(design), -1.0)):
         turns = sign * phi1, sign * phi2
         outline = pinion_outline(pair)
         for gear_part, points in gear_points(pair).items():
             section = to_pinion_section(pair, *turns, TOOTH_NUMBERS).points(points)
             distance, nearest = signed_distance(pair, outline, section, 0.5 * design.module)
             for number, pinion_part in enumerate(PINION_PARTS):
-                here = np.where(outline.part[nearest] == number, distance, np.inf)
-                row, tooth, point = at = np.unravel_index(np.argmin(here), here.shape)
-                key, gap = (pinion_part, gear_part), float(here[at])
+                part_distance = np.where(outline.part[nearest] == number, distance, np.inf)
+                row, tooth, point = at = np.unravel_index(np.argmin(part_distance), part_distance.shape)
+                key, gap = (pinion_part, gear_part), float(part_distance[at])
                 if gap < (gaps[key].gap if key in gaps else np.inf):
                     spot = (points[[point]], turns[0][[row]], turns[1][[row]], TOOTH_NUMBERS[[tooth]])
                     lever = _lever(pair, spot, outline.normals[nearest[at]])
@@ -74,7 +88,18 @@ def _lever(design: PairDesign, spot: tuple[Array, Array, Array, Array], normal: 
 
 
 def gear_points(design: PairDesign) -> dict[str, Array]:
-    """Points (n, 3) of the gear's left side in the body frame of its tooth 0."""
+    """Return points of the gear's left side in the body frame of its tooth 0.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    dict of (n, 3) arrays
+        Points by part, m.
+    """
     face = design.face_gear
     radius = np.linspace(face.inner_radius, face.outer_radius, 27)[None, :]
     top, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)

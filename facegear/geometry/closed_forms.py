@@ -16,7 +16,28 @@ Numbers = Any
 def flank_frame(
     base: float, ratio: float, space: float, lift: float, roll: Numbers, psi: Numbers
 ) -> tuple[Numbers, ...]:
-    """Point x, y, z of the flank, and its derivatives with respect to roll and to psi."""
+    """Compute the point of the flank and its derivatives.
+
+    Parameters
+    ----------
+    base : float
+        Base radius of the shaper, m.
+    ratio : float
+        Ratio m2s, dimensionless.
+    space : float
+        Half space angle of the shaper, rad.
+    lift : float
+        Distance of the axes' planes, m.
+    roll : Numbers
+        Roll angle th, rad.
+    psi : Numbers
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple
+        x, y, z (m), and their derivatives with respect to roll and to psi (m/rad).
+    """
     turn = ratio * (psi - roll - space)
     ct, st, cp, sp = np.cos(turn), np.sin(turn), np.cos(psi), np.sin(psi)
     p, q = base * (sp - roll * cp), base / (ratio * cp)
@@ -28,25 +49,57 @@ def flank_frame(
 
 
 def normal(turn: Numbers, psi: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Outward unit normal x, y, z of slope psi where the gear has turned by `turn` since it was generated."""
+    """Compute the outward unit normal.
+
+    Parameters
+    ----------
+    turn : Numbers
+        Rotation of the gear since it generated the point, rad.
+    psi : Numbers
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple
+        x, y, z, dimensionless.
+    """
     return np.cos(psi) * np.cos(turn), np.cos(psi) * np.sin(turn), np.sin(psi)
 
 
 def fillet_frame(
     centre: float, rounding: float, ratio: float, lift: float, edge_start: float, psi: Numbers, q: Numbers
 ) -> tuple[Numbers, ...]:
-    """Point x, y, z of the fillet, and its derivatives with respect to psi and to q.
+    """Compute the point of the fillet and its derivatives.
 
-    centre: distance (m) of the centre of the shaper's tip rounding from its axis; edge_start: where that
-    centre stands from the vertical at phi_s = 0; q: where it generates the point, along the pinion's axis.
-    nan where no normal of slope psi through the centre meets the instant axis at q.
+    Parameters
+    ----------
+    centre : float
+        Distance of the centre of the shaper's tip rounding from its axis, m.
+    rounding : float
+        Radius of the rounding, m.
+    ratio : float
+        Ratio m2s, dimensionless.
+    lift : float
+        Distance of the axes' planes, m.
+    edge_start : float
+        Angle of that centre from the vertical at phi_s = 0, rad.
+    psi : Numbers
+        Slope of the normal, rad.
+    q : Numbers
+        Position along the pinion's axis at which the shaper generates the point, m.
+
+    Returns
+    -------
+    tuple
+        x, y, z (m), and their derivatives with respect to psi (m/rad) and to q (dimensionless); nan where
+        no normal of slope psi through the centre meets the instant axis at q.
     """
     cp, sp = np.cos(psi), np.sin(psi)
     k = ratio * q / centre
     w = np.sqrt(1 - k * k * cp * cp)
-    both, rest = w + k * sp, 1 - k * k
-    s_chi, c_chi = -cp * rest / both, k * cp * cp + sp * w
-    chi_psi, chi_q = rest / (both * w), ratio * cp / (centre * w)
+    root_sum, rest = w + k * sp, 1 - k * k
+    s_chi, c_chi = -cp * rest / root_sum, k * cp * cp + sp * w
+    chi_psi, chi_q = rest / (root_sum * w), ratio * cp / (centre * w)
     turn = ratio * (np.arctan2(s_chi, c_chi) - edge_start)
     ct, st = np.cos(turn), np.sin(turn)
     p, z = centre * s_chi - rounding * cp, lift - centre * c_chi - rounding * sp
@@ -61,7 +114,26 @@ def fillet_frame(
 def radius_at_roll(
     base: float, ratio: float, radius: Numbers, roll: Numbers, psi: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Square of the flank's radius at roll and psi less that of `radius` (m2), and its slope by psi."""
+    """Compute the square of the flank's radius at roll and psi less that of `radius`.
+
+    Parameters
+    ----------
+    base : float
+        Base radius of the shaper, m.
+    ratio : float
+        Ratio m2s, dimensionless.
+    radius : Numbers
+        Gear radius, m.
+    roll : Numbers
+        Roll angle th, rad.
+    psi : Numbers
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple
+        Difference, m2, and its derivative by psi, m2/rad.
+    """
     p, q = base * (np.sin(psi) - roll * np.cos(psi)), base / (ratio * np.cos(psi))
     slope = 2 * p * base * (np.cos(psi) + roll * np.sin(psi)) + 2 * q * q * np.tan(psi)
     return p * p + q * q - radius * radius, slope
@@ -70,7 +142,26 @@ def radius_at_roll(
 def radius_at_height(
     base: float, ratio: float, radius: Numbers, height: Numbers, psi: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """The same at a height, taken from the lift downwards and over the base radius."""
+    """Compute the square of the flank's radius at a height and psi less that of `radius`.
+
+    Parameters
+    ----------
+    base : float
+        Base radius of the shaper, m.
+    ratio : float
+        Ratio m2s, dimensionless.
+    radius : Numbers
+        Gear radius, m.
+    height : Numbers
+        Height from the lift downwards over the base radius, dimensionless.
+    psi : Numbers
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple
+        Difference, m2, and its derivative by psi, m2/rad.
+    """
     sine = np.sin(psi)
     p, q = base * (1 - height * np.cos(psi)) / sine, base / (ratio * np.cos(psi))
     p_psi = base * (height - np.cos(psi)) / (sine * sine)
@@ -78,5 +169,18 @@ def radius_at_height(
 
 
 def roll_at_height(height: Numbers, psi: Numbers) -> Numbers:
-    """Roll angle where the flank has a height, taken as in `radius_at_height`."""
+    """Compute the roll angle where the flank has a height.
+
+    Parameters
+    ----------
+    height : Numbers
+        Height from the lift downwards over the base radius, dimensionless.
+    psi : Numbers
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    Numbers
+        Roll angle, rad.
+    """
     return (height - np.cos(psi)) / np.sin(psi)

@@ -51,20 +51,38 @@ class Closest:
 def closest(
     design: PairDesign, phi1: Array, phi2: Array, near: Closest | None = None, margin: float = np.inf
 ) -> Closest:
-    """Search the flanks of all pairs at p placements (rad), from a coarse grid or around a `near` result.
+    """Search the flanks of all pairs for the smallest separation, from a coarse grid or around a known
+    result.
 
-    Pairs whose gap, `near` or after the first grids, exceeds the smallest by more than `margin` (m) keep it.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : (p,) array
+        Pinion angle, rad.
+    phi2 : (p,) array
+        Gear angle, rad.
+    near : Closest, optional
+        Result at a similar placement; None begins with a coarse grid.
+    margin : float
+        Pairs whose gap, in `near` or after the first grids, exceeds the smallest by more than this keep
+        it, m.
+
+    Returns
+    -------
+    Closest
+        Gaps (p, 5) and their positions, in m and rad.
     """
     size, levels = _WARM, _WARM_LEVELS
     if near is None:
         near, size = _coarse(design, phi1, phi2, margin)
         size, levels = size * _SHRINK**_FIRST, _LEVELS - _FIRST
-    chosen = (near.gap <= near.gap.min(axis=1, keepdims=True) + margin).ravel()
-    pairs = _pairs(design, phi1, phi2).only(chosen)
+    is_close = (near.gap <= near.gap.min(axis=1, keepdims=True) + margin).ravel()
+    pairs = _pairs(design, phi1, phi2).only(is_close)
     parts = [part.ravel().copy() for part in (near.gap, near.roll, near.y)]
-    refined = _refined(pairs, parts[1][chosen], parts[2][chosen], size, levels)
-    for part, values in zip(parts, refined, strict=True):
-        part[chosen] = values
+    minima = _refine_minima(pairs, parts[1][is_close], parts[2][is_close], size, levels)
+    for part, values in zip(parts, minima, strict=True):
+        part[is_close] = values
     return Closest(*(part.reshape(near.roll.shape) for part in parts))
 
 
@@ -75,7 +93,18 @@ def _pairs(design: PairDesign, phi1: Array, phi2: Array) -> FlankGaps:
 
 
 def bounds(design: PairDesign) -> tuple[Array, Array]:
-    """Lower and upper ends of (roll, y) on the pinion's flank."""
+    """Return the ends of (roll, y) on the pinion's flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple of (2,) arrays
+        Lower and upper end of roll (rad) and y (m).
+    """
     half = design.pinion.width / 2
     low = np.array([pinion.junction_roll(design), design.mean_radius - half])
     return low, np.array([design.pinion_tip_roll, design.mean_radius + half])
@@ -93,25 +122,29 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tupl
     near = [part.reshape(len(phi1), len(PAIRS)) for part in (gap.min(axis=1), roll[best], y[best])]
     beside = margin + _COARSE * design.module
     walking = near[0] <= near[0].min(axis=1, keepdims=True) + beside
-    walked = _walked(pairs.only(walking.ravel()), near[1][walking], near[2][walking], size, _FIRST)
-    for part, values in zip(near, walked, strict=True):
+    minima = _walk_grids(pairs.only(walking.ravel()), near[1][walking], near[2][walking], size, _FIRST)
+    for part, values in zip(near, minima, strict=True):
         part[walking] = values
     return Closest(*near), size
 
 
-def _refined(pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int) -> tuple[Array, Array, Array]:
-    """Minima near roll and y (n,): by Newton's method where the gap is smooth, else by grids."""
+def _refine_minima(
+    pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int
+) -> tuple[Array, Array, Array]:
+    """Return minima near roll and y (n,): by Newton's method where the gap is smooth, else by grids."""
     *minimum, smooth = _smooth_minimum(pairs, roll, y)
     rest = np.flatnonzero(~smooth)
     if rest.size:
-        here = pairs.only(rest)
-        walked = _walked(here, roll[rest], y[rest], size, levels)
-        for part, values in zip(minimum, _polished(here, *walked), strict=True):
+        rough_pairs = pairs.only(rest)
+        grid_minima = _walk_grids(rough_pairs, roll[rest], y[rest], size, levels)
+        for part, values in zip(minimum, _polished(rough_pairs, *grid_minima), strict=True):
             part[rest] = values
     return minimum[0], minimum[1], minimum[2]
 
 
-def _walked(pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int) -> tuple[Array, Array, Array]:
+def _walk_grids(
+    pairs: FlankGaps, roll: Array, y: Array, size: Array, levels: int
+) -> tuple[Array, Array, Array]:
     """Walk 5 x 5 grids to the minimum, shrinking them when their middle part holds it.
 
     The grids lean along the contact line where the walk begins, as the gap is a narrow and flat valley in its
@@ -146,22 +179,24 @@ def _smooth_minimum(pairs: FlankGaps, roll: Array, y: Array) -> tuple[Array, Arr
     """
     low, high = bounds(pairs.design)
     minimum, smooth = (np.full(len(roll), np.inf), roll.copy(), y.copy()), np.zeros(len(roll), bool)
-    here, fine, bends = np.arange(len(roll)), np.zeros(len(roll), bool), np.zeros((len(roll), 2))
+    active, fine, bends = np.arange(len(roll)), np.zeros(len(roll), bool), np.zeros((len(roll), 2))
     for _ in range(_NEWTON_STEPS):
         part = np.where(fine, _FINER, 1.0)
-        last = minimum[1][here], minimum[2][here]
-        bowl = _bowl(pairs.only(here), *last, part[:, None] * _STEP)
+        last = minimum[1][active], minimum[2][active]
+        bowl = _bowl(pairs.only(active), *last, part[:, None] * _STEP)
         new = last[0] + part * bowl.across * _STEP[0], last[1] + part * bowl.along * _STEP[1]
         size, bend = np.hypot(bowl.across, bowl.along), bowl.bend / part[:, None] ** 2
         inside = (new[0] > low[0]) & (new[0] < high[0]) & (new[1] > low[1]) & (new[1] < high[1])
-        same = (np.abs(bend - bends[here]) < _SMOOTH * bend).all(axis=1)
-        going = bowl.convex & inside & np.where(fine, same & (size < 0.5), size < _FARTHEST)
+        has_equal_curvature = (np.abs(bend - bends[active]) < _SMOOTH * bend).all(axis=1)
+        continues = (
+            bowl.convex & inside & np.where(fine, has_equal_curvature & (size < 0.5), size < _FARTHEST)
+        )
         for target, values in zip(minimum, (bowl.value, *new), strict=True):
-            target[here[going]] = values[going]
-        smooth[here[going & fine]], bends[here] = True, bend
-        going &= ~fine
-        here, fine = here[going], size[going] < _NEAR
-        if here.size == 0:
+            target[active[continues]] = values[continues]
+        smooth[active[continues & fine]], bends[active] = True, bend
+        continues &= ~fine
+        active, fine = active[continues], size[continues] < _NEAR
+        if active.size == 0:
             break
     return *minimum, smooth
 

@@ -27,7 +27,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class PairNumbers:
-    """What of a pair the closed form and the ends of the faces need; m and rad.
+    """Numbers of a pair that the closed form and the ends of the faces need; m and rad.
 
     first_end, last_end: ends of the common face, distances from the gear's axis along the pinion's.
     """
@@ -46,7 +46,18 @@ class PairNumbers:
 
     @classmethod
     def of_design(cls, design: PairDesign) -> Self:
-        """Those of a design."""
+        """Return the numbers of a design.
+
+        Parameters
+        ----------
+        design : PairDesign
+            Pair of gears.
+
+        Returns
+        -------
+        PairNumbers
+            Numbers in m and rad.
+        """
         half, face = design.pinion.width / 2, design.face_gear
         return cls(
             pressure_angle=design.pressure_angle,
@@ -64,7 +75,18 @@ class PairNumbers:
 
     @classmethod
     def of_array(cls, values: Array) -> Self:
-        """From what `array` gives."""
+        """Rebuild the numbers from `array`.
+
+        Parameters
+        ----------
+        values : (11,) array
+            Numbers in m and rad, in the order of the fields.
+
+        Returns
+        -------
+        PairNumbers
+            The numbers.
+        """
         return cls(*(float(value) for value in values))
 
     @property
@@ -99,13 +121,36 @@ class ConjugateContact:
 
 
 def conjugate_contact(design: PairDesign) -> ConjugateContact | None:
-    """`contact_at` in the assembly of a design."""
+    """Compute `contact_at` in the assembly of a design.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    ConjugateContact, optional
+        Contact in m and rad, or None.
+    """
     return contact_at(PairNumbers.of_design(design), design.assembly)
 
 
 def contact_at(pair: PairNumbers, errors: AssemblyErrors) -> ConjugateContact | None:
-    """None where no normal of the flanks continued without end touches, and where teeth touch along lines
-    that an assembly error turns into an edge (as many teeth of the shaper as of the pinion).
+    """Compute the unloaded contact of flanks continued without end, in an assembly.
+
+    Parameters
+    ----------
+    pair : PairNumbers
+        Numbers of the pair.
+    errors : AssemblyErrors
+        Errors of the assembly.
+
+    Returns
+    -------
+    ConjugateContact, optional
+        Contact in m and rad; None where no normal of the flanks touches, and where teeth touch along lines
+        that an assembly error turns into an edge (as many teeth of the shaper as of the pinion).
     """
     if pair.shaper_lift <= 0.0:
         return None
@@ -114,27 +159,37 @@ def contact_at(pair: PairNumbers, errors: AssemblyErrors) -> ConjugateContact | 
         return None
     turn = _turn(errors, psi)
     height, base = pair.shaper_lift, pair.shaper_base_radius
-    x, y, z = _placed(pair, errors)
+    x, y, z = _face_middle(pair, errors)
     tilt = errors.shaft_angle_error
     on_pinion = acos(cos(psi) * cos(turn))
     half_tooth = pair.pinion_half_base_angle - pi / pair.pinion_teeth
     error = (
-        _dot(_turned((cos(psi), 0.0, -sin(psi)), turn), (x, y, z))
+        _dot(_rotate((cos(psi), 0.0, -sin(psi)), turn), (x, y, z))
         + pair.pinion_base_radius * (on_pinion + half_tooth)
         + height * sin(psi)
         - base * (psi - pair.shaper_half_space_angle)
         - pair.gear_base_radius * turn
     )
-    point = _turned((-base * sin(psi), pair.gear_base_radius / cos(psi), height - base * cos(psi)), turn)
+    point = _rotate((-base * sin(psi), pair.gear_base_radius / cos(psi), height - base * cos(psi)), turn)
     along = pair.mean_radius + cos(tilt) * (point[1] - y) + sin(tilt) * (point[2] - z)
     return ConjugateContact(psi, turn, error, along, on_pinion + half_tooth)
 
 
 @lru_cache(maxsize=256)
 def exact_contact(design: PairDesign) -> ConjugateContact | None:
-    """`conjugate_contact` where it is that of the teeth: None where a flank is modified or ends before.
+    """Return `conjugate_contact` where it is the contact of the teeth.
 
-    It holds where a whole pitch of the contact's way lies on both flanks, within both faces.
+    It holds where a whole pitch of the contact path lies on both flanks, within both faces.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    ConjugateContact, optional
+        Contact in m and rad; None where a flank is modified or ends before.
     """
     if not without_modifications(design):
         return None
@@ -153,9 +208,21 @@ def exact_contact(design: PairDesign) -> ConjugateContact | None:
 
 
 def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float | None:
-    """The offset (m) with which contact stands at `path` (m) along the pinion, other errors as given.
+    """Compute the offset with which contact occurs at a position along the pinion, other errors as given.
 
-    None where there is none.
+    Parameters
+    ----------
+    pair : PairNumbers
+        Numbers of the pair.
+    path : float
+        Position of the contact along the pinion, m.
+    errors : AssemblyErrors
+        Errors of the assembly, whose offset is not used.
+
+    Returns
+    -------
+    float, optional
+        Offset, m; None where there is none.
     """
     psi, tilt = acos(pair.gear_base_radius / path), errors.shaft_angle_error
     lift, step = pair.shaper_lift, 1e-7
@@ -166,10 +233,10 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
         ]
         if near[0] is None or near[1] is None:
             return None
-        missing = near[0].y - path
-        if abs(missing) < 1e-12:
+        path_error = near[0].y - path
+        if abs(path_error) < 1e-12:
             return offset
-        offset -= missing * step / (near[1].y - near[0].y)
+        offset -= path_error * step / (near[1].y - near[0].y)
     return None
 
 
@@ -194,11 +261,11 @@ def _condition(pair: PairNumbers, errors: AssemblyErrors, psi: float) -> float:
     """By how much (m) the normal of slope psi misses the pinion's base cylinder."""
     tilt, turn = errors.shaft_angle_error, _turn(errors, psi)
     across = cos(turn) * cos(tilt)
-    from_axis = _turned((across * sin(psi), -sin(tilt) / cos(psi), across * cos(psi)), turn)
+    from_axis = _rotate((across * sin(psi), -sin(tilt) / cos(psi), across * cos(psi)), turn)
     return (
         across * (pair.shaper_lift * cos(psi) - pair.shaper_base_radius)
         - sin(tilt) * pair.gear_base_radius / cos(psi) ** 2
-        - _dot(from_axis, _placed(pair, errors))
+        - _dot(from_axis, _face_middle(pair, errors))
         + pair.pinion_base_radius
     )
 
@@ -208,15 +275,26 @@ def _turn(errors: AssemblyErrors, psi: float) -> float:
     return asin(max(-1.0, min(1.0, tan(psi) * tan(errors.shaft_angle_error))))
 
 
-def _placed(pair: PairNumbers | PairDesign, errors: AssemblyErrors) -> tuple[float, float, float]:
+def _face_middle(pair: PairNumbers | PairDesign, errors: AssemblyErrors) -> tuple[float, float, float]:
     """The middle of the pinion's face in the gear's frame (m)."""
     return errors.offset, pair.mean_radius, errors.axial_shift
 
 
 def without_modifications(design: PairDesign) -> bool:
-    """Whether both flanks are as generated."""
-    made = design.pinion
-    reliefs = (made.tip_relief, made.root_relief, made.lead_crowning)
+    """Whether both flanks are as generated.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    bool
+        True without modifications and deviations.
+    """
+    pinion_part = design.pinion
+    reliefs = (pinion_part.tip_relief, pinion_part.root_relief, pinion_part.lead_crowning)
     on_pinion = any(relief.amount != 0.0 for relief in reliefs)
     return not (on_pinion or design.face_gear.modifications != GearModifications() or design.deviates)
 
@@ -237,23 +315,23 @@ def _point(design: PairDesign, contact: ConjugateContact, roll: float) -> tuple[
     x = base * (roll * cos(on_pinion) - sin(on_pinion))
     z = -base * (roll * sin(on_pinion) + cos(on_pinion))
     tilt, along = design.assembly.shaft_angle_error, contact.y - design.mean_radius
-    placed = _placed(design, design.assembly)
+    face_middle = _face_middle(design, design.assembly)
     return (
-        placed[0] + x,
-        placed[1] + cos(tilt) * along - sin(tilt) * z,
-        placed[2] + sin(tilt) * along + cos(tilt) * z,
+        face_middle[0] + x,
+        face_middle[1] + cos(tilt) * along - sin(tilt) * z,
+        face_middle[2] + sin(tilt) * along + cos(tilt) * z,
     )
 
 
 def _nearest(design: PairDesign, contact: ConjugateContact) -> float:
     """Distance (m) of the way of contact from the gear's axis."""
     x, y, _ = _point(design, contact, 0.0)
-    other = _point(design, contact, 1.0)
-    direction = atan2(other[1] - y, other[0] - x)
+    second_point = _point(design, contact, 1.0)
+    direction = atan2(second_point[1] - y, second_point[0] - x)
     return abs(y * cos(direction) - x * sin(direction))
 
 
-def _turned(vector: tuple[float, float, float], angle: float) -> tuple[float, float, float]:
+def _rotate(vector: tuple[float, float, float], angle: float) -> tuple[float, float, float]:
     x, y, z = vector
     return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z
 

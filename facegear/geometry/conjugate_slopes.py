@@ -27,7 +27,22 @@ class ConjugateSlopes:
 
 
 def conjugate_slopes(pair: PairNumbers, errors: AssemblyErrors, contact: ConjugateContact) -> ConjugateSlopes:
-    """Of the contact of a pair with these errors."""
+    """Compute the derivatives of the contact of a pair by its errors.
+
+    Parameters
+    ----------
+    pair : PairNumbers
+        Numbers of the pair.
+    errors : AssemblyErrors
+        Errors of the assembly.
+    contact : ConjugateContact
+        Contact with these errors.
+
+    Returns
+    -------
+    ConjugateSlopes
+        Derivatives, m/m and m/rad.
+    """
     psi, turn, tilt = contact.psi, contact.turn, errors.shaft_angle_error
     turn_by_tilt = tan(psi) / (cos(tilt) ** 2 * cos(turn))
     turn_by_psi = tan(tilt) / (cos(psi) ** 2 * cos(turn))
@@ -36,10 +51,12 @@ def conjugate_slopes(pair: PairNumbers, errors: AssemblyErrors, contact: Conjuga
         + pair.pinion_base_radius * cos(psi) * sin(turn) / sin(acos(cos(psi) * cos(turn)))
         - pair.gear_base_radius
     )
-    missing_psi, missing_turn, missing = _condition_slopes(pair, errors, psi, turn)
+    missing_psi, missing_turn, condition_slopes = _condition_slopes(pair, errors, psi, turn)
     path_psi, path_turn, path = _path_slopes(pair, errors, psi, turn)
     by_errors = np.array([0.0, 0.0, turn_by_tilt])
-    psi_by_errors = -(missing + missing_turn * by_errors) / (missing_psi + missing_turn * turn_by_psi)
+    psi_by_errors = -(condition_slopes + missing_turn * by_errors) / (
+        missing_psi + missing_turn * turn_by_psi
+    )
     return ConjugateSlopes(
         np.array([cos(psi) * cos(turn), -sin(psi), by_turn * turn_by_tilt]),
         path + path_turn * by_errors + (path_psi + path_turn * turn_by_psi) * psi_by_errors,
@@ -74,7 +91,9 @@ def _condition_slopes(
 def _path_slopes(
     pair: PairNumbers, errors: AssemblyErrors, psi: float, turn: float
 ) -> tuple[float, float, Array]:
-    """The same of the place along the pinion's axis."""
+    """Return the derivatives of the position along the pinion's axis by psi, by the turn, and by the errors
+    (3,).
+    """
     tilt, base = errors.shaft_angle_error, pair.shaper_base_radius
     x, y = -base * sin(psi), pair.gear_base_radius / cos(psi)
     high = pair.shaper_lift - base * cos(psi) - errors.axial_shift

@@ -7,15 +7,29 @@ from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
 from facegear.geometry.deviations import derivative
-from facegear.geometry.gear_modifications import crowned
+from facegear.geometry.gear_modifications import added_curvatures
 
 
 def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array, Array]:
-    """Larger and smaller relative curvature (1/m), and the contact line's slope (rad) to the pinion axis.
+    """Compute relative curvatures at a point of the gear flank, in the nominal assembly, convex counted
+    positive.
 
-    At the gear flank point (th, psi) of the nominal assembly, convex counted positive. The pinion's radius of
-    curvature on the same normal is r_b th - lift sin psi: exact for N_s = N1 everywhere, for N_s > N1 on the
-    contact path, where psi is the pressure angle.
+    The pinion's radius of curvature on the same normal is r_b th - lift sin psi: exact for N_s = N1
+    everywhere, for N_s > N1 on the contact path, where psi is the pressure angle.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Larger and smaller relative curvature, 1/m, and the contact line's slope to the pinion axis, rad.
     """
     roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
     base, ratio, space, lift = face_gear.shaper_numbers(design)
@@ -34,11 +48,29 @@ def opposite_curvatures(
     psi: ArrayLike,
     to_gear: Array,
 ) -> tuple[Array, Array, Array]:
-    """The same in any assembly: pinion point at roll (rad) and y (m) opposite the gear flank point (th, psi).
+    """Compute relative curvatures of a pinion point and the opposite gear flank point, in any assembly.
 
-    `to_gear` (..., 3, 3) turns directions of the pinion's body frame into those of the gear's flank, see
-    `placement.to_left_flank`. Crownings of the gear and deviations of both count; modifications of the
-    pinion, whose curvature is far smaller, are left out.
+    Crownings of the gear and deviations of both count; modifications of the pinion, whose curvature is far
+    smaller, are left out.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    pinion_place : tuple of (...) array_like
+        Roll (rad) and y (m) on the pinion.
+    roll : (...) array_like
+        Roll angle th on the gear, rad.
+    psi : (...) array_like
+        Slope of the normal on the gear, rad.
+    to_gear : (..., 3, 3) array
+        Rotation from the pinion's body frame to that of the gear's flank, dimensionless, see
+        `placement.to_left_flank`.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Larger and smaller relative curvature, 1/m, and the contact line's slope to the pinion axis, rad.
     """
     pinion_roll, y, roll, psi = np.broadcast_arrays(
         *(np.asarray(part, float) for part in (*pinion_place, roll, psi))
@@ -47,12 +79,14 @@ def opposite_curvatures(
     tangent = np.stack([-nz, np.zeros_like(nx), nx], axis=-1)
     profile = np.einsum("...ij,...j->...i", to_gear, tangent)
     axial = np.broadcast_to(to_gear[..., :, 1], profile.shape)
-    across, along, twist = crowned(design, face_gear.flank_point(design, roll, psi))
-    own = _pinion_deviation(design, pinion_roll, y)
-    added = 1 / (design.pinion_base_radius * pinion_roll) + across * profile[..., 2] ** 2 + own[0]
+    across, along, twist = added_curvatures(design, face_gear.flank_point(design, roll, psi))
+    own_curvatures = _pinion_deviation(design, pinion_roll, y)
+    curvature = (
+        1 / (design.pinion_base_radius * pinion_roll) + across * profile[..., 2] ** 2 + own_curvatures[0]
+    )
     # depth below the gear's tip plane and roll both fall along the profile's tangent
-    twisted = -profile[..., 2] * twist + own[2]
-    return _principal(design, roll, psi, profile, axial, (added, along + own[1], twisted))
+    total_twist = -profile[..., 2] * twist + own_curvatures[2]
+    return _principal(design, roll, psi, profile, axial, (curvature, along + own_curvatures[1], total_twist))
 
 
 def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
@@ -71,12 +105,12 @@ def _principal(
     psi: Array,
     profile: Array,
     axial: Array,
-    added: tuple[Array, Array | float, Array | float],
+    extra_curvatures: tuple[Array, Array | float, Array | float],
 ) -> tuple[Array, Array, Array]:
-    """From the gear's shape operator (exact derivatives) in the directions of the pinion's tangents.
+    """Return principal curvatures from the gear's shape operator in the directions of the pinion's tangents.
 
-    added: curvatures (1/m) in these directions, and their twist, that the gear's nominal flank does not have,
-    the pinion's among them.
+    extra_curvatures: curvatures (1/m) in these directions, and their twist, that the gear's nominal flank
+    does not have, the pinion's among them.
     """
     _, ratio, space, _ = face_gear.shaper_numbers(design)
     turn = ratio * (psi - roll - space)
@@ -88,10 +122,10 @@ def _principal(
     basis = np.stack([profile, axial], axis=-2)
     shape = (basis @ changes) @ np.linalg.inv(basis @ tangents)
     shape = (shape + np.swapaxes(shape, -1, -2)) / 2
-    shape[..., 0, 0] += added[0]
-    shape[..., 1, 1] += added[1]
-    shape[..., 0, 1] += added[2]
-    shape[..., 1, 0] += added[2]
+    shape[..., 0, 0] += extra_curvatures[0]
+    shape[..., 1, 1] += extra_curvatures[1]
+    shape[..., 0, 1] += extra_curvatures[2]
+    shape[..., 1, 0] += extra_curvatures[2]
     values, vectors = np.linalg.eigh(shape)
     order = np.argsort(np.abs(values), axis=-1)
     small, large = (np.take_along_axis(values, order[..., i : i + 1], -1)[..., 0] for i in (0, 1))

@@ -26,7 +26,18 @@ BACKLASH_DIFFERS_UM = 1.0
 
 
 def involute(angle: float) -> float:
-    """inv a = tan a - a (rad)."""
+    """Compute the involute function inv a = tan a - a.
+
+    Parameters
+    ----------
+    angle : float
+        rad.
+
+    Returns
+    -------
+    float
+        rad.
+    """
     return tan(angle) - angle
 
 
@@ -79,8 +90,8 @@ class Flanks:
     left: DeviationGrid | None = None
 
     @property
-    def exchanged(self) -> "Flanks":
-        """Those of the gear seen in a mirror."""
+    def mirror_image(self) -> "Flanks":
+        """Deviations of the gear seen in a mirror, left and right flank exchanged."""
         return Flanks(self.left, self.right)
 
 
@@ -106,11 +117,12 @@ class PinionGeometry:
 
 @dataclass(frozen=True)
 class GearModifications:
-    """What is taken off both flanks of the face gear along the normal; see `gear_modifications`.
+    """Modifications that take material off both flanks of the face gear along the normal; see
+    `gear_modifications`.
 
-    lead_slope: amount (m) at the outer end of the face, added at the inner end. profile_slope: amount (m) at
-    the tip plane, added as far below the pitch plane. bias: amount (m) at the outer end of the tip, with the
-    sign of the product of both.
+    lead_slope: amount (m) at the outer end of the face, added at the inner end. profile_slope: amount (m)
+    at the tip plane, added as far below the pitch plane. bias: amount (m) at the outer end of the tip,
+    with the sign of the product of both.
     """
 
     tip_relief: Relief = field(default_factory=Relief)
@@ -174,13 +186,13 @@ class PairDesign:
     assembly: AssemblyErrors = field(default_factory=AssemblyErrors)
 
     @property
-    def exchanged(self) -> "PairDesign":
+    def with_swapped_flanks(self) -> "PairDesign":
         """The pair whose right flanks deviate as its left ones do, and the reverse."""
         pinion, gear = self.pinion, self.face_gear
         return replace(
             self,
-            pinion=replace(pinion, flanks=pinion.flanks.exchanged),
-            face_gear=replace(gear, flanks=gear.flanks.exchanged),
+            pinion=replace(pinion, flanks=pinion.flanks.mirror_image),
+            face_gear=replace(gear, flanks=gear.flanks.mirror_image),
         )
 
     @property

@@ -13,9 +13,24 @@ CUBIC = 3
 
 
 def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -> Array:
-    """Material (m) added along the normal at places (m) as in `DeviationGrid`, broadcast together.
+    """Compute the material added along the normal.
 
-    Of fourth order in the distance of the grid's places; fewer than four of them take a lower order.
+    The interpolation is of fourth order in the distance of the grid's places; fewer than four of them take
+    a lower order.
+
+    Parameters
+    ----------
+    grid : DeviationGrid, optional
+        Deviations; None gives 0.
+    face : (...) array_like
+        Distance along the face, m, as in `DeviationGrid`.
+    profile : (...) array_like
+        Distance along the profile, m.
+
+    Returns
+    -------
+    (...) array
+        m.
     """
     along, across = np.broadcast_arrays(np.asarray(face, float), np.asarray(profile, float))
     if grid is None:
@@ -28,28 +43,56 @@ def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -
 def derivative(
     grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike, orders: tuple[int, int]
 ) -> Array:
-    """Derivative of `deviation`, so many times along the face and the profile; 0 where the edge stands."""
+    """Compute a derivative of `deviation`; 0 beyond an edge, where the value is constant.
+
+    Parameters
+    ----------
+    grid : DeviationGrid, optional
+        Deviations; None gives 0.
+    face : (...) array_like
+        Distance along the face, m, as in `DeviationGrid`.
+    profile : (...) array_like
+        Distance along the profile, m.
+    orders : tuple[int, int]
+        Orders of the derivative along face and profile.
+
+    Returns
+    -------
+    (...) array
+        m over m to the sum of the orders.
+    """
     along, across = np.broadcast_arrays(np.asarray(face, float), np.asarray(profile, float))
     if grid is None:
         return np.zeros(along.shape)
     values: Array = np.zeros(along.shape)
-    places = (along, grid.face, orders[0]), (across, grid.profile, orders[1])
+    coordinates = (along, grid.face, orders[0]), (across, grid.profile, orders[1])
     on = np.ones(along.shape, bool)
-    for at, line, order in places:
+    for at, line, order in coordinates:
         first, last = _ends(line)
         on &= (at >= first) & (at <= last) | (order == 0)
-    inside = (np.clip(at[on], *_ends(line)) for at, line, _ in places)
+    inside = (np.clip(at[on], *_ends(line)) for at, line, _ in coordinates)
     values[on] = _spline(grid).ev(*inside, dx=orders[0], dy=orders[1])
     return values
 
 
 def mean_crowning(grid: DeviationGrid | None) -> float:
-    """Curvature (1/m) along the face of the parabola nearest to a grid's mean; 0 where it is hollow."""
+    """Compute the curvature along the face of the parabola nearest to a grid's mean.
+
+    Parameters
+    ----------
+    grid : DeviationGrid, optional
+        Deviations; None gives 0.
+
+    Returns
+    -------
+    float
+        1/m; 0 where the flank is hollow.
+    """
     if grid is None or len(grid.face) <= 2:
         return 0.0
     middle = np.array(grid.face) - np.mean(grid.face)
-    bent: float = np.polynomial.polynomial.polyfit(middle, np.mean(grid.deviation, axis=1), 2)[2]
-    return max(-2.0 * bent, 0.0)
+    curvature: float = np.polynomial.polynomial.polyfit(middle, np.mean(grid.deviation, axis=1), 2)[2]
+    return max(-2.0 * curvature, 0.0)
 
 
 def _ends(line: tuple[float, ...]) -> tuple[float, float]:
@@ -64,7 +107,9 @@ def _spline(grid: DeviationGrid) -> "scipy.interpolate.RectBivariateSpline":
     if min(orders) < CUBIC:
         # the polynomial through two or three places, at as many as a cubic takes
         few = [np.linspace(line[0], line[-1], CUBIC + 1) for line in lines]
-        more = [line if line.size > CUBIC else even for line, even in zip(lines, few, strict=True)]
-        values = scipy.interpolate.RectBivariateSpline(*lines, values, kx=orders[0], ky=orders[1])(*more)
-        lines = more
+        dense_lines = [line if line.size > CUBIC else even for line, even in zip(lines, few, strict=True)]
+        values = scipy.interpolate.RectBivariateSpline(*lines, values, kx=orders[0], ky=orders[1])(
+            *dense_lines
+        )
+        lines = dense_lines
     return scipy.interpolate.RectBivariateSpline(*lines, values)

@@ -17,7 +17,21 @@ from facegear.geometry.unloaded import UnloadedContact
 
 
 def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
-    """What `geometry/pair.json` holds: radii, limits, contact ratio and path, backlash, smallest gaps."""
+    """Return the content of `geometry/pair.json`: radii, limits, contact ratio and path, backlash, smallest
+    gaps.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    analysis : PairAnalysis
+        Its geometry.
+
+    Returns
+    -------
+    dict[str, Any]
+        Values by key, units in the keys.
+    """
     limits = analysis.limits
     roll, large, small, slope = path_curvatures(design)
     return {
@@ -79,7 +93,22 @@ def _gap(gap: Gap) -> dict[str, Any]:
 
 
 def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict[str, Array]:
-    """Point grids (profile, width, 3) in m of the right flanks and fillets, in the body frames."""
+    """Return point grids of the right flanks and fillets, in the body frames.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    profile : int
+        Number of points along the profile.
+    width : int
+        Number of points along the width.
+
+    Returns
+    -------
+    dict of (profile, width, 3) arrays
+        Points, m, and `pinion_section` (n, 2), m.
+    """
     half = design.pinion.width / 2
     y = np.linspace(design.mean_radius - half, design.mean_radius + half, width)[None, :]
     roll = np.linspace(design.pinion_tip_roll, pinion.junction_roll(design), profile)[:, None]
@@ -98,7 +127,23 @@ def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict
 
 
 def contact_arrays(design: PairDesign, analysis: PairAnalysis, contours: EaseOff) -> dict[str, AnyArray]:
-    """What the pictures need: the drive side's contact path and the separation contours (SI)."""
+    """Return the arrays that the pictures need: the drive side's contact path and the separation contours
+    (SI).
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    analysis : PairAnalysis
+        Its geometry.
+    contours : EaseOff
+        Ease-off of the drive side.
+
+    Returns
+    -------
+    dict of (...) arrays
+        Arrays by name, in SI units.
+    """
     roll, y = analysis.drive.path
     order = np.argsort(roll)
     record = {f"contour_{name}": value for name, value in asdict(contours).items()}

@@ -31,10 +31,24 @@ class EaseOff:
 
 
 def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, int] = (25, 25)) -> EaseOff:
-    """Ease-off of the drive side at a mean unloaded transmission error (m, see `unloaded`).
+    """Compute the ease-off of the drive side.
 
     The separation is sampled over three pitches and its smallest value taken from the parabola through the
     three samples around it.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    transmission_error : float
+        Mean unloaded transmission error, m, see `unloaded`.
+    shape : tuple[int, int]
+        Number of points along profile and width.
+
+    Returns
+    -------
+    EaseOff
+        Grid of gaps, m.
     """
     gear = design.face_gear
     half = design.pinion.width / 2
@@ -49,20 +63,20 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
     best = np.clip(np.argmin(gap, axis=0), 1, len(phi1) - 2)
     points = np.arange(gap.shape[1])
     before, middle, after = (gap[best + step, points] for step in (-1, 0, 1))
-    facing = np.isfinite(before) & np.isfinite(middle) & np.isfinite(after)
+    is_facing = np.isfinite(before) & np.isfinite(middle) & np.isfinite(after)
     with np.errstate(invalid="ignore", divide="ignore"):
         min_gap = middle - (after - before) ** 2 / (8 * (before - 2 * middle + after))
     hit = face_gear.flank_point(design, separations.u[best, points], separations.v[best, points])
     radius = np.hypot(hit[:, 0], hit[:, 1])
 
-    def kept(values: Array) -> Array:
-        return np.where(facing, values, 0.0).reshape(shape)
+    def facing_values(values: Array) -> Array:
+        return np.where(is_facing, values, 0.0).reshape(shape)
 
     return EaseOff(
         roll=roll,
         y=y,
-        gap=kept(min_gap),
-        facing=facing.reshape(shape),
-        radius=kept(radius),
-        height=kept(hit[:, 2]),
+        gap=facing_values(min_gap),
+        facing=is_facing.reshape(shape),
+        radius=facing_values(radius),
+        height=facing_values(hit[:, 2]),
     )

@@ -20,13 +20,24 @@ from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.geometry import closed_forms
 from facegear.geometry.design import PairDesign
-from facegear.geometry.generated import generated
+from facegear.geometry.generated import as_cut
 
 ROUNDING = 16 * np.finfo(float).eps
 
 
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
-    """(r_b, m2s, th_os, lift) of the shaper."""
+    """Return the numbers of the shaper that the closed forms take.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[float, float, float, float]
+        Base radius r_b (m), ratio m2s, half space angle th_os (rad) and lift (m).
+    """
     return (
         design.shaper_base_radius,
         design.shaper_ratio,
@@ -36,21 +47,66 @@ def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
 
 
 def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
-    """Points (..., 3) in m at roll th and normal slope psi (rad), broadcast together."""
-    return _stacked(*_flank_frame(design, roll, psi)[:3])
+    """Compute points of the flank; roll and slope are broadcast together.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
+    return _stack_components(*_flank_frame(design, roll, psi)[:3])
 
 
 def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
-    """Outward unit normals (..., 3)."""
+    """Compute outward unit normals of the flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    (..., 3) array
+        Unit vectors, dimensionless.
+    """
     _, ratio, space, _ = shaper_numbers(design)
     roll, psi = _together(roll, psi)
-    return _stacked(*closed_forms.normal(ratio * (psi - roll - space), psi))
+    return _stack_components(*closed_forms.normal(ratio * (psi - roll - space), psi))
 
 
 def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
-    """Exact derivatives (..., 3) of the position with respect to th and psi (m/rad)."""
+    """Compute the exact derivatives of the position on the flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple of (..., 3) arrays
+        Derivatives with respect to th and to psi, m/rad.
+    """
     frame = _flank_frame(design, roll, psi)
-    return _stacked(*frame[3:6]), _stacked(*frame[6:])
+    return _stack_components(*frame[3:6]), _stack_components(*frame[6:])
 
 
 def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, ...]:
@@ -58,23 +114,53 @@ def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[A
 
 
 def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
-    both = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
-    return both[0], both[1]
+    arrays = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
+    return arrays[0], arrays[1]
 
 
-def _stacked(x: Array, y: Array, z: Array) -> Array:
+def _stack_components(x: Array, y: Array, z: Array) -> Array:
     return np.stack([x, y, z], axis=-1)
 
 
 def local_pressure_angle(design: PairDesign, radius: ArrayLike) -> Array:
-    """a_L (rad) with cos a_L = m N2 cos a0 / (2 L) at gear radius L (m)."""
+    """Compute the local pressure angle a_L with cos a_L = m N2 cos a0 / (2 L).
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius L, m.
+
+    Returns
+    -------
+    (...) array
+        rad.
+    """
     return np.arccos(design.gear_base_radius / np.asarray(radius, float))
 
 
 def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
-    """psi (rad) of the flank point with roll th on the cylinder of gear radius `radius` (m).
+    """Compute the slope psi of the flank point with a given roll on the cylinder of a gear radius.
 
-    Raises NotConverged where the cylinder does not cut the flank there.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    roll : (...) array_like
+        Roll angle th, rad.
+
+    Returns
+    -------
+    (...) array
+        rad.
+
+    Raises
+    ------
+    NotConverged
+        Where the cylinder does not cut the flank there.
     """
     base, ratio, _, _ = shaper_numbers(design)
     radius, roll = _together(radius, roll)
@@ -86,9 +172,26 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
 
 
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
-    """th and psi (rad) of the flank at gear radius `radius` and height `z` (m).
+    """Compute roll and slope of the flank at a gear radius and a height.
 
-    Raises NotConverged where the cylinder does not cut the flank there.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    z : (...) array_like
+        Height, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        th and psi, rad.
+
+    Raises
+    ------
+    NotConverged
+        Where the cylinder does not cut the flank there.
     """
     base, ratio, _, lift = shaper_numbers(design)
     radius, z = _together(radius, z)
@@ -102,7 +205,20 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
 
 
 def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
-    """Points (..., 3) of the flank's tip edge at gear radii (m)."""
+    """Compute points of the flank's tip edge.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
     return flank_point(design, *roll_and_psi_at_height(design, radius, design.gear_tip_plane))
 
 
@@ -115,8 +231,19 @@ class TipEdge:
 
 
 def tip_edge_by_radius(design: PairDesign) -> TipEdge:
-    """That of a design: many that have one gear share it."""
-    return _tip_edge_by_radius(generated(design))
+    """Return the tip edge of a design; designs with the same gear share it.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    TipEdge
+        Splines of th and gear angle (rad) over gear radius (m).
+    """
+    return _tip_edge_by_radius(as_cut(design))
 
 
 @lru_cache(maxsize=16)
@@ -129,10 +256,12 @@ def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
     return TipEdge(*(scipy.interpolate.CubicSpline(radius, values) for values in (roll, angle)))
 
 
-def _newton(residual: Callable[[Array], tuple[Array, Array]], near: Array, size: Array, where: str) -> Array:
-    """The root near `near` (rad or m) of a difference of numbers of a `size`, exact near a fold before it is.
+def _newton(
+    residual: Callable[[Array], tuple[Array, Array]], near: Array, size: Array, task_text: str
+) -> Array:
+    """Return the root near `near` (rad or m) of a difference of numbers of magnitude `size`.
 
-    Raises NotConverged.
+    Near a fold, where steps stay above rounding, the residual decides. Raises NotConverged.
     """
     at = near
     for _ in range(60):
@@ -145,26 +274,66 @@ def _newton(residual: Callable[[Array], tuple[Array, Array]], near: Array, size:
             break
     if np.all(np.isfinite(at)) and np.all((np.abs(step) < 1e-12) | (np.abs(value) <= ROUNDING * size)):
         return at
-    raise NotConverged("geometry", where, "60 Newton steps")
+    raise NotConverged("geometry", task_text, "60 Newton steps")
 
 
 def edge_start(design: PairDesign) -> float:
-    """chi_0 (rad): where the centre of the shaper's tip rounding stands from the vertical at phi_s = 0."""
+    """Compute chi_0, the angle of the centre of the shaper's tip rounding from the vertical at phi_s = 0.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        rad.
+    """
     roll = design.shaper_rounding_roll
     return float(design.shaper_half_space_angle + design.shaper_tip_roll - np.arctan(roll))
 
 
 def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
-    """Gear angle (rad) and z (m) of the fillet at a gear radius (m) and slope psi (rad) of its normal.
+    """Compute gear angle and height of the fillet.
 
     psi runs from `fillet_start` to pi/2, where the fillet touches the root plane.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    psi : (...) array_like
+        Slope of the fillet's normal, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Gear angle, rad, and z, m.
     """
     x, y, z = closed_forms.fillet_frame(*tip_numbers(design), psi, fillet_q(design, radius, psi))[:3]
     return np.arctan2(x, y), z
 
 
 def fillet_q(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """Where (m) along its axis the shaper generates the fillet's point at a gear radius (m) and slope psi."""
+    """Compute the position along its axis at which the shaper generates a point of the fillet.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    psi : (...) array_like
+        Slope of the fillet's normal, rad.
+
+    Returns
+    -------
+    (...) array
+        m.
+    """
     radius, psi = _together(radius, psi)
 
     def residual(q: Array) -> tuple[Array, Array]:
@@ -175,42 +344,137 @@ def fillet_q(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
 
 
 def tip_numbers(design: PairDesign) -> tuple[float, float, float, float, float]:
-    """What `closed_forms.fillet_frame` takes of the shaper: centre, rounding, m2s, lift and chi_0."""
+    """Return the numbers of the shaper that `closed_forms.fillet_frame` takes.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[float, float, float, float, float]
+        Centre (m), rounding (m), ratio m2s, lift (m) and chi_0 (rad).
+    """
     centre, rounding = design.shaper_rounding_centre, design.shaper.tip_rounding
     return centre, rounding, design.shaper_ratio, design.shaper_lift, edge_start(design)
 
 
 def fillet_start(design: PairDesign, radius: ArrayLike) -> Array:
-    """psi (rad) where flank and fillet meet at a gear radius (m)."""
+    """Compute the slope psi where flank and fillet meet.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+
+    Returns
+    -------
+    (...) array
+        rad.
+    """
     return psi_at(design, radius, design.shaper_tip_roll)
 
 
 def fillet_slopes(design: PairDesign, radius: ArrayLike, fraction: ArrayLike) -> Array:
-    """psi (rad) at a share of the fillet's turn at a gear radius (m): 0 at the flank, 1 at the root."""
+    """Compute the slope psi at a fraction of the fillet's turn.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    fraction : (...) array_like
+        Fraction, 0 at the flank, 1 at the root.
+
+    Returns
+    -------
+    (...) array
+        rad.
+    """
     start = fillet_start(design, radius)
     return start + np.asarray(fraction, float) * (np.pi / 2 - start)
 
 
 def fillet_fraction(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """The inverse of `fillet_slopes`."""
+    """Compute the fraction of the fillet's turn at a slope, the inverse of `fillet_slopes`.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    psi : (...) array_like
+        Slope of the fillet's normal, rad.
+
+    Returns
+    -------
+    (...) array
+        Fraction, 0 at the flank, 1 at the root.
+    """
     start = fillet_start(design, radius)
     return (np.asarray(psi, float) - start) / (np.pi / 2 - start)
 
 
 def fillet_normal(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """Outward unit normal (..., 3) of the fillet."""
+    """Compute outward unit normals of the fillet.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    psi : (...) array_like
+        Slope of the fillet's normal, rad.
+
+    Returns
+    -------
+    (..., 3) array
+        Unit vectors, dimensionless.
+    """
     centre, _, ratio, _, start = tip_numbers(design)
     psi = np.asarray(psi, float)
     chi = psi - np.arccos(ratio * fillet_q(design, radius, psi) * np.cos(psi) / centre)
-    return _stacked(*closed_forms.normal(ratio * (chi - start), psi))
+    return _stack_components(*closed_forms.normal(ratio * (chi - start), psi))
 
 
 def root_half_angle(design: PairDesign) -> float:
-    """Gear angle (rad) from the end of the fillet to the middle of the space; negative if they overlap."""
+    """Compute the gear angle from the end of the fillet to the middle of the space.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        rad; negative if the fillets overlap.
+    """
     return np.pi / design.face_gear.teeth - design.shaper_ratio * edge_start(design)
 
 
 def cylindrical(radius: ArrayLike, beta: ArrayLike, z: ArrayLike) -> Array:
-    """Points (..., 3) of the gear body frame from gear radius, gear angle and height."""
+    """Convert cylindrical coordinates to points of the gear body frame.
+
+    Parameters
+    ----------
+    radius : (...) array_like
+        Gear radius, m.
+    beta : (...) array_like
+        Gear angle, rad.
+    z : (...) array_like
+        Height, m.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
     x, y, z = np.broadcast_arrays(radius * np.sin(beta), radius * np.cos(beta), z)
     return np.stack([x, y, z], axis=-1)

@@ -11,7 +11,21 @@ SAMPLES = 401
 
 
 def smallest_radius(design: PairDesign, body: str) -> float:
-    """Smallest radius of curvature (m) of a fillet's sections: the pinion's, or the gear's over its face."""
+    """Compute the smallest radius of curvature of a fillet's sections: the pinion's, or the gear's over its
+    face.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : str
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    float
+        m.
+    """
     if body == "pinion":
         gamma = np.linspace(design.pressure_angle, np.pi / 2, SAMPLES)
         radius, angle = pinion.trochoid_point(design, gamma)

@@ -19,7 +19,22 @@ FLANKS = ("drive", "back")
 
 
 def errors_at(errors: AssemblyErrors, gear: str, flank: str) -> AssemblyErrors:
-    """Errors that `flank` (drive or back) of the upper or lower `gear` meets, as those of a drive flank."""
+    """Return the errors at a flank, as those of a drive flank.
+
+    Parameters
+    ----------
+    errors : AssemblyErrors
+        Errors at the upper gear's drive flank.
+    gear : str
+        `upper` or `lower`.
+    flank : str
+        `drive` or `back`.
+
+    Returns
+    -------
+    AssemblyErrors
+        Errors of the flank.
+    """
     side = 1.0 if gear == "upper" else -1.0
     mirror = 1.0 if flank == "drive" else -1.0
     return replace(
@@ -30,13 +45,39 @@ def errors_at(errors: AssemblyErrors, gear: str, flank: str) -> AssemblyErrors:
 
 
 def pair_at(design: PairDesign, gear: str, flank: str) -> PairDesign:
-    """The pair whose drive flank is that `flank` (drive or back) of the upper or lower `gear`."""
-    seen = design if flank == "drive" else design.exchanged
-    return replace(seen, assembly=errors_at(design.assembly, gear, flank))
+    """Return the pair whose drive flank is a flank of the upper or lower gear.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    gear : str
+        `upper` or `lower`.
+    flank : str
+        `drive` or `back`.
+
+    Returns
+    -------
+    PairDesign
+        The pair.
+    """
+    drive_design = design if flank == "drive" else design.with_swapped_flanks
+    return replace(drive_design, assembly=errors_at(design.assembly, gear, flank))
 
 
 def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
-    """The different ones of all flanks, the design first, and which of them each is (gears, flanks)."""
-    met = [pair_at(design, gear, flank) for gear in GEARS for flank in FLANKS]
-    different = list(dict.fromkeys(met))
-    return different, np.array([different.index(pair) for pair in met]).reshape(len(GEARS), len(FLANKS))
+    """Return the different pairs of all flanks, the design first.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple
+        The pairs, and the number of each flank's pair, (gears, flanks).
+    """
+    pairs = [pair_at(design, gear, flank) for gear in GEARS for flank in FLANKS]
+    different = list(dict.fromkeys(pairs))
+    return different, np.array([different.index(pair) for pair in pairs]).reshape(len(GEARS), len(FLANKS))

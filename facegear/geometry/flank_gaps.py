@@ -22,17 +22,60 @@ class FlankGaps:
 
     @classmethod
     def of_pairs(cls, design: PairDesign, phi1: Array, phi2: Array, tooth: Array) -> Self:
-        """Of pairs `tooth` (p,) at the angles phi1, phi2 (p,) rad."""
+        """Return the pairs at given angles.
+
+        Parameters
+        ----------
+        design : PairDesign
+            Pair of gears.
+        phi1 : (p,) array
+            Pinion angle, rad.
+        phi2 : (p,) array
+            Gear angle, rad.
+        tooth : (p,) array
+            Numbers of the pairs, dimensionless.
+
+        Returns
+        -------
+        FlankGaps
+            Pairs of teeth.
+        """
         return cls(design, GearSide.of_design(design), to_left_flank(design, phi1, phi2, tooth))
 
     def only(self, rows: AnyArray) -> Self:
-        """Some of the pairs."""
+        """Return some of the pairs.
+
+        Parameters
+        ----------
+        rows : (k,) array
+            Numbers or mask of the pairs.
+
+        Returns
+        -------
+        FlankGaps
+            Chosen pairs.
+        """
         return type(self)(self.design, self.gear, self.motion.only(rows))
 
     def at(self, roll: Array, y: Array) -> Array:
-        """Separation (p, n) m at roll angles (rad) and y (m), (p, n) or (n,) for all alike.
+        """Compute the separation as `facegear.geometry.separation` does, no farther than a module.
 
-        As `facegear.geometry.separation` has it, no farther than a module. Raises what that raises.
+        Parameters
+        ----------
+        roll : (p, n) array
+            Roll angle, rad; (n,) for all pairs.
+        y : (p, n) array
+            Axial position, m; (n,) for all pairs.
+
+        Returns
+        -------
+        (p, n) array
+            m.
+
+        Raises
+        ------
+        NotConverged
+            As `separation` does.
         """
         points = flank_points(self.design, roll, y)
         starts, ways = self.motion.points(points.position), self.motion.directions(points.normal)

@@ -25,93 +25,214 @@ GRAZING = 0.1
 
 @lru_cache(maxsize=16)
 def flank_depth(design: PairDesign) -> "scipy.interpolate.CubicSpline":
-    """Depth (m) below the tip plane of the flank's end at the fillet, by gear radius (m)."""
+    """Return the depth below the tip plane of the flank's end at the fillet.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    scipy.interpolate.CubicSpline
+        Depth (m) over gear radius (m).
+    """
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
     return scipy.interpolate.CubicSpline(radius, design.gear_tip_plane - flank_end(design, radius)[..., 2])
 
 
 def flank_end(design: PairDesign, radius: ArrayLike) -> Array:
-    """Points (..., 3) where the flank ends at the fillet, at gear radii (m)."""
+    """Compute the points where the flank ends at the fillet.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
     roll = design.shaper_tip_roll
     return face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
 
 
-def removed(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
-    """Material (m) taken off along the normal at gear radius and depth below the tip plane (m).
+def removed_depth(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
+    """Compute the material that modifications and deviations take off along the normal.
 
-    Negative where slopes, bias or deviations add material. Tip relief is measured from the tip plane, root
-    relief from where the flank ends, end relief from either end of the face, crownings from the middle of the
-    face and from the pitch plane.
+    Tip relief is measured from the tip plane, root relief from where the flank ends, end relief from
+    either end of the face, crownings from the middle of the face and from the pitch plane.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    depth : (...) array_like
+        Depth below the tip plane, m.
+
+    Returns
+    -------
+    (...) array
+        m; negative where slopes, bias or deviations add material.
     """
-    gear, made = design.face_gear, design.face_gear.modifications
+    gear, modifications = design.face_gear, design.face_gear.modifications
     at: Array = np.clip(np.asarray(radius, float), gear.inner_radius, gear.outer_radius)
     deepest: Array = flank_depth(design)(at)
     below: Array = np.clip(np.asarray(depth, float), 0.0, deepest)
     along = (at - design.mean_radius) / (0.5 * (gear.outer_radius - gear.inner_radius))
     across = 1.0 - below / gear.addendum
-    taken: Array = (
-        linear(made.tip_relief, below)
-        + linear(made.root_relief, deepest - below)
-        + linear(made.end_relief, np.minimum(at - gear.inner_radius, gear.outer_radius - at))
-        + parabola(made.lead_crowning, np.abs(at - design.mean_radius))
-        + parabola(made.profile_crowning, np.abs(below - gear.addendum))
-        + made.lead_slope * along
-        + made.profile_slope * across
-        + made.bias * along * across
+    depth_removed: Array = (
+        linear(modifications.tip_relief, below)
+        + linear(modifications.root_relief, deepest - below)
+        + linear(modifications.end_relief, np.minimum(at - gear.inner_radius, gear.outer_radius - at))
+        + parabola(modifications.lead_crowning, np.abs(at - design.mean_radius))
+        + parabola(modifications.profile_crowning, np.abs(below - gear.addendum))
+        + modifications.lead_slope * along
+        + modifications.profile_slope * across
+        + modifications.bias * along * across
     )
-    return taken if gear.flanks.left is None else taken - deviation(gear.flanks.left, at, below)
+    return (
+        depth_removed if gear.flanks.left is None else depth_removed - deviation(gear.flanks.left, at, below)
+    )
 
 
 def as_generated(design: PairDesign) -> bool:
-    """Whether that flank is the one that the shaper generates, with nothing taken off or added."""
+    """Whether the flank is the one that the shaper generates, with nothing taken off or added.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    bool
+        True without modifications and deviations.
+    """
     gear = design.face_gear
     return gear.modifications == GearModifications() and gear.flanks.left is None
 
 
 def flank_as_made(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
-    """Points (..., 3) of the flank, see `face_gear.flank_point`, less what is taken off there."""
+    """Compute points of the flank, see `face_gear.flank_point`, less the material taken off.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
     points = face_gear.flank_point(design, roll, psi)
     if as_generated(design):
         return points
-    taken = removed(design, np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2])
-    return points - taken[..., None] * face_gear.flank_normal(design, roll, psi)
+    depth_removed = removed_depth(
+        design, np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2]
+    )
+    return points - depth_removed[..., None] * face_gear.flank_normal(design, roll, psi)
 
 
 def tip_edge_as_made(design: PairDesign, radius: ArrayLike) -> Array:
-    """Points (..., 3) of the flank's tip edge at gear radii (m) of the unmodified gear."""
+    """Compute points of the flank's tip edge, less the material taken off.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius on the unmodified gear, m.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
     return flank_as_made(design, *face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane))
 
 
 def fillet_as_made(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
-    """Points (..., 3) of the fillet, see `face_gear.fillet_section`, less what the end of the flank loses."""
+    """Compute points of the fillet, see `face_gear.fillet_section`, less the material taken off at the end of
+    the flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    psi : (...) array_like
+        Slope of the fillet's normal, rad.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
     points = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
     if as_generated(design):
         return points
-    taken = removed(design, radius, flank_depth(design)(radius))
-    return points - taken[..., None] * face_gear.fillet_normal(design, radius, psi)
+    depth_removed = removed_depth(design, radius, flank_depth(design)(radius))
+    return points - depth_removed[..., None] * face_gear.fillet_normal(design, radius, psi)
 
 
-def crowned(design: PairDesign, points: Array) -> tuple[Array, Array, Array]:
-    """Curvatures (1/m) that crownings and deviations add at points (..., 3) of the flank, convex positive:
-    along the depth below the tip plane, along the gear radius, and their twist.
+def added_curvatures(design: PairDesign, points: Array) -> tuple[Array, Array, Array]:
+    """Compute the curvatures that crownings and deviations add to the flank, convex positive.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    points : (..., 3) array
+        Points of the flank, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Along the depth below the tip plane, along the gear radius, and their twist, 1/m.
     """
-    made, grid = design.face_gear.modifications, design.face_gear.flanks.left
+    modifications, grid = design.face_gear.modifications, design.face_gear.flanks.left
     radius, depth = np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2]
     return (
-        parabola_curvature(made.profile_crowning, np.abs(depth - design.face_gear.addendum))
+        parabola_curvature(modifications.profile_crowning, np.abs(depth - design.face_gear.addendum))
         - derivative(grid, radius, depth, (0, 2)),
-        parabola_curvature(made.lead_crowning, np.abs(radius - design.mean_radius))
+        parabola_curvature(modifications.lead_crowning, np.abs(radius - design.mean_radius))
         - derivative(grid, radius, depth, (2, 0)),
         -derivative(grid, radius, depth, (1, 1)),
     )
 
 
-def opened(design: PairDesign, points: Array, directions: Array) -> Array:
-    """How much longer (n,) m rays become that end at `points` (n, 3) of the unmodified gear.
+def gap_opening(design: PairDesign, points: Array, directions: Array) -> Array:
+    """Compute how much longer rays from the pinion become by modifications and deviations.
 
-    directions (n, 3): of unit length, from the pinion. First order in what is removed: against the exactly
-    displaced flank 0.1 um at 50 um. Points that are not finite open nothing.
+    It is of first order in the removed depth: 0.1 um off at 50 um compared with the exactly displaced
+    flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    points : (n, 3) array
+        Ends of the rays on the unmodified gear, m; those that are not finite give 0.
+    directions : (n, 3) array
+        Unit vectors, dimensionless.
+
+    Returns
+    -------
+    (n,) array
+        m.
     """
     opening = np.zeros(len(points))
     ends = np.flatnonzero(np.isfinite(points).all(axis=-1))
@@ -121,5 +242,5 @@ def opened(design: PairDesign, points: Array, directions: Array) -> Array:
     roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane - depth)
     normal = face_gear.flank_normal(design, roll, psi)
     cosine = np.maximum(-np.einsum("ij,ij->i", normal, directions[ends]), GRAZING)
-    opening[ends] = removed(design, radius, depth) / cosine
+    opening[ends] = removed_depth(design, radius, depth) / cosine
     return opening

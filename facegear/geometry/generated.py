@@ -5,9 +5,24 @@ from dataclasses import replace
 from facegear.geometry.design import AssemblyErrors, Flanks, GearModifications, PairDesign, Relief
 
 
-def generated(design: PairDesign) -> PairDesign:
-    """The pair with flanks as they are generated, assembled without errors: many designs share one."""
-    none = Relief()
-    pinion = replace(design.pinion, tip_relief=none, root_relief=none, lead_crowning=none, flanks=Flanks())
+def as_cut(design: PairDesign) -> PairDesign:
+    """Return the pair with flanks as they are generated, assembled without errors.
+
+    Many designs share one such pair.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    PairDesign
+        Pair without modifications, deviations and errors.
+    """
+    no_flanks = Relief()
+    pinion = replace(
+        design.pinion, tip_relief=no_flanks, root_relief=no_flanks, lead_crowning=no_flanks, flanks=Flanks()
+    )
     gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
     return replace(design, pinion=pinion, face_gear=gear, assembly=AssemblyErrors())

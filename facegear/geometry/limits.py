@@ -43,19 +43,48 @@ class RadiusLimits:
 
 
 def radius_limits(design: PairDesign) -> RadiusLimits:
-    """Limits of the face width for any shaper, addendum and pressure angle.
+    """Compute the limits of the face width for any shaper, addendum and pressure angle.
 
     Undercut: the singular line th = (tan psi / 2)(1 + sqrt(1 + 4 / (m2s cos psi)^2)) meets the end of the
-    shaper's involute.
-    Pointing: the two flanks meet on the tip plane. Raises GeometryError if they do so at every radius.
+    shaper's involute. Pointing: the two flanks meet on the tip plane.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    RadiusLimits
+        Gear radii, m.
+
+    Raises
+    ------
+    GeometryError
+        If the flanks meet on the tip plane at every radius.
     """
     return RadiusLimits(undercut_radius(design), *_pointing_radii(design))
 
 
 def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
-    """Where the teeth can be cut with a fillet and a tip land; needs neither radius of the face.
+    """Compute where the teeth can be cut with a fillet and a tip land; neither radius of the face is needed.
 
-    Raises GeometryError if there is no such place.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    limits : RadiusLimits
+        Result of `radius_limits`.
+
+    Returns
+    -------
+    FaceRange
+        Gear radii, m.
+
+    Raises
+    ------
+    GeometryError
+        If there is no such place.
     """
     tip_undercut = tip_plane_radius(design)
     inner, inner_reason = max((limits.inner, "undercut"), (tip_undercut * (1 + 1e-9), "tip undercut"))
@@ -106,14 +135,14 @@ def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float
     return float(first), _last(_land_left, design, widest, high)
 
 
-def _last(room: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:
+def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:
     """The largest radius (m) with room left; room falls outwards."""
     low, high = low * (1 + 1e-9), high * (1 - 1e-6)
-    if high <= low or room(design, low) <= 0:
+    if high <= low or margin(design, low) <= 0:
         return low
-    if room(design, high) >= 0:
+    if margin(design, high) >= 0:
         return high
-    return float(brentq(lambda radius: room(design, radius), low, high, xtol=ROUNDING))
+    return float(brentq(lambda radius: margin(design, radius), low, high, xtol=ROUNDING))
 
 
 def _land_left(design: PairDesign, radius: float) -> float:
@@ -123,9 +152,20 @@ def _land_left(design: PairDesign, radius: float) -> float:
 
 
 def sharpest_fillet_radius(design: PairDesign) -> float:
-    """Gear radius (m) at which the centre of the shaper's tip rounding rolls on the gear's pitch surface.
+    """Compute the gear radius at which the centre of the shaper's tip rounding rolls on the gear's pitch
+    surface.
 
     The tip turns about that centre and leaves nothing but its own rounding; a sharp one leaves a corner.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        m.
     """
     return design.shaper_rounding_centre / design.shaper_ratio
 
@@ -138,7 +178,18 @@ def _fillet_left(design: PairDesign, radius: float) -> float:
 
 
 def undercut_radius(design: PairDesign) -> float:
-    """Smallest gear radius (m) that the shaper's tip does not cut into the flank."""
+    """Compute the smallest gear radius at which the shaper's tip does not cut into the flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        m.
+    """
     base, ratio, roll = design.shaper_base_radius, design.shaper_ratio, design.shaper_tip_roll
 
     def margin(psi: float) -> float:
@@ -149,12 +200,24 @@ def undercut_radius(design: PairDesign) -> float:
 
 
 def tip_plane_radius(design: PairDesign) -> float:
-    """Smallest gear radius (m) at which the flank reaches the tip plane (the envelope turns back there)."""
+    """Compute the smallest gear radius at which the flank reaches the tip plane (the envelope turns back
+    there).
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        m.
+    """
     base, ratio = design.shaper_base_radius, design.shaper_ratio
     height = (design.shaper_lift - design.gear_tip_plane) / base
 
     def slope(psi: float) -> float:
-        """Of half the radius squared, over base squared."""
+        """Return the derivative of half the radius squared by psi, over base squared."""
         outwards = (1 - height * cos(psi)) * (height - cos(psi)) / sin(psi) ** 3
         return outwards + sin(psi) / (ratio**2 * cos(psi) ** 3)
 

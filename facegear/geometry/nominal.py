@@ -27,7 +27,20 @@ class Face:
 
 
 def flank_face(design: PairDesign, body: Body) -> Face:
-    """The flank of `pinion` or `face_gear`; that of the gear is as deep as at its deepest end."""
+    """Return the flank of a body; the flank of the gear is as deep as at its deepest end.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : Body
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    Face
+        Ends and middle, m.
+    """
     if body == "pinion":
         base, half = design.pinion_base_radius, design.pinion.width / 2
         ends = base * pinion.junction_roll(design), base * design.pinion_tip_roll
@@ -40,10 +53,30 @@ def flank_face(design: PairDesign, body: Body) -> Face:
 
 
 def nominal_points(face: Face, side: str, along: Array, across: Array) -> tuple[Array, Array]:
-    """Points (n, m, 3) in m and outward unit normals of the right or left flank of tooth 0 in its body frame.
+    """Compute nominal points and outward unit normals of a flank of tooth 0 in its body frame.
 
-    along (n,): places along the face, across (m,): along the profile, both in m as in `DeviationGrid`.
-    Modifications and deviations are left out. Raises NotConverged beside the gear's flank.
+    Modifications and deviations are left out.
+
+    Parameters
+    ----------
+    face : Face
+        Flank of a body.
+    side : str
+        `right` or `left`.
+    along : (n,) array
+        Distances along the face, m, as in `DeviationGrid`.
+    across : (m,) array
+        Distances along the profile, m.
+
+    Returns
+    -------
+    tuple of (n, m, 3) arrays
+        Points, m, and normals.
+
+    Raises
+    ------
+    NotConverged
+        Beside the gear's flank.
     """
     design = face.design
     if face.body == "pinion":
@@ -52,8 +85,11 @@ def nominal_points(face: Face, side: str, along: Array, across: Array) -> tuple[
         nx, nz = pinion.involute_normal(design, roll)
         normals = np.stack([nx, np.zeros_like(nx), nz], axis=-1)
     else:
-        places = face_gear.roll_and_psi_at_height(design, along[:, None], design.gear_tip_plane - across)
-        points, normals = face_gear.flank_point(design, *places), face_gear.flank_normal(design, *places)
+        coordinates = face_gear.roll_and_psi_at_height(design, along[:, None], design.gear_tip_plane - across)
+        points, normals = (
+            face_gear.flank_point(design, *coordinates),
+            face_gear.flank_normal(design, *coordinates),
+        )
     if side == "left":
         points, normals = (part * np.array([-1.0, 1.0, 1.0]) for part in (points, normals))
     return points, normals

@@ -1,4 +1,4 @@
-"""What of the gear's tooth stands opposite points of the pinion, and the reverse for the gear's tip edge."""
+"""Points of the gear's tooth opposite points of the pinion, and the reverse for the gear's tip edge."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -64,24 +64,56 @@ class FilletCurve:
 
 
 def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
-    """Many points of the pinion's fillet between two angles gamma (rad)."""
+    """Return many points of the pinion's fillet between two angles gamma.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    first : float
+        Angle gamma, rad.
+    last : float
+        Angle gamma, rad.
+
+    Returns
+    -------
+    FilletCurve
+        Points in m.
+    """
     gamma = np.linspace(first, last, FILLET_SAMPLES)
     surface = fillet_points(design, gamma, design.mean_radius)
     points, normals = (part[:, [0, 2]] * np.array([1.0, -1.0]) for part in (surface.position, surface.normal))
     return FilletCurve(points, normals, gamma)
 
 
-def located(design: PairDesign, seen: Separation) -> GearHits:
-    """Where on the gear's tooth a separation ends."""
+def locate_hits(design: PairDesign, flank_separation: Separation) -> GearHits:
+    """Locate the ends of a separation on the gear's tooth.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    flank_separation : Separation
+        Separation of pinion points.
+
+    Returns
+    -------
+    GearHits
+        Coordinates on the gear's tooth.
+    """
     edge, last_roll = face_gear.tip_edge_by_radius(design), design.shaper_tip_roll
-    flank, fillet, beyond = np.full((3, *seen.gap.shape), np.nan)
-    on_flank, in_fillet, on_land = (seen.part == part for part in (FLANK, FILLET, TIP_LAND))
-    tip = edge.roll(seen.radius[on_flank])
-    flank[on_flank] = (seen.u[on_flank] - tip) / (last_roll - tip)
-    fillet[in_fillet] = face_gear.fillet_fraction(design, seen.radius[in_fillet], seen.u[in_fillet])
-    radius = seen.radius[on_land]
-    beyond[on_land] = radius * (edge.angle(radius) - seen.u[on_land])
-    return GearHits(gap=seen.gap, radius=seen.radius, flank=flank, fillet=fillet, beyond=beyond)
+    flank, fillet, beyond = np.full((3, *flank_separation.gap.shape), np.nan)
+    on_flank, in_fillet, on_land = (flank_separation.part == part for part in (FLANK, FILLET, TIP_LAND))
+    tip = edge.roll(flank_separation.radius[on_flank])
+    flank[on_flank] = (flank_separation.u[on_flank] - tip) / (last_roll - tip)
+    fillet[in_fillet] = face_gear.fillet_fraction(
+        design, flank_separation.radius[in_fillet], flank_separation.u[in_fillet]
+    )
+    radius = flank_separation.radius[on_land]
+    beyond[on_land] = radius * (edge.angle(radius) - flank_separation.u[on_land])
+    return GearHits(
+        gap=flank_separation.gap, radius=flank_separation.radius, flank=flank, fillet=fillet, beyond=beyond
+    )
 
 
 def tip_edge_feet(
@@ -91,18 +123,35 @@ def tip_edge_feet(
     fillet: FilletCurve | None,
     search_radius: float,
 ) -> EdgeFeet:
-    """Points (n, 3) of the gear's left tip edge (tooth 0, body frame) against the flanks of pinion teeth.
+    """Find the feet of pinion normals through points of the gear's left tip edge.
 
-    placement: phi1, phi2 (rad) and tooth, (p,) each: all (p, n). Beside the flank the fillet is looked at,
-    unless that is None.
+    Beside the flank the fillet is searched, unless it is None.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    points : (n, 3) array
+        Points of tooth 0 in the body frame, m.
+    placement : tuple of (p,) arrays
+        phi1, phi2 (rad) and tooth.
+    fillet : FilletCurve, optional
+        Fillet of the pinion.
+    search_radius : float
+        Distance up to which the fillet is searched, m.
+
+    Returns
+    -------
+    EdgeFeet
+        Feet (p, n), in m and rad.
     """
     phi1, phi2, tooth = (np.asarray(part) for part in placement)
     section = to_pinion_section(design, phi1, phi2, tooth[:, None]).points(points)[:, 0]
     feet = _flank_feet(design, section)
     if fillet is not None:
         beside = ~np.isfinite(feet.gap)
-        there = _fillet_feet(design, section[beside], fillet, search_radius)
-        feet.gap[beside], feet.fillet[beside], feet.lever_arm[beside] = there
+        fillet_feet = _fillet_feet(design, section[beside], fillet, search_radius)
+        feet.gap[beside], feet.fillet[beside], feet.lever_arm[beside] = fillet_feet
     return feet
 
 
@@ -120,7 +169,7 @@ def _flank_feet(design: PairDesign, section: Array) -> EdgeFeet:
     foot = roll - turn
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
     on = (ratio > 1) & (foot <= top) & (foot >= bottom) & (np.abs(turn) * base < design.module)
-    gap = base * turn + pinion.removed(design, foot, y)
+    gap = base * turn + pinion.removed_depth(design, foot, y)
     return EdgeFeet(
         gap=np.where(on, gap, np.inf),
         lever_arm=np.full(on.shape, base),
@@ -138,10 +187,10 @@ def _fillet_feet(
     gap, gamma, lever_arm = (np.full(len(section), value) for value in (np.inf, np.nan, 0.0))
     low, high = curve.min(axis=0) - search_radius, curve.max(axis=0) + search_radius
     close = np.flatnonzero(((section[:, :2] > low) & (section[:, :2] < high)).all(axis=1))
-    here = section[close]
-    nearest = fillet.tree.query(here[:, :2])[1]
-    apart = np.sum((here[:, :2] - curve[nearest]) * normal[nearest], axis=1)
-    apart += pinion.removed(design, pinion.junction_roll(design), here[:, 2])
+    near_points = section[close]
+    nearest = fillet.tree.query(near_points[:, :2])[1]
+    apart = np.sum((near_points[:, :2] - curve[nearest]) * normal[nearest], axis=1)
+    apart += pinion.removed_depth(design, pinion.junction_roll(design), near_points[:, 2])
     on = (nearest > 0) & (nearest < len(curve) - 1) & (np.abs(apart) < search_radius)
     close, nearest = close[on], nearest[on]
     gap[close], gamma[close] = apart[on], fillet.gamma[nearest]

@@ -11,7 +11,7 @@ from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
 
 PINION_PARTS = ("tip land", "chamfer", "flank", "fillet", "root land")
-_MODIFIED = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
+_MODIFIED_PARTS = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,20 @@ class PinionOutline:
 
 
 def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
-    """Outline with `density` points on the flank and on the fillet."""
+    """Return the outline of half a tooth.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    density : int
+        Number of points on the flank and on the fillet.
+
+    Returns
+    -------
+    PinionOutline
+        Outline, m.
+    """
     edge, space = pinion.tip_half_angle(design), pi / design.pinion.teeth
     few = density // 20
     land = np.linspace(0, edge, few)
@@ -52,9 +65,9 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
         np.stack([parts[n][0] * np.sin(parts[n][1]), parts[n][0] * np.cos(parts[n][1])], 1) for n in names
     ]
     normals = [np.stack(parts[n][2], 1) for n in names]
-    others = [normal.copy() for normal in normals]
+    corner_normals = [normal.copy() for normal in normals]
     for before, after in zip(range(len(names) - 1), range(1, len(names)), strict=True):
-        others[before][-1], others[after][0] = normals[after][0], normals[before][-1]
+        corner_normals[before][-1], corner_normals[after][0] = normals[after][0], normals[before][-1]
     sizes = [len(part) for part in points]
     numbers = np.repeat([PINION_PARTS.index(name) for name in names], sizes)
     rolls = np.full(sum(sizes), bottom)
@@ -63,7 +76,7 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
     return PinionOutline(
         points=nodes,
         normals=np.concatenate(normals),
-        other_normals=np.concatenate(others),
+        other_normals=np.concatenate(corner_normals),
         part=numbers,
         roll=rolls,
         tree=cKDTree(nodes),
@@ -87,10 +100,25 @@ def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array,
 def signed_distance(
     design: PairDesign, outline: PinionOutline, section: Array, search_radius: float
 ) -> tuple[Array, Integers]:
-    """Signed distance (m) of points (..., 3), x, -z, y of the tooth's frame, and the nearest vertex' index.
+    """Compute the signed distance of points from the outline; modifications are taken off the flank and the
+    fillet.
 
-    Negative inside the tooth. inf beyond `search_radius` and beyond the ends of the face. Modifications are
-    taken off the flank and the fillet.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    outline : PinionOutline
+        Outline of the pinion.
+    section : (..., 3) array
+        Points, x, -z, y of the tooth's frame, m.
+    search_radius : float
+        Distance up to which the outline is searched, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Distance, m, negative inside the tooth, inf beyond `search_radius` and the ends of the face; index
+        of the nearest vertex.
     """
     distance, nearest = outline.tree.query(section[..., :2], distance_upper_bound=search_radius)
     away = np.abs(section[..., 2] - design.mean_radius) > design.pinion.width / 2
@@ -103,7 +131,9 @@ def signed_distance(
     along = np.sqrt(np.maximum(np.where(far, 0.0, distance) ** 2 - normal**2, 0.0))
     # on a smooth part the nearest vertex lies within a spacing: the normal part is the distance
     corner = (along > 0.02 * design.module) & (normal > 0)
-    signed = np.where(corner, distance, normal)
-    modified = np.isin(outline.part[nearest], _MODIFIED)
-    signed = signed + np.where(modified, pinion.removed(design, outline.roll[nearest], section[..., 2]), 0.0)
-    return np.where(far, np.inf, signed), nearest
+    signed_length = np.where(corner, distance, normal)
+    is_modified = np.isin(outline.part[nearest], _MODIFIED_PARTS)
+    signed_length = signed_length + np.where(
+        is_modified, pinion.removed_depth(design, outline.roll[nearest], section[..., 2]), 0.0
+    )
+    return np.where(far, np.inf, signed_length), nearest

@@ -1,4 +1,4 @@
-"""Where the pinion stands against the gear: rotations, tooth numbers and assembly errors."""
+"""Position of the pinion relative to the gear: rotations, tooth numbers and assembly errors."""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -15,97 +15,265 @@ AXIS = {"pinion": np.array([0.0, -1.0, 0.0]), "face_gear": np.array([0.0, 0.0, -
 
 
 def body_rotation(body: str, angle: ArrayLike) -> Array:
-    """Matrices (..., 3, 3) of turns of the pinion or the face gear by `angle` (rad)."""
+    """Return rotation matrices of the pinion or the face gear.
+
+    Parameters
+    ----------
+    body : str
+        `pinion` or `face_gear`.
+    angle : (...) array_like
+        rad.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Matrices, dimensionless.
+    """
     return rotation(AXIS[body], angle)
 
 
 def rotation(axis: Array, angle: ArrayLike) -> Array:
-    """Matrices (..., 3, 3) of turns by `angle` (rad) about a unit vector, by Rodrigues' formula.
+    """Return rotation matrices about an axis, by Rodrigues' formula.
 
     Every start of the workflow places gears, and SciPy's rotations take 0.3 s of CPU time to import.
+
+    Parameters
+    ----------
+    axis : (3,) array
+        Unit vector, dimensionless.
+    angle : (...) array_like
+        rad.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Matrices, dimensionless.
     """
     angle = np.asarray(angle, float)[..., None, None]
-    still, across, along = _turned(tuple(axis.tolist()))
+    still, across, along = _rotation_parts(tuple(axis.tolist()))
     return np.cos(angle) * still + np.sin(angle) * across + along
 
 
 @lru_cache(maxsize=16)
-def _turned(axis: tuple[float, ...]) -> tuple[Array, Array, Array]:
-    """What cosine, sine and 1 stand before in a turn about an axis: shared, only read."""
+def _rotation_parts(axis: tuple[float, ...]) -> tuple[Array, Array, Array]:
+    """Return the matrices that cosine, sine and 1 multiply in a rotation about an axis: shared, only read."""
     along = np.outer(axis, axis)
     return np.eye(3) - along, np.cross(axis, np.eye(3)).T, along
 
 
 @dataclass(frozen=True, eq=False)
 class RigidMotion:
-    """From one frame to another: a point x becomes `matrix` x + `shift`; (..., 3, 3) and (..., 3) in m."""
+    """Rigid motion from one frame to another: a point x becomes `matrix` x + `shift`; (..., 3, 3) and (...,
+    3) in m.
+    """
 
     matrix: Array
     shift: Array
 
     def points(self, points: Array) -> Array:
-        """Points (n, 3), or (..., n, 3) for each motion its own, in the other frame: (..., n, 3)."""
+        """Transform points to the other frame.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            m; (..., n, 3) for separate points of each motion.
+
+        Returns
+        -------
+        (..., n, 3) array
+            m.
+        """
         return self.directions(points) + self.shift[..., None, :]
 
     def directions(self, vectors: Array) -> Array:
-        """The same for directions, which are turned only."""
+        """Rotate directions to the other frame.
+
+        Parameters
+        ----------
+        vectors : (n, 3) array
+            Any unit; (..., n, 3) for separate vectors of each motion.
+
+        Returns
+        -------
+        (..., n, 3) array
+            Same unit.
+        """
         return vectors @ np.swapaxes(self.matrix, -1, -2)
 
     def only(self, rows: AnyArray | slice) -> "RigidMotion":
-        """Some of many motions (n,)."""
+        """Return some of many motions.
+
+        Parameters
+        ----------
+        rows : (k,) array
+            Numbers, mask or slice of the n motions.
+
+        Returns
+        -------
+        RigidMotion
+            Motions of these rows.
+        """
         return RigidMotion(self.matrix[rows], self.shift[rows])
 
     def inverse(self) -> "RigidMotion":
+        """Return the motion back to the first frame.
+
+        Returns
+        -------
+        RigidMotion
+            Inverse of each motion.
+        """
         matrix = np.swapaxes(self.matrix, -1, -2)
         return RigidMotion(matrix, -np.einsum("...ij,...j->...i", matrix, self.shift))
 
     def then(self, matrix: Array) -> "RigidMotion":
-        """This motion followed by a turn or a mirror about the other frame's origin."""
+        """Return this motion followed by a rotation or a reflection about the other frame's origin.
+
+        Parameters
+        ----------
+        matrix : (..., 3, 3) array
+            Orthogonal, dimensionless.
+
+        Returns
+        -------
+        RigidMotion
+            Combined motion.
+        """
         return RigidMotion(matrix @ self.matrix, np.einsum("...ij,...j->...i", matrix, self.shift))
 
 
 def pinion_angle(design: PairDesign, position: ArrayLike) -> Array:
-    """Pinion angle (rad) at a position 0..1 of a pitch, 0 in its middle."""
+    """Compute the pinion angle at a position of a pitch.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    position : (...) array_like
+        0..1 of a pitch, in pitches; the angle is 0 in its middle.
+
+    Returns
+    -------
+    (...) array
+        rad.
+    """
     return (np.asarray(position, float) - 0.5) * 2 * pi / design.pinion.teeth
 
 
 def conjugate_angle(design: PairDesign, phi1: ArrayLike) -> Array:
-    """Gear angle (rad) of the exact ratio."""
+    """Compute the gear angle of the exact ratio.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : (...) array_like
+        Pinion angle, rad.
+
+    Returns
+    -------
+    (...) array
+        rad.
+    """
     return np.asarray(phi1, float) * design.pinion.teeth / design.face_gear.teeth
 
 
 def pinion_to_gear(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: ArrayLike) -> RigidMotion:
-    """From the body frame of pinion tooth 0, standing as tooth `tooth`, to that of the gear's tooth 0.
+    """Return the motion from the body frame of pinion tooth 0, placed as tooth `tooth`, to that of the gear's
+    tooth 0.
 
-    phi1, phi2 (rad) and the number of both teeth, broadcast together. Assembly errors are the design's.
+    The arguments are broadcast together. Assembly errors are the design's.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : (...) array_like
+        Pinion angle, rad.
+    phi2 : (...) array_like
+        Gear angle, rad.
+    tooth : (...) array_like
+        Number of both teeth, dimensionless.
+
+    Returns
+    -------
+    RigidMotion
+        Motions (...).
     """
     phi1, phi2, tooth = np.broadcast_arrays(*(np.asarray(part, float) for part in (phi1, phi2, tooth)))
     errors = design.assembly
     tilt = rotation(np.array([1.0, 0.0, 0.0]), errors.shaft_angle_error)
     pivot = np.array([0.0, design.mean_radius, 0.0])
-    moved = pivot - tilt @ pivot + np.array([errors.offset, 0.0, errors.axial_shift])
-    turned = tilt @ body_rotation("pinion", phi1 + (tooth - 0.5) * 2 * pi / design.pinion.teeth)
+    shift = pivot - tilt @ pivot + np.array([errors.offset, 0.0, errors.axial_shift])
+    pinion_rotation = tilt @ body_rotation("pinion", phi1 + (tooth - 0.5) * 2 * pi / design.pinion.teeth)
     back = body_rotation("face_gear", -(phi2 + tooth * 2 * pi / design.face_gear.teeth))
-    return RigidMotion(turned, np.broadcast_to(moved, (*phi1.shape, 3))).then(back)
+    return RigidMotion(pinion_rotation, np.broadcast_to(shift, (*phi1.shape, 3))).then(back)
 
 
 def to_left_flank(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: ArrayLike) -> RigidMotion:
-    """`pinion_to_gear`, mirrored x -> -x: the gear's left flank appears as the right one of `face_gear`."""
+    """Return `pinion_to_gear`, mirrored x -> -x: the gear's left flank appears as the right one of
+    `face_gear`.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : (...) array_like
+        Pinion angle, rad.
+    phi2 : (...) array_like
+        Gear angle, rad.
+    tooth : (...) array_like
+        Number of both teeth, dimensionless.
+
+    Returns
+    -------
+    RigidMotion
+        Motions (...).
+    """
     return pinion_to_gear(design, phi1, phi2, tooth).then(np.diag([-1.0, 1.0, 1.0]))
 
 
-def mirrored(design: PairDesign) -> PairDesign:
-    """The pair seen in a mirror x -> -x: its drive side is this pair's back side.
+def mirror_design(design: PairDesign) -> PairDesign:
+    """Return the pair seen in a mirror x -> -x: its drive side is this pair's back side.
 
     Angles change sign; the back pair of pinion tooth j and gear tooth j - 1 becomes pair 1 - j.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    PairDesign
+        Mirrored pair.
     """
-    return replace(design.exchanged, assembly=replace(design.assembly, offset=-design.assembly.offset))
+    return replace(
+        design.with_swapped_flanks, assembly=replace(design.assembly, offset=-design.assembly.offset)
+    )
 
 
 def to_pinion_section(design: PairDesign, phi1: Array, phi2: Array, teeth: Array) -> RigidMotion:
-    """From the body frame of gear tooth 0 to the pinion's tooth section: x, -z, y of its body frame.
+    """Return the motion from the body frame of gear tooth 0 to the pinion's tooth section: x, -z, y of its
+    body frame.
 
-    For p placements and t tooth numbers, gear tooth j against pinion tooth j: motions (p, t).
+    Gear tooth j is placed against pinion tooth j.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : (p,) array
+        Pinion angle, rad.
+    phi2 : (p,) array
+        Gear angle, rad.
+    teeth : (t,) array
+        Tooth numbers, dimensionless; (p, 1) for one number in each placement.
+
+    Returns
+    -------
+    RigidMotion
+        Motions (p, t).
     """
     section = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
     motion = pinion_to_gear(design, phi1[:, None], phi2[:, None], teeth)

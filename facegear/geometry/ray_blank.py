@@ -9,7 +9,7 @@ import numpy as np
 from facegear.arrays import Array, Mask
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
-from facegear.geometry.generated import generated
+from facegear.geometry.generated import as_cut
 
 SAMPLES = 25
 """Points of the sampled flank each way."""
@@ -41,7 +41,18 @@ class Blank(NamedTuple):
 
 
 def blank(design: PairDesign) -> Blank:
-    """Numbers of a design's face gear."""
+    """Return the numbers of a design's face gear.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    Blank
+        Numbers in m and rad.
+    """
     gear, pitch = design.face_gear, 2 * pi / design.face_gear.teeth
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
     starts = face_gear.fillet_start(design, radius)
@@ -85,8 +96,19 @@ class FlankSample(NamedTuple):
 
 
 def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
-    """A design's face gear, as it is generated, as `facegear.geometry.rays.cut` takes it."""
-    return _of_generated(generated(design))
+    """Return a design's face gear, as it is generated, in the form that `facegear.geometry.rays.cut` takes.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[Blank, FlankSample]
+        Numbers and sample of the flank.
+    """
+    return _of_generated(as_cut(design))
 
 
 @lru_cache(maxsize=16)

@@ -9,7 +9,7 @@ from facegear._kernels import flanks
 from facegear.arrays import AnyArray, Array
 from facegear.geometry.ray_blank import Blank, FlankSample
 
-NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
+NO_PART, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 
 
 def cut(
@@ -37,6 +37,6 @@ def cut(
     """
     count = len(starts)
     numbers, part = np.empty((5, count)), np.empty(count, np.int8)
-    lost = flanks.cut_rays(blank, sample, starts, ways, search_radius, numbers, part)
+    lost_count = flanks.cut_rays(blank, sample, starts, ways, search_radius, numbers, part)
     gap, u, v, continued, radius = numbers
-    return [gap, part, u, v, continued, radius], lost
+    return [gap, part, u, v, continued, radius], lost_count

@@ -17,19 +17,19 @@ from facegear._kernels import flanks
 from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.errors import NotConverged
 from facegear.geometry.design import PairDesign
-from facegear.geometry.gear_modifications import as_generated, opened
+from facegear.geometry.gear_modifications import as_generated, gap_opening
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import RigidMotion, to_left_flank
 from facegear.geometry.ray_blank import Blank, FlankSample, gear_rays
-from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
+from facegear.geometry.rays import FILLET, FLANK, NO_PART, ROOT_LAND, TIP_LAND, cut
 
 PARTS = ("none", "flank", "fillet", "tip land", "root land")
-"""Names of the parts NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND."""
+"""Names of the parts NO_PART, FLANK, FILLET, TIP_LAND, ROOT_LAND."""
 
 __all__ = [
     "FILLET",
     "FLANK",
-    "NONE",
+    "NO_PART",
     "PARTS",
     "ROOT_LAND",
     "TIP_LAND",
@@ -70,12 +70,35 @@ def separation(
     tooth: ArrayLike = 0,
     search_radius: float | None = None,
 ) -> Separation:
-    """Separation of the right side of pinion tooth `tooth` from the left side of that gear tooth.
+    """Compute the separation of the right side of a pinion tooth from the left side of the gear tooth of that
+    number.
 
-    phi1, phi2 (rad) and tooth broadcast to p placements; points are n points (n, 3) of the frame of tooth 0,
-    or (p, n, 3) for each placement its own. Surfaces are looked for as far as `search_radius` (m, default one
-    module). Assembly errors are the design's.
-    Raises NotConverged where a ray close to the flank cannot be cut with it.
+    Angles and tooth broadcast to p placements. Assembly errors are the design's.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    points : SurfacePoints
+        Points (n, 3) of the frame of tooth 0, or (p, n, 3) separately for each placement, m.
+    phi1 : (p,) array_like
+        Pinion angle, rad.
+    phi2 : (p,) array_like
+        Gear angle, rad.
+    tooth : (p,) array_like
+        Number of both teeth.
+    search_radius : float, optional
+        Distance up to which surfaces are searched, m; one module if None.
+
+    Returns
+    -------
+    Separation
+        Gaps (p, n), m.
+
+    Raises
+    ------
+    NotConverged
+        Where a ray close to the flank cannot be cut with it.
     """
     phi1, phi2, tooth = (
         np.atleast_1d(part).ravel() for part in np.broadcast_arrays(phi1, phi2, np.asarray(tooth, float))
@@ -87,8 +110,8 @@ def separation(
     cuts = []
     for first in range(0, max(1, phi1.size), block):
         rows = slice(first, first + block)
-        here = points if points.position.ndim == 2 else points.only(rows)
-        cuts.append(gear.cut(*_rays_of_all(motion.only(rows), here), search_radius))
+        block_points = points if points.position.ndim == 2 else points.only(rows)
+        cuts.append(gear.cut(*_rays_of_all(motion.only(rows), block_points), search_radius))
     hit = cuts[0] if len(cuts) == 1 else [np.concatenate(parts) for parts in zip(*cuts, strict=True)]
     return Separation(*(values.reshape(phi1.size, count) for values in hit))
 
@@ -101,10 +124,32 @@ def separation_each(
     search_radius: float,
     number: Integers | None = None,
 ) -> Separation:
-    """The same of points that each stand in one of p placements only, `at` (n,): all (n,).
+    """Compute the separation of points that each have one of p placements only.
 
-    placement: phi1, phi2 (rad) and tooth, (p,) each; number (n,): which of the points (m, 3), without it all.
-    Raises NotConverged as `separation` does.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    points : SurfacePoints
+        Points (m, 3), m.
+    placement : tuple of (p,) arrays
+        phi1, phi2 (rad) and tooth.
+    at : (n,) array of int
+        Number of the placement of each point.
+    search_radius : float
+        Distance up to which surfaces are searched, m.
+    number : (n,) array of int, optional
+        Numbers of the points; all of them if None.
+
+    Returns
+    -------
+    Separation
+        Gaps (n,), m.
+
+    Raises
+    ------
+    NotConverged
+        As `separation` does.
     """
     motion = to_left_flank(design, *placement)
     if number is None:
@@ -114,9 +159,9 @@ def separation_each(
 
 def _rays_of_all(motion: RigidMotion, points: SurfacePoints) -> tuple[Array, Array]:
     """Points (n, 3) in each of p motions, or (p, n, 3) each in its own: points and directions (p n, 3)."""
-    placements, (*each, count, _) = len(motion.shift), points.position.shape
+    placements, (*placement_shape, count, _) = len(motion.shift), points.position.shape
     at, number = np.repeat(np.arange(placements), count), np.arange(placements * count)
-    number = number if each else number - count * at
+    number = number if placement_shape else number - count * at
     return _rays(motion, points.flat(), at, number)
 
 
@@ -134,29 +179,59 @@ class GearSide:
     design: PairDesign
     blank: Blank
     sample: FlankSample
-    generated: bool
+    is_generated: bool
 
     @classmethod
     def of_design(cls, design: PairDesign) -> Self:
-        """Of the flank that meets the pinion's right one."""
+        """Return the side that meets the pinion's right flank.
+
+        Parameters
+        ----------
+        design : PairDesign
+            Pair of gears.
+
+        Returns
+        -------
+        GearSide
+            Side of the gear.
+        """
         return cls(design, *gear_rays(design), as_generated(design))
 
     def cut(self, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
-        """Fields of `Separation`, (n,), of rays (n, 3) of unit length in the frame of the gear's flank.
+        """Cut rays in the frame of the gear's flank.
 
-        Raises NotConverged where a ray close to the flank cannot be cut with it.
+        Parameters
+        ----------
+        starts : (n, 3) array
+            Starts of the rays, m.
+        ways : (n, 3) array
+            Unit vectors, dimensionless.
+        search_radius : float
+            Distance up to which surfaces are searched, m.
+
+        Returns
+        -------
+        list of (n,) arrays
+            Fields of `Separation`, in SI units.
+
+        Raises
+        ------
+        NotConverged
+            Where a ray close to the flank cannot be cut with it.
         """
-        hit, lost = cut(self.blank, self.sample, starts, ways, search_radius)
-        if lost:
-            where = f"{lost} rays at the gear"
-            raise NotConverged("separation", where, "Newton from two starts, 16 steps each")
-        if not self.generated:
-            hit[0] = hit[0] + self._opened(starts, ways, hit[0], hit[1] != ROOT_LAND)
-            hit[4] = hit[4] + self._opened(starts, ways, hit[4], True)
+        hit, lost_count = cut(self.blank, self.sample, starts, ways, search_radius)
+        if lost_count:
+            place_text = f"{lost_count} rays at the gear"
+            raise NotConverged("separation", place_text, "Newton from two starts, 16 steps each")
+        if not self.is_generated:
+            hit[0] = hit[0] + self._gap_opening(starts, ways, hit[0], hit[1] != ROOT_LAND)
+            hit[4] = hit[4] + self._gap_opening(starts, ways, hit[4], True)
         return hit
 
-    def _opened(self, starts: Array, ways: Array, length: Array, where: Mask | bool) -> Array:
-        """How much longer rays of a length (n,) become by the gear's modifications where they count."""
-        length = np.where(where, length, np.inf)
+    def _gap_opening(self, starts: Array, ways: Array, length: Array, is_counted: Mask | bool) -> Array:
+        """Return how much longer rays of a length (n,) become by the gear's modifications, where
+        these count.
+        """
+        length = np.where(is_counted, length, np.inf)
         with np.errstate(invalid="ignore"):
-            return opened(self.design, starts + length[:, None] * ways, ways)
+            return gap_opening(self.design, starts + length[:, None] * ways, ways)

@@ -38,45 +38,111 @@ class HalfTooth:
 def solid(
     design: PairDesign, body: Body, teeth: int | None = None, profile: int = 17, width: int = 17
 ) -> list[Array]:
-    """Patches of a gear, or of a sector of `teeth` teeth about tooth 0, which together enclose it.
+    """Return patches of a gear, or of a sector of teeth about tooth 0, which together enclose it.
 
-    profile, width: points of every patch along the profile (of lands: a quarter) and the width.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : Body
+        `pinion` or `face_gear`.
+    teeth : int, optional
+        Number of teeth of the sector; the whole gear if None.
+    profile : int
+        Points of every patch along the profile (of lands: a quarter).
+    width : int
+        Points of every patch along the width.
+
+    Returns
+    -------
+    list of (profile, width, 3) arrays
+        Points, m.
     """
     whole = teeth_of(design, body)
     count = whole if teeth is None else teeth
     right, left = _halves(design, body, profile, width)
-    tooth = [*_sides(right), *(mirrored(part) for part in _sides(left))]
-    patches = [turned(part, body, 2 * pi * n / whole) for n in numbers(count) for part in tooth]
+    tooth = [*_sides(right), *(mirror_patch(part) for part in _sides(left))]
+    patches = [rotate_points(part, body, 2 * pi * n / whole) for n in numbers(count) for part in tooth]
     if count < whole:
         end, first, last = _cut(right), *(2 * pi * n / whole for n in (numbers(count)[0], numbers(count)[-1]))
-        patches += [turned(end, body, last), turned(mirrored(end), body, first)]
+        patches += [rotate_points(end, body, last), rotate_points(mirror_patch(end), body, first)]
     return patches
 
 
 def _halves(design: PairDesign, body: Body, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
     """The right half of a tooth, and the left half in a mirror, which the pair's right flank meets."""
     if body == "pinion":
-        return _pinion_half(design, profile, width), _pinion_half(design.exchanged, profile, width)
-    return _gear_half(design.exchanged, profile, width), _gear_half(design, profile, width)
+        return _pinion_half(design, profile, width), _pinion_half(design.with_swapped_flanks, profile, width)
+    return _gear_half(design.with_swapped_flanks, profile, width), _gear_half(design, profile, width)
 
 
 def teeth_of(design: PairDesign, body: Body) -> int:
-    """Number of teeth of the whole gear."""
+    """Return the number of teeth of the whole gear.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : Body
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    int
+        Number of teeth.
+    """
     return design.pinion.teeth if body == "pinion" else design.face_gear.teeth
 
 
 def numbers(count: int) -> range:
-    """Numbers of `count` neighbouring teeth about tooth 0."""
+    """Return the numbers of neighbouring teeth about tooth 0.
+
+    Parameters
+    ----------
+    count : int
+        Number of teeth.
+
+    Returns
+    -------
+    range
+        Numbers of the teeth.
+    """
     return range(-(count // 2), count - count // 2)
 
 
-def turned(points: Array, body: Body, angle: float) -> Array:
-    """Points (..., 3) of a body turned about its axis by `angle` (rad, positive as in `design`)."""
+def rotate_points(points: Array, body: Body, angle: float) -> Array:
+    """Rotate points of a body about its axis.
+
+    Parameters
+    ----------
+    points : (..., 3) array
+        m.
+    body : Body
+        `pinion` or `face_gear`.
+    angle : float
+        rad, positive as in `design`.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
     return points @ body_rotation(body, angle).T
 
 
-def mirrored(patch: Array) -> Array:
-    """The left side's patch for one of the right side, normal outwards."""
+def mirror_patch(patch: Array) -> Array:
+    """Return the left side's patch for one of the right side, normal outwards.
+
+    Parameters
+    ----------
+    patch : (profile, width, 3) array
+        m.
+
+    Returns
+    -------
+    (profile, width, 3) array
+        m.
+    """
     return patch[::-1] * np.array([-1.0, 1.0, 1.0])
 
 
@@ -122,8 +188,8 @@ def _roll_bounds(design: PairDesign) -> list[float]:
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
 
     def kinks(relief: Relief) -> list[float]:
-        places = [relief.start, relief.start + relief.length] if relief.amount else []
-        return [length / design.pinion_base_radius for length in places]
+        lengths = [relief.start, relief.start + relief.length] if relief.amount else []
+        return [length / design.pinion_base_radius for length in lengths]
 
     inside = [top - kink for kink in kinks(design.pinion.tip_relief)]
     inside += [bottom + kink for kink in kinks(design.pinion.root_relief)]
@@ -177,13 +243,35 @@ def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
 
 
 def volume(patches: Sequence[Array]) -> float:
-    """Volume (m3) that the patches' triangles enclose."""
+    """Compute the volume that the patches' triangles enclose.
+
+    Parameters
+    ----------
+    patches : sequence of (profile, width, 3) arrays
+        m.
+
+    Returns
+    -------
+    float
+        m3.
+    """
     corners = triangles(patches)
     return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
 
 
 def triangles(patches: Sequence[Array]) -> Array:
-    """Corners (n, 3, 3) of two triangles for every cell of the patches, counterclockwise from outside."""
+    """Split every cell of the patches into two triangles, counterclockwise from outside.
+
+    Parameters
+    ----------
+    patches : sequence of (profile, width, 3) arrays
+        m.
+
+    Returns
+    -------
+    (n, 3, 3) array
+        Corners, m.
+    """
     parts = []
     for patch in patches:
         a, b, c, d = patch[:-1, :-1], patch[1:, :-1], patch[1:, 1:], patch[:-1, 1:]

@@ -11,7 +11,7 @@ from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.gear_modifications import flank_end
-from facegear.geometry.generated import generated
+from facegear.geometry.generated import as_cut
 from facegear.geometry.limits import ROUNDING, THINNEST_LAND, RadiusLimits, face_range, radius_limits
 
 MAX_RELIEF = 0.05
@@ -22,20 +22,33 @@ NARROWEST = 0.5
 
 @lru_cache(maxsize=64)
 def check(design: PairDesign) -> RadiusLimits:
-    """Limits of the gear's radii, if the design can exist.
+    """Check that the design can exist.
 
-    Raises GeometryError with the key relative to the section tooth_pair.
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    RadiusLimits
+        Limits of the gear's radii, m.
+
+    Raises
+    ------
+    GeometryError
+        With the key relative to the section tooth_pair.
     """
     _check_pinion(design)
     _check_relief(design)
     check_shaper(design)
-    limits = _check_gear(generated(design))
+    limits = _check_gear(as_cut(design))
     _check_gear_modifications(design)
     return limits
 
 
-def _refuse(key: str, value: float, allowed: str) -> None:
-    raise GeometryError(key, value if isinstance(value, int) else round(float(value), 6), allowed)
+def _refuse(key: str, value: float, requirement: str) -> None:
+    raise GeometryError(key, value if isinstance(value, int) else round(float(value), 6), requirement)
 
 
 def _check_pinion(design: PairDesign) -> None:
@@ -69,11 +82,11 @@ def _check_pinion(design: PairDesign) -> None:
         )
     start = design.pinion_base_radius * np.hypot(1, pinion.junction_roll(design))
     if design.pinion_tip_radius - part.tip_chamfer <= start + 0.1 * m:
-        room = design.pinion_tip_radius - start - 0.1 * m
+        available_length = design.pinion_tip_radius - start - 0.1 * m
         _refuse(
             "pinion.tip_chamfer_mm",
             1e3 * part.tip_chamfer,
-            f"less than {1e3 * max(room, 0):.3f}: no flank left",
+            f"less than {1e3 * max(available_length, 0):.3f}: no flank left",
         )
     land = 2 * pinion.tip_half_angle(design) * design.pinion_tip_radius
     if land < THINNEST_LAND * m:
@@ -93,41 +106,49 @@ def _check_relief(design: PairDesign) -> None:
     flank = design.pinion_base_radius * (design.pinion_tip_roll - pinion.junction_roll(design))
     crowning, half = part.lead_crowning, 0.5 * (design.face_gear.outer_radius - design.face_gear.inner_radius)
     if crowning.amount > 0.0 and crowning.start >= half:
-        allowed = f"less than {1e3 * half:.3f}, half of the gear's face: the crowning would begin beyond it"
-        _refuse("pinion.lead_crowning.start_mm", 1e3 * crowning.start, allowed)
-    for name, relief, room in (
+        requirement = (
+            f"less than {1e3 * half:.3f}, half of the gear's face: the crowning would begin beyond it"
+        )
+        _refuse("pinion.lead_crowning.start_mm", 1e3 * crowning.start, requirement)
+    for name, relief, available_length in (
         ("tip_relief", part.tip_relief, flank),
         ("root_relief", part.root_relief, flank),
         ("lead_crowning", part.lead_crowning, inf),
     ):
-        _check_modification(f"pinion.{name}", relief, room, MAX_RELIEF * design.module, "roll length")
-    where = "pinion.lead_crowning", "the pinion's face"
-    _check_crowning_at_end(part.lead_crowning, part.width / 2, MAX_RELIEF * design.module, *where)
+        _check_modification(
+            f"pinion.{name}", relief, available_length, MAX_RELIEF * design.module, "roll length"
+        )
+    key_and_face = "pinion.lead_crowning", "the pinion's face"
+    _check_crowning_at_end(part.lead_crowning, part.width / 2, MAX_RELIEF * design.module, *key_and_face)
 
 
 def _check_gear_modifications(design: PairDesign) -> None:
-    gear, made, at_most = design.face_gear, design.face_gear.modifications, MAX_RELIEF * design.module
+    gear, modifications, at_most = (
+        design.face_gear,
+        design.face_gear.modifications,
+        MAX_RELIEF * design.module,
+    )
     half = 0.5 * (gear.outer_radius - gear.inner_radius)
     depth = float(design.gear_tip_plane - flank_end(design, gear.inner_radius)[2])
-    for name, relief, room, what in (
-        ("tip_relief", made.tip_relief, depth, "depth at the inner end"),
-        ("root_relief", made.root_relief, depth, "depth at the inner end"),
-        ("end_relief", made.end_relief, half, "half-length along the face"),
-        ("profile_crowning", made.profile_crowning, inf, ""),
-        ("lead_crowning", made.lead_crowning, inf, ""),
+    for name, relief, available_length, length_name in (
+        ("tip_relief", modifications.tip_relief, depth, "depth at the inner end"),
+        ("root_relief", modifications.root_relief, depth, "depth at the inner end"),
+        ("end_relief", modifications.end_relief, half, "half-length along the face"),
+        ("profile_crowning", modifications.profile_crowning, inf, ""),
+        ("lead_crowning", modifications.lead_crowning, inf, ""),
     ):
-        _check_modification(f"face_gear.modifications.{name}", relief, room, at_most, what)
+        _check_modification(f"face_gear.modifications.{name}", relief, available_length, at_most, length_name)
     for name, crowning, reach in (
-        ("lead_crowning", made.lead_crowning, half),
-        ("profile_crowning", made.profile_crowning, gear.addendum),
+        ("lead_crowning", modifications.lead_crowning, half),
+        ("profile_crowning", modifications.profile_crowning, gear.addendum),
     ):
-        where = f"face_gear.modifications.{name}", "the gear's flank"
-        _check_crowning_at_end(crowning, reach, at_most, *where)
+        key_and_face = f"face_gear.modifications.{name}", "the gear's flank"
+        _check_crowning_at_end(crowning, reach, at_most, *key_and_face)
     for name in ("lead_slope", "profile_slope", "bias"):
-        amount = getattr(made, name)
+        amount = getattr(modifications, name)
         if abs(amount) > at_most:
-            allowed = f"within {1e6 * at_most:.1f}, {MAX_RELIEF:g} modules"
-            _refuse(f"face_gear.modifications.{name}_um", 1e6 * amount, allowed)
+            requirement = f"within {1e6 * at_most:.1f}, {MAX_RELIEF:g} modules"
+            _refuse(f"face_gear.modifications.{name}_um", 1e6 * amount, requirement)
 
 
 def _check_crowning_at_end(
@@ -140,28 +161,45 @@ def _check_crowning_at_end(
     at_end = crowning.amount * (beyond / crowning.length) ** 2
     if at_end > max_relief:
         min_length = beyond * sqrt(crowning.amount / max_relief)
-        allowed = (
+        requirement = (
             f"at least {1e3 * min_length:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
             f"of {face}, and at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules, may come off"
         )
-        _refuse(f"{key}.length_mm", 1e3 * crowning.length, allowed)
+        _refuse(f"{key}.length_mm", 1e3 * crowning.length, requirement)
 
 
-def _check_modification(key: str, relief: Relief, room: float, max_relief: float, what: str) -> None:
+def _check_modification(
+    key: str, relief: Relief, available_length: float, max_relief: float, length_name: str
+) -> None:
     if relief.amount == 0:
         return
     if relief.amount > max_relief:
-        allowed = f"at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules"
-        _refuse(f"{key}.amount_um", 1e6 * relief.amount, allowed)
+        requirement = f"at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules"
+        _refuse(f"{key}.amount_um", 1e6 * relief.amount, requirement)
     if relief.length <= 0:
         _refuse(f"{key}.length_mm", 1e3 * relief.length, "greater than 0 where an amount is given")
-    if relief.start + relief.length > room:
+    if relief.start + relief.length > available_length:
         end = 1e3 * (relief.start + relief.length)
-        _refuse(f"{key}.length_mm", end, f"with start at most {1e3 * room:.3f}, the flank's {what}")
+        _refuse(
+            f"{key}.length_mm",
+            end,
+            f"with start at most {1e3 * available_length:.3f}, the flank's {length_name}",
+        )
 
 
 def check_shaper(design: PairDesign) -> None:
-    """Raises GeometryError for a tool that cannot be made, or not for this pinion."""
+    """Refuse a tool that cannot be made, or not for this pinion.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Raises
+    ------
+    GeometryError
+        With the key relative to the section tooth_pair.
+    """
     teeth, min_teeth = design.shaper.teeth, design.pinion.teeth
     if not min_teeth <= teeth <= min_teeth + 3:
         _refuse("shaper.teeth", teeth, f"from {min_teeth} (line contact) to {min_teeth + 3}")
@@ -172,16 +210,16 @@ def check_shaper(design: PairDesign) -> None:
     sharp = _land_left(design, 0.0)
     if sharp < 0:
         land = 1e3 * (sharp + THINNEST_LAND * m)
-        allowed = f"less: the shaper's tip land would be {land:.3f} mm wide"
-        _refuse("shaper.addendum_modules", design.shaper.addendum / m, allowed)
+        requirement = f"less: the shaper's tip land would be {land:.3f} mm wide"
+        _refuse("shaper.addendum_modules", design.shaper.addendum / m, requirement)
     rounding = design.shaper.tip_rounding
     deepest = design.shaper_tip_radius - design.shaper_base_radius
     if rounding >= deepest or _land_left(design, rounding) < 0:
         max_rounding = deepest
         if _land_left(design, deepest) < 0:
             max_rounding = brentq(lambda radius: _land_left(design, radius), 0.0, deepest, xtol=ROUNDING)
-        allowed = f"at most {max_rounding / m:.4f}: the shaper's tip is round"
-        _refuse("shaper.tip_rounding_modules", rounding / m, allowed)
+        requirement = f"at most {max_rounding / m:.4f}: the shaper's tip is round"
+        _refuse("shaper.tip_rounding_modules", rounding / m, requirement)
 
 
 def _land_left(design: PairDesign, rounding: float) -> float:
@@ -233,8 +271,8 @@ def _check_width(design: PairDesign) -> None:
     gear, width = design.face_gear, design.pinion.width
     min_width, max_width = NARROWEST * (gear.outer_radius - gear.inner_radius), 2 * design.mean_radius
     if width < min_width:
-        allowed = f"at least {1e3 * min_width:.3f}, half the gear's face"
-        _refuse("pinion.width_mm", 1e3 * width, allowed)
+        requirement = f"at least {1e3 * min_width:.3f}, half the gear's face"
+        _refuse("pinion.width_mm", 1e3 * width, requirement)
     if width >= max_width:
         _refuse(
             "pinion.width_mm", 1e3 * width, f"less than {1e3 * max_width:.3f}: it reaches the gear's axis"

@@ -1,4 +1,4 @@
-"""Fourier series of a periodic curve sampled evenly, with the errors of cutting and of sampling."""
+"""Fourier series of a periodic curve sampled evenly, with the errors of truncation and of sampling."""
 
 from dataclasses import dataclass
 
@@ -8,16 +8,24 @@ from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics
 
 LEVELS = (0.001, 0.01, 0.05)
-"""Parts of the peak-to-peak value for which the orders needed are reported."""
+"""Fractions of the peak-to-peak value for which the orders needed are reported."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """`series` through all n samples, orders 0..(n-1)//2.
+    """Fourier series through all n samples, orders 0..(n-1)//2.
 
-    truncation: (H+1,) largest deviation from the samples if cut after each order; sampling: (H+1,) estimate
-    of each amplitude's error from leaving out every second sample, whose aliasing is that of half the points
-    (nan where half the points do not reach). peak_to_peak of the samples. All N/m.
+    Attributes
+    ----------
+    series : Harmonics
+        The series, N/m.
+    truncation : (H+1,) array
+        Largest deviation from the samples if the series is cut after each order, N/m.
+    sampling : (H+1,) array
+        Estimated error of each amplitude, from leaving out every second sample, whose aliasing is that of
+        half the points, N/m; NaN for orders that half the points do not reach.
+    peak_to_peak : float
+        Range of the samples, N/m.
     """
 
     series: Harmonics
@@ -26,15 +34,40 @@ class Fit:
     peak_to_peak: float
 
     def orders_within(self, level: float) -> int | None:
-        """Smallest order whose cut deviates at most `level` times peak-to-peak; None if no order does."""
+        """Find the smallest order after which the series may be cut.
+
+        Parameters
+        ----------
+        level : float
+            Largest deviation from the samples, as a fraction of their peak-to-peak value.
+
+        Returns
+        -------
+        int or None
+            Order; None if no order suffices.
+        """
         enough = np.flatnonzero(self.truncation <= level * self.peak_to_peak)
         return int(enough[0]) if enough.size else None
 
 
 def fit_harmonics(samples: Array) -> Fit:
-    """Least squares fit (the discrete Fourier transform) to samples (n,) at 0, 1/n, 2/n ... of a period.
+    """Fit a Fourier series to samples at 0, 1/n, 2/n ... of a period by least squares (discrete Fourier
+    transform).
 
-    Raises ValueError for fewer than four samples.
+    Parameters
+    ----------
+    samples : (n,) array
+        Samples of one period, N/m or any unit.
+
+    Returns
+    -------
+    Fit
+        Series and its errors, in the unit of the samples.
+
+    Raises
+    ------
+    ValueError
+        For fewer than four samples.
     """
     samples = np.asarray(samples, dtype=float)
     if samples.ndim != 1 or samples.size < 4:
@@ -48,9 +81,11 @@ def fit_harmonics(samples: Array) -> Fit:
     halves = [_transform(samples[start::2]) for start in (0, 1)] if samples.size >= 8 else []
     sampling = np.full(series.order + 1, np.nan)
     for half, shift in zip(halves, (0.0, 1.0 / samples.size), strict=False):
-        moved = half.shifted(shift)
+        shifted_series = half.shift(shift)
         count = half.order + 1
-        change = np.hypot(moved.sine - series.sine[:count], moved.cosine - series.cosine[:count])
+        change = np.hypot(
+            shifted_series.sine - series.sine[:count], shifted_series.cosine - series.cosine[:count]
+        )
         sampling[:count] = np.fmax(sampling[:count], change)
     return Fit(series, truncation, sampling, float(np.ptp(samples)))
 

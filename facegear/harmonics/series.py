@@ -12,10 +12,16 @@ from facegear.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class Harmonics:
-    """k(t) = sum_j sine[j] sin(j w t) + cosine[j] cos(j w t); w is the mesh frequency.
+    """Fourier series k(t) = sum_j sine[j] sin(j w t) + cosine[j] cos(j w t); w is the mesh frequency.
 
-    Both have shape (H+1,) and the unit N/m. sine[0] is zero and cosine[0] is the mean. Equation (8) of the
-    paper calls them a and b; most texts call the cosine a.
+    Equation (8) of the paper calls the coefficients a and b; most texts call the cosine a.
+
+    Attributes
+    ----------
+    sine : (H+1,) array
+        Coefficients of the sines, N/m; sine[0] is zero.
+    cosine : (H+1,) array
+        Coefficients of the cosines, N/m; cosine[0] is the mean.
     """
 
     sine: Array
@@ -67,24 +73,68 @@ class Harmonics:
         angle = 2.0 * np.pi * np.multiply.outer(np.asarray(cycles, dtype=float), np.arange(self.order + 1))
         return np.sin(angle) @ self.sine + np.cos(angle) @ self.cosine
 
-    def shifted(self, cycles: float) -> "Harmonics":
-        """The series of k(t - cycles T)."""
+    def shift(self, cycles: float) -> "Harmonics":
+        """Return the series of k(t - cycles T).
+
+        Parameters
+        ----------
+        cycles : float
+            Shift in mesh periods.
+
+        Returns
+        -------
+        Harmonics
+            Shifted series.
+        """
         angle = 2.0 * np.pi * cycles * np.arange(self.order + 1)
         cos, sin = np.cos(angle), np.sin(angle)
         sine = self.sine * cos + self.cosine * sin
         sine[0] = 0.0
         return Harmonics(sine, self.cosine * cos - self.sine * sin)
 
-    def kept(self, order: int) -> "Harmonics":
-        """The series cut after `order`."""
+    def truncate(self, order: int) -> "Harmonics":
+        """Return the series cut after an order.
+
+        Parameters
+        ----------
+        order : int
+            Largest order.
+
+        Returns
+        -------
+        Harmonics
+            Truncated series.
+        """
         return Harmonics(self.sine[: order + 1], self.cosine[: order + 1])
 
-    def scaled(self, factor: float) -> "Harmonics":
-        """The series times `factor`."""
+    def scale(self, factor: float) -> "Harmonics":
+        """Return the series times a factor.
+
+        Parameters
+        ----------
+        factor : float
+            The factor, dimensionless.
+
+        Returns
+        -------
+        Harmonics
+            Scaled series.
+        """
         return Harmonics(self.sine * factor, self.cosine * factor)
 
-    def softened(self, compliance: float) -> "Harmonics":
-        """The series of 1 / (1 / k + compliance) up to the same order; compliance in m/N."""
+    def add_compliance(self, compliance: float) -> "Harmonics":
+        """Return the series of 1 / (1 / k + compliance) up to the same order.
+
+        Parameters
+        ----------
+        compliance : float
+            Compliance in series, m/N.
+
+        Returns
+        -------
+        Harmonics
+            Series of the softer stiffness.
+        """
         points = 64 * (self.order + 1)
         stiff = self(np.arange(points) / points)
         spectrum = np.fft.rfft(stiff / (1.0 + compliance * stiff))[: self.order + 1] / points
@@ -93,15 +143,37 @@ class Harmonics:
         sine[0] = 0.0
         return Harmonics(sine, spectrum.real)
 
-    def varied(self, factor: float) -> "Harmonics":
-        """The series with the same mean and `factor` times its variation about it."""
+    def scale_variation(self, factor: float) -> "Harmonics":
+        """Return the series with the same mean and a multiple of its variation about it.
+
+        Parameters
+        ----------
+        factor : float
+            Factor on the variation, dimensionless.
+
+        Returns
+        -------
+        Harmonics
+            Series with other amplitudes.
+        """
         cosine = self.cosine * factor
         cosine[0] = self.cosine[0]
         return Harmonics(self.sine * factor, cosine)
 
 
-def stacked(series: Sequence[Harmonics]) -> Array:
-    """Fourier series as rows (series, 2, harmonics + 1), sine part first, padded to the longest."""
+def stack_series(series: Sequence[Harmonics]) -> Array:
+    """Stack Fourier series as rows of one array, padded to the longest.
+
+    Parameters
+    ----------
+    series : sequence of Harmonics
+        The series.
+
+    Returns
+    -------
+    (series, 2, harmonics + 1) array
+        Coefficients of the sines, then of the cosines, in the unit of the series.
+    """
     rows = np.zeros((len(series), 2, max(harmonics.order for harmonics in series) + 1))
     for row, harmonics in zip(rows, series, strict=True):
         row[0, : harmonics.order + 1], row[1, : harmonics.order + 1] = harmonics.sine, harmonics.cosine
@@ -109,6 +181,19 @@ def stacked(series: Sequence[Harmonics]) -> Array:
 
 
 def stacked_values(rows: Array, cycles: Array) -> Array:
-    """Values of stacked Fourier series at `cycles` (K,) in mesh periods, shape (K, series)."""
+    """Evaluate stacked Fourier series.
+
+    Parameters
+    ----------
+    rows : (series, 2, harmonics + 1) array
+        Coefficients of stack_series(), any unit.
+    cycles : (K,) array
+        Instants in mesh periods.
+
+    Returns
+    -------
+    (K, series) array
+        Values, in the unit of the coefficients.
+    """
     angle = 2.0 * np.pi * np.outer(cycles, np.arange(rows.shape[2]))
     return np.sin(angle) @ rows[:, 0].T + np.cos(angle) @ rows[:, 1].T

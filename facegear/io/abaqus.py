@@ -26,15 +26,15 @@ def write(
     surfaces: named lists of (element index, face S1..S6). Nodes that no element uses are left out; labels are
     index + 1. Lengths are in m, so a modulus belongs in Pa. CalculiX reads at most 20 characters a number.
     """
-    used = np.unique(elements)
+    used_nodes = np.unique(elements)
     with atomic_path(path) as temporary, open(temporary, "w", encoding="ascii") as stream:
         stream.write(f"*HEADING\n{title}; lengths in m\n*NODE, NSET=ALL_NODES\n")
-        _rows(stream, NODE, np.column_stack([used + 1, nodes[used]]))
+        _rows(stream, NODE, np.column_stack([used_nodes + 1, nodes[used_nodes]]))
         stream.write("*ELEMENT, TYPE=C3D20, ELSET=BODY\n")
         _rows(stream, ELEMENT, np.column_stack([np.arange(1, len(elements) + 1), elements + 1]))
         for name, members in node_sets.items():
             stream.write(f"*NSET, NSET={name.upper()}\n")
-            _list(stream, np.intersect1d(members, used) + 1)
+            _list(stream, np.intersect1d(members, used_nodes) + 1)
         for name, faces in surfaces.items():
             stream.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
             stream.writelines(f"{element + 1}, {side}\n" for element, side in faces)

@@ -26,8 +26,8 @@ def read(path: str | Path, shapes: Mapping[str, tuple[int | None, ...]]) -> dict
     """
     verify(path)
     try:
-        with np.load(path, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
+        with np.load(path, allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
     except (ValueError, OSError, EOFError, zipfile.BadZipFile, KeyError):
         raise CorruptFile(path, "not a readable array file") from None
     for name, shape in shapes.items():

@@ -15,10 +15,23 @@ NO_SPACE_HINT = "no space left on the disk; free some and run again"
 
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:
-    """Yield a temporary path in the folder of `path` (same suffix) and rename it at the end.
+    """Yield a temporary path in the folder of a path (same suffix) and rename it at the end.
 
-    Raises FacegearError with one line if the disk is full or the path cannot be written; the temporary file
-    is removed on any error.
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Yields
+    ------
+    Path
+        The temporary path.
+
+    Raises
+    ------
+    FacegearError
+        With one line if the disk is full or the path cannot be written; the temporary file is removed on any
+        error.
     """
     path = Path(path)
     _make(path.parent)
@@ -42,7 +55,15 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
 def require_writable(folder: str | Path) -> None:
     """Make a folder and check that files can be made in it, before work is done whose result goes there.
 
-    Raises FacegearError with one line where that is not possible.
+    Parameters
+    ----------
+    folder : str or Path
+        The folder.
+
+    Raises
+    ------
+    FacegearError
+        With one line where that is not possible.
     """
     folder = Path(folder)
     _make(folder)
@@ -54,7 +75,18 @@ def require_writable(folder: str | Path) -> None:
 
 
 def require_writable_file(path: str | Path) -> None:
-    """Check before work is done that its result can become a file. Raises FacegearError with one line."""
+    """Check before work is done that its result can become a file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Raises
+    ------
+    FacegearError
+        With one line where that is not possible.
+    """
     path = Path(path)
     require_writable(path.parent)
     if path.is_dir():

@@ -62,10 +62,10 @@ def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
         with atomic_path(path) as temporary:
             with _silent():
                 gmsh.write(str(temporary))
-            named, count = _with_product(temporary.read_text(encoding="ascii"), name)
+            step_text, count = _with_product(temporary.read_text(encoding="ascii"), name)
             if count != 1:
                 raise NotConverged("STEP", name, f"{count_noun(count, 'product')} in place of one solid")
-            temporary.write_text(named, encoding="ascii")
+            temporary.write_text(step_text, encoding="ascii")
         return volume
 
 
@@ -78,14 +78,14 @@ def _with_product(content: str, name: str) -> tuple[str, int]:
 def _silent() -> Iterator[None]:
     """Keep what OpenCASCADE prints past Python from the terminal."""
     sys.stdout.flush()
-    kept = os.dup(1)
+    standard_output = os.dup(1)
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), 1)
     try:
         yield
     finally:
-        os.dup2(kept, 1)
-        os.close(kept)
+        os.dup2(standard_output, 1)
+        os.close(standard_output)
 
 
 def _surface(points: Array) -> int:

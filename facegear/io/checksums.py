@@ -12,15 +12,36 @@ MANIFEST_SUFFIX = ".provenance.json"
 
 
 def sha256(path: str | Path) -> str:
-    """SHA-256 of a file's bytes, as hex."""
+    """Return the SHA-256 of a file's bytes.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    str
+        Hexadecimal digits.
+    """
     with open(path, "rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def require_manifest(path: str | Path) -> None:
-    """A stage's output has a manifest beside it that says what it should hold.
+    """Refuse a stage's output without the manifest beside it that says what it should hold.
 
-    Raises CorruptFile where there is none, as there is no telling then whether the file is whole.
+    Without it there is no telling whether the file is whole.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Raises
+    ------
+    CorruptFile
+        Where there is no manifest.
     """
     path = Path(path)
     if path.is_file() and not any(
@@ -38,9 +59,17 @@ def _files(manifest: Path) -> Mapping[str, Any]:
 
 
 def verify(path: str | Path) -> None:
-    """Compare `path` with the manifest of the stage that wrote it, if one lies beside it.
+    """Compare a file with the manifest of the stage that wrote it, if one lies beside it.
 
-    Raises CorruptFile where size or checksum differ, or the file is missing.
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Raises
+    ------
+    CorruptFile
+        Where size or checksum differ, or the file is missing.
     """
     path = Path(path)
     try:
@@ -55,11 +84,11 @@ def verify(path: str | Path) -> None:
     for manifest in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
         try:
             document = json.loads(manifest.read_text(encoding="utf-8"))
-            recorded = document["files"].get(path.name)
+            recorded_checksum = document["files"].get(path.name)
             rebuild = document["rebuild"]
         except (ValueError, KeyError, TypeError, AttributeError):
             raise CorruptFile(manifest, "the manifest is not readable") from None
-        if recorded is None:
+        if recorded_checksum is None:
             continue
-        if path.stat().st_size != recorded["bytes"] or sha256(path) != recorded["sha256"]:
+        if path.stat().st_size != recorded_checksum["bytes"] or sha256(path) != recorded_checksum["sha256"]:
             raise CorruptFile(path, "the content differs from what its stage wrote", f"{rebuild}{path.name}")

@@ -14,10 +14,28 @@ def read_part(
     may_be_empty: bool = False,
     text: Sequence[str] = (),
 ) -> Any:
-    """A table, a mapping of arrays or a record.
+    """Read a table, a mapping of arrays or a record.
 
-    `holds`: columns of a table, shapes of arrays, keys of a record; `text`: columns that stay text. Raises
-    CorruptFile if the file is missing, altered or lacks something.
+    Parameters
+    ----------
+    path : Path
+        Path of the file.
+    holds : Mapping[str, tuple[int | None, ...]] | Sequence[str]
+        Columns of a table, shapes of arrays or keys of a record.
+    may_be_empty : bool
+        Whether a table may have no rows.
+    text : Sequence[str]
+        Columns that stay text.
+
+    Returns
+    -------
+    Any
+        The content.
+
+    Raises
+    ------
+    CorruptFile
+        If the file is missing, altered or lacks something.
     """
     if path.suffix == ".npz":
         return arrays.read(path, holds if isinstance(holds, Mapping) else {})
@@ -35,7 +53,15 @@ def read_part(
 
 
 def write_part(path: str | Path, part: Any) -> None:
-    """Write csv, parquet, npz, json or vtu; bytes are written as they are."""
+    """Write csv, parquet, npz, json or vtu; bytes are written as they are.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    part : Any
+        The content.
+    """
     path = Path(path)
     if isinstance(part, bytes):
         with atomic_path(path) as temporary:

@@ -13,7 +13,20 @@ from facegear.io.atomic import NO_SPACE, NO_SPACE_HINT, atomic_path
 
 
 def read(path: str | Path, identity: str) -> list[dict[str, Any]]:
-    """Records of a journal begun under the same identity; those after a damaged line are not read."""
+    """Read the records of a journal begun under the same identity; those after a damaged line are not read.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    identity : str
+        Text that differs whenever the meaning of the records does.
+
+    Returns
+    -------
+    list[dict[str, Any]]
+        The records.
+    """
     path = Path(path)
     if not path.is_file():
         return []
@@ -36,7 +49,24 @@ def read(path: str | Path, identity: str) -> list[dict[str, Any]]:
 def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, Any]], None]]:
     """Yield a function that appends one record; the journal is begun anew unless its identity is the same.
 
-    A damaged end is cut off first. Raises FacegearError with one line if the disk is full.
+    A damaged end is cut off first.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    identity : str
+        Text that differs whenever the meaning of the records does.
+
+    Yields
+    ------
+    Callable[[dict[str, Any]], None]
+        The function.
+
+    Raises
+    ------
+    FacegearError
+        With one line if the disk is full.
     """
     path = Path(path)
     sound = "".join([_digest(identity) + "\n", *map(_line, read(path, identity))]).encode()

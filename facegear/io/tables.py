@@ -15,7 +15,15 @@ NAMES = ("body", "mesh", "body_or_mesh", "pinion", "group", "study", "point", "l
 
 
 def write(path: str | Path, frame: pd.DataFrame) -> None:
-    """Write a table with full double precision."""
+    """Write a table with full double precision.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    frame : pd.DataFrame
+        The table.
+    """
     with atomic_path(path) as temporary:
         frame.to_csv(temporary, index=False)
 
@@ -23,11 +31,30 @@ def write(path: str | Path, frame: pd.DataFrame) -> None:
 def read(
     path: str | Path, columns: Sequence[str] = (), allow_empty: bool = False, text: Sequence[str] = ()
 ) -> pd.DataFrame:
-    """Read a table that must hold `columns`, whose numbers there must be finite.
+    """Read a table that must hold some columns, whose numbers there must be finite.
 
     Columns of NAMES and `text` stay text, so that a body may be called 12, NA or nan.
 
-    Raises CorruptFile if it is missing, altered, truncated, lacks a column or holds a number not finite.
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    columns : Sequence[str]
+        Columns that the table must hold.
+    allow_empty : bool
+        Whether the table may have no rows.
+    text : Sequence[str]
+        Further columns that stay text.
+
+    Returns
+    -------
+    pd.DataFrame
+        The table.
+
+    Raises
+    ------
+    CorruptFile
+        If it is missing, altered, truncated, lacks a column or holds a number not finite.
     """
     verify(path)
     try:
@@ -36,9 +63,9 @@ def read(
         )
     except (ValueError, UnicodeDecodeError) as error:
         raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
-    missing = [name for name in columns if name not in frame.columns]
-    if missing:
-        raise CorruptFile(path, f"column {missing[0]!r} is missing")
+    missing_columns = [name for name in columns if name not in frame.columns]
+    if missing_columns:
+        raise CorruptFile(path, f"column {missing_columns[0]!r} is missing")
     if frame.empty and not allow_empty:
         raise CorruptFile(path, "the table is empty")
     numbers = frame[list(columns)].select_dtypes("number")

@@ -20,7 +20,25 @@ MAX_ROWS = 1_048_575
 
 
 def write(path: str | Path, tables: Mapping[str, pd.DataFrame]) -> Path:
-    """Write each table to a sheet of its name. Raises FacegearError for what a workbook cannot hold."""
+    """Write each table to a sheet of its name.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+    tables : Mapping[str, pd.DataFrame]
+        Tables by name of the sheet.
+
+    Returns
+    -------
+    Path
+        The path.
+
+    Raises
+    ------
+    FacegearError
+        For what a workbook cannot hold.
+    """
     path = file_path(path)
     if path.suffix != ".xlsx":
         raise FacegearError(f"path = {str(path)!r}: must end in .xlsx")
@@ -37,7 +55,23 @@ def write(path: str | Path, tables: Mapping[str, pd.DataFrame]) -> Path:
 
 
 def read(path: str | Path) -> dict[str, pd.DataFrame]:
-    """All sheets by name. Raises FacegearError if there is no such workbook."""
+    """Read all sheets of a workbook.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    dict[str, pd.DataFrame]
+        Sheets by name.
+
+    Raises
+    ------
+    FacegearError
+        If there is no such workbook.
+    """
     try:
         with pd.ExcelFile(path, engine="openpyxl") as book:
             return {str(name): _sheet(book, str(name)) for name in book.sheet_names}

@@ -58,9 +58,20 @@ class SplitMachine:
         return float(min(1.0 + (loop + gap) / (self._softness(input_bearing) + loop), 2.0))
 
     def input_bearing_for(self, k_gamma: float, idler_bearing: float) -> float:
-        """Radial stiffness of an input's bearing, N/m, at which an input has this K_gamma without errors.
+        """Return the radial stiffness of an input's bearing at which an input has a given K_gamma without
+        errors.
 
-        Infinite where even a rigid bearing shares better, 0 where no bearing is soft enough.
+        Parameters
+        ----------
+        k_gamma : float
+            Mesh load factor of the harder loaded mesh of an input, dimensionless.
+        idler_bearing : float
+            Radial stiffness of the bearing of an idler, N/m.
+
+        Returns
+        -------
+        float
+            N/m. Infinite where even a rigid bearing shares better, 0 where no bearing is soft enough.
         """
         loop = self._loop(idler_bearing)
         gap = self.backlash * self.mesh_stiffness / self.input_force
@@ -70,12 +81,36 @@ class SplitMachine:
         return 2.0 * self.mesh_stiffness / (softness - 1.0)
 
     def idler_force(self, input_bearing: float, idler_bearing: float) -> float:
-        """Mean force of each of the two meshes of an idler, N, without errors."""
+        """Return the mean force of each of the two meshes of an idler, without errors.
+
+        Parameters
+        ----------
+        input_bearing : float
+            Radial stiffness of the bearing of an input, N/m.
+        idler_bearing : float
+            Radial stiffness of the bearing of an idler, N/m.
+
+        Returns
+        -------
+        float
+            N.
+        """
         lower = 0.5 * self.input_force * (2.0 - self.input_k_gamma(input_bearing, idler_bearing))
         return lower * self.inputs / self.idlers
 
     def path_stiffness(self, idler_bearing: float) -> float:
-        """Stiffness k_e of the path through an idler, N/m: two meshes and the bearing in series."""
+        """Return the stiffness k_e of the path through an idler: two meshes and the bearing in series.
+
+        Parameters
+        ----------
+        idler_bearing : float
+            Radial stiffness of the bearing of an idler, N/m.
+
+        Returns
+        -------
+        float
+            N/m.
+        """
         cosine = np.cos(self.pressure_angle)
         return float(1.0 / (2.0 / self.mesh_stiffness + 4.0 * cosine**2 / idler_bearing))
 

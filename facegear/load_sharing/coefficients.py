@@ -6,22 +6,42 @@ from facegear.arrays import Array, Mask
 
 
 def sharing_coefficient(forces: Array) -> Array:
-    """Largest over mean magnitude of the forces that share a load.
+    """Return the largest over the mean magnitude of the forces that share a load.
 
-    `forces` has shape (..., paths), N, elastic mesh forces of either flank without those that are rounding
-    (`facegear.transmission.flanks.carried`); the result (...) lies in
-    [1, paths]: 1 for equal loads, the number of paths where one carries all. Where all forces vanish the
-    coefficient is undefined and NaN stands there. Equation (25) with two paths, (26) with three.
+    Equation (25) with two paths, (26) with three.
+
+    Parameters
+    ----------
+    forces : (..., paths) array
+        Elastic mesh forces of either flank without those that are rounding
+        (`facegear.transmission.flanks.significant_forces`), N.
+
+    Returns
+    -------
+    (...) array
+        Dimensionless, in [1, paths]: 1 for equal loads, the number of paths where one carries all. NaN where
+        all forces vanish, as the coefficient is undefined.
     """
     sizes = np.abs(_path_by_path(forces))
     total = sizes.sum(axis=0)
-    loaded = total > 0.0
-    ratio = len(sizes) * sizes.max(axis=0) / np.where(loaded, total, 1.0)
-    return np.where(loaded, np.clip(ratio, 1.0, len(sizes)), np.nan)
+    has_load = total > 0.0
+    ratio = len(sizes) * sizes.max(axis=0) / np.where(has_load, total, 1.0)
+    return np.where(has_load, np.clip(ratio, 1.0, len(sizes)), np.nan)
 
 
 def lost_contact(forces: Array) -> Mask:
-    """Where at least one of the paths carries nothing, shape (...) for forces (..., paths)."""
+    """Return where at least one of the paths carries nothing.
+
+    Parameters
+    ----------
+    forces : (..., paths) array
+        Forces, N.
+
+    Returns
+    -------
+    (...) array of bool
+        True if a force is 0.
+    """
     return (_path_by_path(forces) == 0.0).any(axis=0)
 
 

@@ -1,24 +1,35 @@
-"""The results of all cases of the studies in one place."""
+"""Collect the results of all cases of the studies in one table."""
 
 from collections.abc import Mapping
 
 import pandas as pd
 
 NOMINAL = "nominal"
+"""Name of the study without changes."""
 
 
-def collected(
+def collect_tables(
     frames: Mapping[tuple[str, str], pd.DataFrame], labels: Mapping[tuple[str, str], str] | None = None
 ) -> pd.DataFrame:
-    """Tables of several cases under each other, with the columns study, point and label in front.
+    """Put tables of several cases under each other, with the columns study, point and label in front.
 
-    `point` is the case's folder, `label` what the config calls it; without `labels` they are the same.
+    Parameters
+    ----------
+    frames : mapping of (study, point) to DataFrame
+        Tables; point is the case's folder.
+    labels : mapping of (study, point) to str, or None
+        Name of each case in the config; the folder if None.
+
+    Returns
+    -------
+    pd.DataFrame
+        All rows.
     """
     parts = []
     for (study, point), frame in frames.items():
-        labelled = frame.copy()
-        labelled.insert(0, "study", study)
-        labelled.insert(1, "point", point)
-        labelled.insert(2, "label", (labels or {}).get((study, point), point))
-        parts.append(labelled)
+        table = frame.copy()
+        table.insert(0, "study", study)
+        table.insert(1, "point", point)
+        table.insert(2, "label", (labels or {}).get((study, point), point))
+        parts.append(table)
     return pd.concat(parts, ignore_index=True)

@@ -1,4 +1,4 @@
-"""Which meshes share one load."""
+"""Groups of meshes that share one load."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -33,12 +33,34 @@ class LoadGroup:
 
 
 def split_groups(layout: Layout) -> tuple[LoadGroup, ...]:
-    """Return the groups among whose meshes the machine splits a load."""
+    """Return the groups among whose meshes the machine splits a load.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and meshes.
+
+    Returns
+    -------
+    tuple of LoadGroup
+        Empty where nothing is split.
+    """
     return tuple(group for group in load_groups(layout) if group.splits_load)
 
 
 def load_groups(layout: Layout) -> tuple[LoadGroup, ...]:
-    """Return the groups of a layout with at least two meshes each; the tail pinion counts as an idler."""
+    """Return the groups of a layout with at least two meshes each; the tail pinion counts as an idler.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and meshes.
+
+    Returns
+    -------
+    tuple of LoadGroup
+        Inputs first, then idlers.
+    """
     of_role: dict[bool, list[int]] = {True: [], False: []}
     for i, pinion in enumerate(layout.pinions):
         of_role[pinion.role is Role.INPUT].append(i)

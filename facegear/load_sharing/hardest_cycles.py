@@ -7,18 +7,34 @@ from facegear.transmission.flanks import slow_errors
 
 
 def hardest_cycles(spread: HuntingCycle) -> HuntingCycle:
-    """The cycles that are likely to be the hardest of each mesh, given some `spread` over the hunting cycle.
+    """Compute the mesh cycles that are likely to be the hardest of each mesh, from some spread over the
+    hunting cycle.
 
     What changes from cycle to cycle are the errors of the flanks, known for all cycles. The mean load of a
     mesh is nearly linear in them; the linear law through the cycles given says which of the others are the
-    hardest. Where the whole hunting cycle is given it is returned itself. Raises NotConverged.
+    hardest.
+
+    Parameters
+    ----------
+    spread : HuntingCycle
+        Some mesh cycles of the hunting cycle.
+
+    Returns
+    -------
+    HuntingCycle
+        The hardest cycles, or `spread` itself where it is the whole hunting cycle.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     machine, length = spread.machine, hunting_length(spread.machine)
-    taken = spread.cycles[:: spread.positions].astype(np.int64)
-    if taken.size >= length:
+    sampled_cycles = spread.cycles[:: spread.positions].astype(np.int64)
+    if sampled_cycles.size >= length:
         return spread
     slow = slow_errors(machine, np.arange(length, dtype=float) + 0.5)
-    slow -= slow[taken].mean(axis=0)
+    slow -= slow[sampled_cycles].mean(axis=0)
     means = spread.cycle_means
-    law = np.linalg.lstsq(slow[taken], means - means.mean(axis=0), rcond=None)[0]
+    law = np.linalg.lstsq(slow[sampled_cycles], means - means.mean(axis=0), rcond=None)[0]
     return at_cycles(machine, np.unique((slow @ law).argmax(axis=0)), spread.positions)

@@ -10,15 +10,25 @@ from facegear.arrays import Array, Integers
 from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.groups import LoadGroup, load_groups
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.machine import Machine
 from facegear.transmission.statics import Equilibria, bearing_forces, equilibria
 
 
 @dataclass(frozen=True, eq=False)
 class LoadHistory:
-    """K = mesh cycles x positions of a motion: cycles (K,) mesh cycles since the start; flank_forces (K, 2
-    meshes), N, drive flanks first, zero where rounding alone presses.
+    """Loads of all flanks in K = mesh cycles x positions instants of a motion.
+
+    Attributes
+    ----------
+    machine : Machine
+        The machine.
+    positions : int
+        Instants in a mesh cycle.
+    cycles : (K,) array
+        Mesh cycles since the start.
+    flank_forces : (K, 2 meshes) array
+        N, drive flanks first, zero where rounding alone presses.
     """
 
     machine: Machine
@@ -43,14 +53,25 @@ class LoadHistory:
         return load_groups(self.machine.layout)
 
     def coefficients(self, group: LoadGroup) -> Array:
-        """Largest load of a group over its mean (K,); nan where none carries any, or nothing is split."""
+        """Return the largest load of a group over its mean.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        (K,) array
+            Dimensionless; nan where no mesh carries any, or nothing is split.
+        """
         if not group.splits_load:
             return np.full(len(self.loads), np.nan)
         return sharing_coefficient(self.loads[:, list(group.meshes)])
 
     @property
     def largest_torque(self) -> float:
-        """Largest torque on a pinion, N m, which all K_gamma are for."""
+        """Largest torque on a pinion, N m, to which all K_gamma belong."""
         return float(np.abs(self.machine.torques[: len(self.machine.layout.pinions)]).max())
 
     @cached_property
@@ -73,11 +94,33 @@ class LoadHistory:
         return self.largest_loads / np.where(largest > 0.0, largest, np.nan)
 
     def path_factors(self, group: LoadGroup) -> Array:
-        """K_gamma of each path of a group (meshes of the group,)."""
+        """Return K_gamma of each path of a group.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        (meshes of the group,) array
+            Dimensionless.
+        """
         return self.mesh_load_factors[list(group.meshes)]
 
     def group_ratios(self, group: LoadGroup) -> Array:
-        """Largest load of each path over the mean of the group's own loads (meshes of the group,)."""
+        """Return the largest load of each path over the mean of the group's own loads.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        (meshes of the group,) array
+            Dimensionless; nan where the group carries nothing.
+        """
         loads = self.loads[:, list(group.meshes)]
         even = loads.mean()
         return (
@@ -86,14 +129,25 @@ class LoadHistory:
 
 
 def largest(values: Array) -> float:
-    """Largest of the defined values, nan where there is none."""
-    known = values[np.isfinite(values)]
-    return float(known.max()) if known.size else float("nan")
+    """Return the largest of the defined values.
+
+    Parameters
+    ----------
+    values : array of any shape (...)
+        Any unit.
+
+    Returns
+    -------
+    float
+        In the same unit; nan where there is none.
+    """
+    defined_values = values[np.isfinite(values)]
+    return float(defined_values.max()) if defined_values.size else float("nan")
 
 
 @dataclass(frozen=True, eq=False)
 class HuntingCycle(LoadHistory):
-    """The quasi-static motion."""
+    """Quasi-static motion of a machine."""
 
     at_rest: Equilibria
 
@@ -104,7 +158,18 @@ class HuntingCycle(LoadHistory):
 
 
 def hunting_length(machine: Machine) -> int:
-    """Mesh cycles until the pattern repeats: 1 without runouts, pitch errors and teeth that differ."""
+    """Return the number of mesh cycles until the pattern repeats.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    int
+        1 without runouts, pitch errors and teeth that differ.
+    """
     errors, layout = machine.imperfections, machine.layout
     pinions = bool(errors.pinion_pitch) or any(runout.amplitude != 0.0 for runout in errors.pinion_runout)
     gears = bool(errors.gear_pitch) or any(runout.amplitude != 0.0 for runout in errors.gear_runout)
@@ -114,15 +179,54 @@ def hunting_length(machine: Machine) -> int:
 
 
 def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> HuntingCycle:
-    """Equilibrium at `positions` of every mesh cycle until the pattern repeats, or of every so many of them.
+    """Compute the equilibria of the mesh cycles until the pattern repeats.
 
-    The limit of slow running: damping and inertia vanish. Raises NotConverged.
+    This is the limit of slow running: damping and inertia vanish.
+
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+    positions : int
+        Number of positions in each mesh cycle.
+    every : int
+        Step between the mesh cycles that are taken; 1 takes all.
+
+    Returns
+    -------
+    HuntingCycle
+        Forces in N.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     return at_cycles(machine, np.arange(0, hunting_length(machine), every), positions)
 
 
 def at_cycles(machine: Machine, whole: Integers, positions: int) -> HuntingCycle:
-    """Equilibrium at `positions` of each of some mesh cycles (n,). Raises NotConverged."""
+    """Compute the equilibria of some mesh cycles.
+
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+    whole : (n,) array of int
+        Mesh cycles, counted from 0.
+    positions : int
+        Number of positions in each mesh cycle.
+
+    Returns
+    -------
+    HuntingCycle
+        Forces in N.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
+    """
     cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
     at_rest = equilibria(machine, cycles)
-    return HuntingCycle(machine, positions, cycles, carried(at_rest.flank_forces), at_rest)
+    return HuntingCycle(machine, positions, cycles, significant_forces(at_rest.flank_forces), at_rest)

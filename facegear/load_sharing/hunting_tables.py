@@ -25,30 +25,42 @@ MESH_COLUMNS = (
     "wedged_fraction",
     "first_open_cycle",
 )
+"""Columns of mesh_table()."""
 
 
 GROUP_COLUMNS = (
     *("group", "kind", "mean", "least", "largest", "k_gamma", "group_ratio", "undefined_fraction"),
     *("torque_n_m", "mesh_cycles", "kkt_residual"),
 )
+"""Columns of group_table()."""
 
 
 def mesh_table(run: LoadHistory) -> pd.DataFrame:
-    """One row a mesh: load, mesh load factor, fractions of the time on each flank, open, wedged (both).
+    """Return load, mesh load factor and state of each mesh.
 
     `even_share_n` and `torque_n_m` (on the pinion) are the nominal even share that K_gamma counts from, empty
-    with it where that is nothing. `group_ratio`: largest load over the mean of the group's own loads.
-    `first_open_cycle` is empty where the mesh never opens; `group` and `group_ratio` where it shares with
-    nobody.
+    with it where that is nothing. `group_ratio`: largest load over the mean of the group's own loads. The
+    fractions are of the time on each flank, open, and wedged (both). `first_open_cycle` is empty where the
+    mesh never opens; `group` and `group_ratio` where the mesh shares its load with none.
+
+    Parameters
+    ----------
+    run : LoadHistory
+        Loads over a motion.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a mesh, columns MESH_COLUMNS.
     """
     layout = run.machine.layout
     names, even = layout.mesh_names, even_shares(run.machine)
     group, ratio = _group_ratios(run)
     drive, back = (flank > 0.0 for flank in np.split(run.flank_forces, 2, axis=1))
-    unloaded = ~drive & ~back
+    is_open = ~drive & ~back
     rows = []
     for mesh, load in enumerate(run.loads.T):
-        opens = np.flatnonzero(unloaded[:, mesh])
+        opens = np.flatnonzero(is_open[:, mesh])
         rows.append(
             (
                 names[mesh],
@@ -62,7 +74,7 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
                 ratio[mesh],
                 drive[:, mesh].mean(),
                 back[:, mesh].mean(),
-                unloaded[:, mesh].mean(),
+                is_open[:, mesh].mean(),
                 (drive & back)[:, mesh].mean(),
                 run.cycles[opens[0]] if opens.size else np.nan,
             )
@@ -71,16 +83,27 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
 
 
 def group_table(run: HuntingCycle) -> pd.DataFrame:
-    """One row a group: mean, least and largest coefficient, largest K_gamma and group ratio of its paths.
+    """Return mean, least and largest coefficient, largest K_gamma and group ratio of each group.
 
-    `torque_n_m`: largest torque on a pinion, which all of it is for.
+    Parameters
+    ----------
+    run : HuntingCycle
+        Quasi-static motion.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a group, columns GROUP_COLUMNS; `torque_n_m` is the largest torque on a pinion, to which all
+        values belong.
     """
     rows = []
     for group in run.groups:
         coefficient = run.coefficients(group)
-        defined = coefficient[~np.isnan(coefficient)]
+        defined_values = coefficient[~np.isnan(coefficient)]
         low, mean, high = (
-            (defined.min(), defined.mean(), defined.max()) if defined.size else (np.nan, np.nan, np.nan)
+            (defined_values.min(), defined_values.mean(), defined_values.max())
+            if defined_values.size
+            else (np.nan, np.nan, np.nan)
         )
         rows.append(
             (
@@ -101,11 +124,23 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
 
 
 def bearing_table(run: HuntingCycle, line: DriveLine | None = None) -> pd.DataFrame:
-    """One row a body: mean force on its bearing along x, y, z and largest radial and axial force, N; then one
-    a bearing of the drive line's shafts.
+    """Return the forces on the bearings.
 
-    A pinion's x is tangential and y along the gears' axis, both radial for its bearing; a face gear's axis
-    is z.
+    A pinion's x is tangential and y along the gears' axis, both radial for its bearing; a face gear's axis is
+    z.
+
+    Parameters
+    ----------
+    run : HuntingCycle
+        Quasi-static motion.
+    line : DriveLine or None
+        Drive line, whose shafts have bearings of their own.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a body, then one a bearing of the drive line's shafts: body, mean force along x, y, z, mean
+        and largest radial force and largest axial force, N.
     """
     names, forces, rows = list(run.machine.layout.body_names), run.bearings, []
     if line is not None:
@@ -119,14 +154,25 @@ def bearing_table(run: HuntingCycle, line: DriveLine | None = None) -> pd.DataFr
 
 
 def cycle_table(run: LoadHistory) -> pd.DataFrame:
-    """Mean load of every mesh in each mesh cycle, one row a cycle: columns cycle, then one a mesh, N."""
+    """Return the mean load of every mesh in each mesh cycle.
+
+    Parameters
+    ----------
+    run : LoadHistory
+        Loads over a motion.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a cycle: columns cycle, then one a mesh, N.
+    """
     frame = pd.DataFrame(run.cycle_means, columns=[f"{name} (N)" for name in run.machine.layout.mesh_names])
     frame.insert(0, "cycle", np.arange(len(frame)))
     return frame
 
 
 def _group_ratios(run: LoadHistory) -> tuple[list[str], Array]:
-    """Group of every mesh and its load's ratio to the group's own mean (meshes,)."""
+    """Return the group of every mesh and the ratio of its load to the group's own mean (meshes,)."""
     names = [""] * len(run.machine.layout.meshes)
     ratios = np.full(len(names), np.nan)
     for group in run.groups:

@@ -8,7 +8,7 @@ from facegear.arrays import Array, Integers
 from facegear.load_sharing.closed_form import SplitMachine, plane_freedom
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.groups import GroupKind, LoadGroup, split_groups
-from facegear.transmission.flanks import carried, constant_errors, flank_law
+from facegear.transmission.flanks import constant_errors, flank_law, significant_forces
 from facegear.transmission.layout import Side
 from facegear.transmission.loaded_modes import pressed_springs
 from facegear.transmission.machine import Machine
@@ -41,7 +41,7 @@ class MappedMachine:
     @cached_property
     def forces(self) -> Array:
         """Load of each mesh without drawn errors, (meshes,), N."""
-        return np.abs(carried(self.base.forces)[0])
+        return np.abs(significant_forces(self.base.forces)[0])
 
     @cached_property
     def mesh_springs(self) -> Array:
@@ -89,7 +89,7 @@ class MappedMachine:
         """
         pinions, every = self.pinions(group), np.zeros((len(late), len(self.machine.layout.pinions)))
         every[:, pinions] = late * self.working_flank(group)
-        return np.abs(carried(self.equilibria(every).forces)[:, list(group.meshes)])
+        return np.abs(significant_forces(self.equilibria(every).forces)[:, list(group.meshes)])
 
     def working_flank(self, group: LoadGroup) -> Array:
         """Return on which flank the upper mesh of each path works.

@@ -1,4 +1,4 @@
-"""What one machine among many is judged by: a few numbers of its load sharing, quasi-static or in motion."""
+"""Quantities by which one machine among many is judged: its load sharing, quasi-static or in motion."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -37,34 +37,50 @@ class FlankLoads:
     largest: Array
 
 
-Found = tuple[dict[str, float], FlankLoads]
-"""What a machine is judged by, and the loads of its flanks."""
+MachineQuantities = tuple[dict[str, float], FlankLoads]
+"""Values of the quantities by their names, and the loads of the flanks."""
 
 
-def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
-    """Of `cycles` mesh cycles spread over the hunting cycle; the largest loads also of its hardest ones.
+def quasi_static_quantities(machine: Machine, cycles: int) -> MachineQuantities:
+    """Compute the quantities of mesh cycles spread over the hunting cycle; the largest loads also of its
+    hardest cycles.
 
-    Raises NotConverged.
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+    cycles : int
+        Number of mesh cycles.
+
+    Returns
+    -------
+    MachineQuantities
+        Values in the units of `quantity_names`, forces in N.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // cycles, 1))
     hard = hardest_cycles(run)
-    groups, shared, even, names = _counted(machine.alike, dynamic=False)
-    counted, hardest = (tally(motion.flank_forces.T, POSITIONS, groups) for motion in (run, hard))
-    largest_mean = np.maximum(counted.largest_mean, hardest.largest_mean)
-    largest = np.maximum(counted.largest, hardest.largest)
+    groups, sharing_meshes, even, names = _meshes_that_share(machine.without_errors, dynamic=False)
+    counts, hardest = (tally(motion.flank_forces.T, POSITIONS, groups) for motion in (run, hard))
+    largest_mean = np.maximum(counts.largest_mean, hardest.largest_mean)
+    largest = np.maximum(counts.largest, hardest.largest)
     values = (
-        *(largest_mean / even)[shared],
-        *(value for value, group in zip(counted.coefficients, groups, strict=True) if group.splits_load),
+        *(largest_mean / even)[sharing_meshes],
+        *(value for value, group in zip(counts.coefficients, groups, strict=True) if group.splits_load),
         largest.max(),
-        counted.open,
-        counted.reversed,
+        counts.open,
+        counts.reversed_fraction,
         bearing_mass(np.moveaxis(run.bearings, 0, -1)),
     )
-    named = dict(zip(names, map(float, values), strict=True))
+    quantities = dict(zip(names, map(float, values), strict=True))
     if machine.tables is not None:
         past = (past_law(machine, motion.cycles, motion.flank_forces).max() for motion in (run, hard))
-        named[PAST_LAW] = float(max(past))
-    return named, FlankLoads(counted.mean, largest)
+        quantities[PAST_LAW] = float(max(past))
+    return quantities, FlankLoads(counts.mean, largest)
 
 
 def dynamic_quantities(
@@ -73,33 +89,71 @@ def dynamic_quantities(
     settings: Settings,
     options: SharingOptions,
     guide: Guide | None = None,
-) -> Found:
-    """Of the motion reached from static equilibrium; `guide`: an orbit of a like machine.
+) -> MachineQuantities:
+    """Compute the quantities of the motion reached from static equilibrium.
 
-    Raises NotConverged naming the speed.
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Cycles and samples.
+    guide : Guide or None
+        Orbit of a similar machine, from which the search starts.
+
+    Returns
+    -------
+    MachineQuantities
+        Values in the units of `quantity_names`, forces in N.
+
+    Raises
+    ------
+    NotConverged
+        If the integration fails; the message names the speed.
     """
     model = build_model(machine)
     motion = measured_motion(model, speed_rpm, settings, options, guide)
-    groups, shared, even, names = _counted(machine.alike, dynamic=True)
-    counted = tally(motion.flank_loads, motion.per_period, groups)
-    loaded = np.where(counted.largest_mean > 0.0, counted.largest_mean, np.nan)
+    groups, sharing_meshes, even, names = _meshes_that_share(machine.without_errors, dynamic=True)
+    counts = tally(motion.flank_loads, motion.per_period, groups)
+    largest_means = np.where(counts.largest_mean > 0.0, counts.largest_mean, np.nan)
     values = (
-        *(counted.largest_mean / even)[shared],
-        *(counted.largest_load / loaded)[shared],
-        *(value for value, group in zip(counted.coefficients, groups, strict=True) if group.splits_load),
-        counted.largest.max(),
-        counted.open,
-        counted.reversed,
+        *(counts.largest_mean / even)[sharing_meshes],
+        *(counts.largest_load / largest_means)[sharing_meshes],
+        *(value for value, group in zip(counts.coefficients, groups, strict=True) if group.splits_load),
+        counts.largest.max(),
+        counts.open,
+        counts.reversed_fraction,
         bearing_mass(bearing_forces(model, motion.track)),
     )
-    named = dict(zip(names, map(float, values), strict=True))
+    quantities = dict(zip(names, map(float, values), strict=True))
     if machine.tables is not None:
-        named[PAST_LAW] = float(motion.past_law.max())
-    return named, FlankLoads(counted.mean, counted.largest)
+        quantities[PAST_LAW] = float(motion.past_law.max())
+    return quantities, FlankLoads(counts.mean, counts.largest)
 
 
 def orbit_of(machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions) -> Guide | None:
-    """The orbit that a machine comes to from static equilibrium as a guide for like ones, if it is one."""
+    """Return the orbit that a machine comes to from static equilibrium, as a guide for similar machines.
+
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Cycles and samples.
+
+    Returns
+    -------
+    Guide or None
+        None where the motion is no orbit, or where the integration fails.
+    """
     try:
         response = measured_motion(build_model(machine), speed_rpm, settings, options).response
     except NotConverged:
@@ -108,19 +162,19 @@ def orbit_of(machine: Machine, speed_rpm: float, settings: Settings, options: Sh
     return guide_of(integrator, response.orbit)
 
 
-class _Counted(NamedTuple):
+class _SharingMeshes(NamedTuple):
     """Groups of meshes that share a load, their meshes group by group, even share of each mesh (meshes,), N,
-    and the names of what is counted.
+    and the names of the quantities.
     """
 
     groups: tuple[LoadGroup, ...]
-    shared: list[int]
+    sharing_meshes: list[int]
     even: Array
     names: tuple[str, ...]
 
 
 @lru_cache(maxsize=8)
-def _counted(machine: Machine, dynamic: bool) -> _Counted:
+def _meshes_that_share(machine: Machine, dynamic: bool) -> _SharingMeshes:
     layout, groups = machine.layout, load_groups(machine.layout)
-    shared = [mesh for group in groups for mesh in group.meshes]
-    return _Counted(groups, shared, even_shares(machine), quantity_names(layout, dynamic))
+    sharing_meshes = [mesh for group in groups for mesh in group.meshes]
+    return _SharingMeshes(groups, sharing_meshes, even_shares(machine), quantity_names(layout, dynamic))

@@ -1,4 +1,4 @@
-"""Names of what one machine among many is judged by."""
+"""Names of the quantities by which one machine among many is judged."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -7,36 +7,49 @@ if TYPE_CHECKING:
     from facegear.transmission.layout import Layout
 
 K_GAMMA, K_V = "k_gamma", "k_v"
-PEAK, OPEN, REVERSED = "peak_mesh_force_n", "open_fraction", "reversed_fraction"
+"""Mesh load factor and dynamic factor, with which names of paths begin."""
+PEAK, OPEN_FRACTION, REVERSED_FRACTION = "peak_mesh_force_n", "open_fraction", "reversed_fraction"
+"""Largest load of a mesh, and fractions of time with an open and with a reversed mesh."""
 BEARINGS = "bearing_mass"
+"""Mass of all bearings (`facegear.load_sharing.bearings`)."""
 PAST_LAW = "past_law_fraction"
+"""Largest fraction of positions at which a flank is past the last level of its law."""
 ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic_um", "pressure_mpa"
+"""Loaded transmission error of the tooth pair, and its pressure."""
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
+"""Root stress of both bodies."""
 CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
-"""What a contact analysis alone tells."""
+"""Quantities that a contact analysis alone gives."""
 LOSS, LOSS_PERCENT = "friction_loss_w", "friction_loss_percent"
+"""Friction loss of all meshes."""
 BULK, FLASH, CONTACT_TEMPERATURE = "hottest_body_c", "largest_flash_k", "contact_temperature_c"
+"""Hottest body, largest flash temperature and hottest contact."""
 SCUFFING, SCUFFING_MARGIN = "scuffing_safety", "scuffing_margin_k"
+"""Scuffing safety, and its margin in temperature."""
 FILM, FILM_RATIO = "smallest_film_um", "smallest_film_ratio"
+"""Thinnest film, and its smallest ratio to the roughness."""
 MICROPITTING = "smallest_micropitting_film_ratio"
 UNSOLVED = "unsolved_loss_share"
 FRICTION = (
     *(LOSS, LOSS_PERCENT, BULK, FLASH, CONTACT_TEMPERATURE, SCUFFING, SCUFFING_MARGIN),
     *(FILM, FILM_RATIO, MICROPITTING, UNSOLVED),
 )
-"""What section lubrication brings: loss of all meshes, the hottest body and contact, the thinnest film."""
+"""Quantities of section lubrication: loss of all meshes, the hottest body and contact, the thinnest film."""
 BETTER_LARGE = (SCUFFING, SCUFFING_MARGIN, FILM, FILM_RATIO, MICROPITTING)
 """Quantities of which small values are the bad ones."""
-SIMPLIFIED = {name: f"{name}_simplified" for name in (LOSS, BULK, FLASH, FILM_RATIO, MICROPITTING)}
-"""What the few places that stand for the whole contact miss, relative; of a body's temperature, in K."""
-MISSED = {name: f"{name}_missed" for name in (K_GAMMA, OPEN, REVERSED)}
-"""What the mesh cycles taken from the hunting cycle miss: of the largest K_gamma of any path, relative; of a
-fraction of time, the difference."""
+SIMPLIFICATION_ERRORS = {name: f"{name}_simplified" for name in (LOSS, BULK, FLASH, FILM_RATIO, MICROPITTING)}
+"""Error of each quantity by the few places that stand for the whole contact, relative; of a body's
+temperature, in K.
+"""
+CYCLE_SELECTION_ERRORS = {name: f"{name}_missed" for name in (K_GAMMA, OPEN_FRACTION, REVERSED_FRACTION)}
+"""Error of each quantity by the mesh cycles taken from the hunting cycle: of the largest K_gamma of any path,
+relative; of a fraction of time, the difference.
+"""
 JUMP_MARGIN = "jump_margin_rpm"
-"""What sweeps around the operating speed alone tell."""
+"""Quantity that sweeps around the operating speed alone give."""
 QUANTITIES = (
-    *(PEAK, OPEN, REVERSED, BEARINGS, PAST_LAW),
-    *(*MISSED.values(), *CONTACT, *FRICTION, *SIMPLIFIED.values()),
+    *(PEAK, OPEN_FRACTION, REVERSED_FRACTION, BEARINGS, PAST_LAW),
+    *(*CYCLE_SELECTION_ERRORS.values(), *CONTACT, *FRICTION, *SIMPLIFICATION_ERRORS.values()),
 )
 """Columns of a sample that do not name a mesh or a group."""
 
@@ -50,31 +63,51 @@ def quantity_names(
     friction: bool = False,
     law: bool = False,
 ) -> tuple[str, ...]:
-    """Columns of a sample.
+    """Return the columns of a sample.
 
     `k_gamma <mesh>`: mesh load factor of a path, its largest mean of a mesh cycle over its nominal even share
     (`facegear.load_sharing.even_shares`); of the motion with `k_v <mesh>`, the largest load over that mean;
-    `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26));
-    then the largest load of a mesh, the fraction of time in which some mesh that shares a load carries
-    nothing, and in which some mesh is loaded on the flank that it does not work on; the mass of bearings for
-    the loads on them (`facegear.load_sharing.bearings`). With `law`, the fraction of positions at which a
-    flank is past the last level of its load-dependent law, the largest of all. With `contact`, the loaded
-    transmission error of the tooth pair and its pressure, with `gauges` the root stress of both bodies
-    (`facegear.strength.pair_answers`); with `friction` the columns FRICTION; with `jumps` the distance from
-    the operating speed to the nearest jump (`facegear.dynamics.sweeps.jump_margin`).
+    `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26)); then the
+    largest load of a mesh, the fraction of time in which some mesh that shares a load carries nothing, and in
+    which some mesh is loaded on the flank that it does not work on; the mass of bearings for the loads on
+    them (`facegear.load_sharing.bearings`).
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and meshes.
+    dynamic : bool
+        Whether the quantities are of the motion.
+    contact : bool
+        Whether the loaded transmission error of the tooth pair and its pressure are listed.
+    gauges : bool
+        Whether the root stress of both bodies is listed, too (`facegear.strength.pair_answers`).
+    jumps : bool
+        Whether the distance from the operating speed to the nearest jump is listed
+        (`facegear.dynamics.sweeps.jump_margin`).
+    friction : bool
+        Whether the columns FRICTION are listed.
+    law : bool
+        Whether the fraction of positions at which a flank is past the last level of its load-dependent law,
+        the largest of all, is listed.
+
+    Returns
+    -------
+    tuple of str
+        Names in the order of the columns.
     """
     # Those who only check names, as a config does, need not load what a machine is made of.
     from facegear.load_sharing.groups import load_groups, split_groups
 
     groups = load_groups(layout)
-    shared = [layout.mesh_names[mesh] for group in groups for mesh in group.meshes]
-    paths = [f"{factor} {mesh}" for factor in (K_GAMMA, K_V)[: 1 + dynamic] for mesh in shared]
+    sharing_meshes = [layout.mesh_names[mesh] for group in groups for mesh in group.meshes]
+    paths = [f"{factor} {mesh}" for factor in (K_GAMMA, K_V)[: 1 + dynamic] for mesh in sharing_meshes]
     names = [
         *paths,
         *(f"coefficient {group.name}" for group in split_groups(layout)),
         PEAK,
-        OPEN,
-        REVERSED,
+        OPEN_FRACTION,
+        REVERSED_FRACTION,
         BEARINGS,
     ]
     names += [PAST_LAW] if law else []
@@ -84,16 +117,51 @@ def quantity_names(
     return (*names, *([JUMP_MARGIN] if jumps else []))
 
 
-def columns_of(start: str, names: Sequence[str]) -> list[str]:
-    """Those of the names that begin with a text."""
+def matching_names(start: str, names: Sequence[str]) -> list[str]:
+    """Return the names that begin with a text.
+
+    Parameters
+    ----------
+    start : str
+        The text.
+    names : Sequence of str
+        The names.
+
+    Returns
+    -------
+    list of str
+        In the order of `names`.
+    """
     return [name for name in names if name.startswith(start)]
 
 
-def of_contact(start: str) -> bool:
-    """Whether a text begins the name of something that a contact analysis alone tells."""
-    return bool(columns_of(start, CONTACT))
+def is_contact_quantity(start: str) -> bool:
+    """Whether a text begins the name of a quantity that a contact analysis alone gives.
+
+    Parameters
+    ----------
+    start : str
+        The text.
+
+    Returns
+    -------
+    bool
+        True if a name of CONTACT begins with it.
+    """
+    return bool(matching_names(start, CONTACT))
 
 
-def of_jumps(start: str) -> bool:
-    """Whether a text begins the name of the margin to the nearest jump."""
-    return bool(columns_of(start, (JUMP_MARGIN,)))
+def is_jump_quantity(start: str) -> bool:
+    """Whether a text begins the name of the margin to the nearest jump.
+
+    Parameters
+    ----------
+    start : str
+        The text.
+
+    Returns
+    -------
+    bool
+        True if JUMP_MARGIN begins with it.
+    """
+    return bool(matching_names(start, (JUMP_MARGIN,)))

@@ -1,4 +1,6 @@
-"""What the dynamic coefficients are held against: the machine at rest, run slowly, at all speeds."""
+"""References for the dynamic load-sharing coefficients: the machine at rest, run slowly, and at all
+speeds.
+"""
 
 from dataclasses import replace
 
@@ -13,33 +15,60 @@ from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import split_groups
 from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.run import WATCHED, followed, group_average, watched_for
+from facegear.load_sharing.run import FIRST_WINDOW, follow_first_window, group_average, watched_for
 from facegear.load_sharing.sampling import densely_sampled
 from facegear.load_sharing.statics import mean_equilibrium_forces, static_forces
 from facegear.load_sharing.statistics import average
 from facegear.progress import Progress
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.machine import Machine
 
 SHARES = ("maximum", "lost_fraction", "undefined_fraction")
+"""Columns of both tables."""
 REFERENCE_COLUMNS = ("quantity", "group", "kind", "mean", "minimum", *SHARES)
+"""Columns of reference_table()."""
 SPEED_COLUMNS = ("speed_rpm", "group", "kind", "mean", "half_width", *SHARES, "motion")
+"""Columns of speed_range_table()."""
 POSITIONS = 64
+"""Positions in a mesh cycle."""
 SLOW_PERIODS = 4
+"""Mesh cycles that the slow run lasts."""
 
 
 def reference_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
-    """Coefficients without dynamics, one row a quantity and group.
+    """Compute the coefficients without dynamics.
 
     `static`: equilibrium at every position of the mesh cycle; `quasi_static`: the same model run slowly,
     which tends to the static one; `equilibrium`: mean stiffness, no transmission error; `no_error` and
     `no_error_no_backlash`: the static one without errors (e(t), constant ones of single meshes, pinions out
-    of place) and without backlash. Runouts and pitch deviations are in none of them. Raises NotConverged.
+    of place) and without backlash. Runouts and pitch deviations are in none of them.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Speed of the slow run.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a quantity and group, columns REFERENCE_COLUMNS.
+
+    Raises
+    ------
+    NotConverged
+        If an equilibrium or a motion is not found.
     """
-    machine = replace(machine, imperfections=machine.imperfections.standing)
-    given = machine.imperfections
+    machine = replace(machine, imperfections=machine.imperfections.without_slow_errors)
+    imperfections = machine.imperfections
     quiet = replace(
-        given, series={}, error=np.zeros_like(given.error), position=np.zeros_like(given.position)
+        imperfections,
+        series={},
+        error=np.zeros_like(imperfections.error),
+        position=np.zeros_like(imperfections.position),
     )
     silent = replace(machine, error=Harmonics(np.zeros(1), np.zeros(1)), imperfections=quiet)
     tight = replace(silent, half_backlash=np.zeros(len(machine.layout.meshes)))
@@ -55,22 +84,48 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
 
 
 def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> Array:
-    """Elastic mesh forces over one cycle at a low speed, shape (1, positions, meshes), N.
+    """Compute the elastic mesh forces over one cycle at a low speed.
 
     A cycle lasts many decay times there, so a few cycles from equilibrium are settled.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    settings : Settings
+        Settings of the integration.
+    speed_rpm : float
+        Low speed of the pinions, rpm.
+
+    Returns
+    -------
+    (1, positions, meshes) array
+        N.
     """
     slow = replace(
         settings, samples=POSITIONS, dwell=SLOW_PERIODS, settle=SLOW_PERIODS, window=1, refine=False
     )
     response = simulate(build_model(machine), speed_rpm, slow)
-    forces = carried(response.forces).reshape(response.periods, response.per_period, -1)[-1:]
+    forces = significant_forces(response.forces).reshape(response.periods, response.per_period, -1)[-1:]
     return forces[:, :: forces.shape[1] // POSITIONS]
 
 
 def speed_range_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
-    """Mean and largest coefficient of each group over a range of speeds, the state carried upward.
+    """Compute mean and largest coefficient of each group over a range of speeds, the state carried upward.
 
-    No rows, and no run, where no meshes share a load.
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Range of speeds.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a speed and group, columns SPEED_COLUMNS. No rows, and no run, where no meshes share a load.
     """
     if not split_groups(machine.layout):
         return pd.DataFrame(columns=list(SPEED_COLUMNS))
@@ -80,9 +135,9 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
     responses = carried_over(
         model,
         speeds,
-        watched_for(settings, options, WATCHED),
+        watched_for(settings, options, FIRST_WINDOW),
         None,
-        lambda motion: followed(model, motion, settings, options),
+        lambda motion: follow_first_window(model, motion, settings, options),
         progress.step,
     )
     for speed, response in zip(speeds, responses, strict=True):
@@ -97,8 +152,8 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
                     "mean": sharing_average.mean,
                     "half_width": sharing_average.half_width,
                     "maximum": sharing_average.maximum,
-                    "lost_fraction": sharing_average.lost,
-                    "undefined_fraction": sharing_average.undefined,
+                    "lost_fraction": sharing_average.lost_fraction,
+                    "undefined_fraction": sharing_average.undefined_fraction,
                     "motion": response.label,
                 }
             )
@@ -108,8 +163,8 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
 def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     for group in split_groups(machine.layout):
-        own = forces[..., group.meshes]
-        mesh_average = average(sharing_coefficient(own), lost_contact(own), periodic=True)
+        group_forces = forces[..., group.meshes]
+        mesh_average = average(sharing_coefficient(group_forces), lost_contact(group_forces), periodic=True)
         rows.append(
             {
                 "quantity": quantity,
@@ -118,8 +173,8 @@ def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, obje
                 "mean": mesh_average.mean,
                 "minimum": mesh_average.minimum,
                 "maximum": mesh_average.maximum,
-                "lost_fraction": mesh_average.lost,
-                "undefined_fraction": mesh_average.undefined,
+                "lost_fraction": mesh_average.lost_fraction,
+                "undefined_fraction": mesh_average.undefined_fraction,
             }
         )
     return rows

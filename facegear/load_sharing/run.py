@@ -7,19 +7,19 @@ from itertools import islice
 import numpy as np
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import Course, alone, side_by_side
 from facegear.dynamics.dense_motion import DenseMotion
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.run_plans import RunPlan, alone, side_by_side
 from facegear.dynamics.steady_state.guide import Guide
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import (
     Model,
-    Started,
+    StartedRun,
     build_model,
     simulating,
-    started,
+    start_run,
     static_start,
 )
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
@@ -29,21 +29,39 @@ from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statistics import Average, average, defined_mean, held_over_starts
 from facegear.transmission.machine import Machine
 
-WATCHED, TORUS_WATCHED = 2, 8
-"""Times the cycles averaged for which a motion is watched, and again before it is called quasi-periodic."""
+FIRST_WINDOW, TORUS_WINDOW = 2, 8
+"""Length of the first window of a motion, and of the window before it is called quasi-periodic, in times the
+cycles that are averaged.
+"""
 SAMPLES = 64
-"""At most so many a cycle from other starts, whose means alone are wanted."""
+"""Largest number of samples in a mesh cycle of motions from other starts, of which only the means are
+used.
+"""
 TOGETHER = 16
-"""Machines whose motions are kept at a time."""
+"""Number of machines whose motions are in memory at a time."""
 
 
 @dataclass(frozen=True, eq=False)
 class GroupSharing:
-    """One group: coefficient and lost contact (cycles, samples), average, range of the means over starts."""
+    """Load sharing of one group of meshes.
+
+    Attributes
+    ----------
+    group : LoadGroup
+        Its meshes.
+    coefficients : (cycles, samples) array
+        Load-sharing coefficient, dimensionless.
+    lost_contact : (cycles, samples) array of bool
+        Whether a path is without load.
+    average : Average
+        Averages of the coefficient.
+    starts_low, starts_high : float
+        Range of the means over the starting states, dimensionless.
+    """
 
     group: LoadGroup
     coefficients: Array
-    lost: Mask
+    lost_contact: Mask
     average: Average
     starts_low: float
     starts_high: float
@@ -71,11 +89,34 @@ class Sharing:
 def load_sharing(
     machine: Machine | Model, speed_rpm: float, settings: Settings, options: SharingOptions, start: int = 0
 ) -> Sharing:
-    """Coefficients from one of the starting states, and how far the means move from the others.
+    """Compute the load-sharing coefficients from one of the starting states, and how far the means move from
+    the others.
 
-    The averages belong to number `start`, static equilibrium by default; with several stable motions, or an
-    irregular one, the range over the starts says how much that choice matters. Raises NotConverged if an
-    integration fails.
+    The averages belong to number `start`. With several stable motions, or an irregular one, the range over
+    the starts says how much that choice matters.
+
+    Parameters
+    ----------
+    machine : Machine or Model
+        The machine, or its reduced model.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+    settings : Settings
+        Settings of the integration; its window and samples are replaced by those of the options.
+    options : SharingOptions
+        Cycles, samples, starts and confidence.
+    start : int
+        Index of the starting state that counts; 0 is static equilibrium.
+
+    Returns
+    -------
+    Sharing
+        All groups of the machine.
+
+    Raises
+    ------
+    NotConverged
+        If an integration fails.
     """
     return load_sharing_of_many([(machine, speed_rpm)], settings, options, start)[0]
 
@@ -86,16 +127,38 @@ def load_sharing_of_many(
     options: SharingOptions,
     start: int = 0,
 ) -> list[Sharing]:
-    """load_sharing() of machines, each at its speed in rpm; TOGETHER of them run side by side."""
+    """Compute load_sharing() of many machines; TOGETHER of them run side by side.
+
+    Parameters
+    ----------
+    cases : sequence of tuple
+        Machine or reduced model, and its speed in rpm.
+    settings : Settings
+        Settings of the integration; its window and samples are replaced by those of the options.
+    options : SharingOptions
+        Cycles, samples, starts and confidence.
+    start : int
+        Index of the starting state that counts; 0 is static equilibrium.
+
+    Returns
+    -------
+    list of Sharing
+        One entry for each case.
+
+    Raises
+    ------
+    NotConverged
+        If an integration fails.
+    """
     settings = replace(settings, window=options.cycles, samples=options.samples)
     runs = [
         _Run(build_model(machine) if isinstance(machine, Machine) else machine, speed, settings, options)
         for machine, speed in cases
     ]
-    shared: list[Sharing] = []
+    results: list[Sharing] = []
     for first in range(0, len(runs), TOGETHER):
-        shared += _side_by_side(runs[first : first + TOGETHER], start)
-    return shared
+        results += _side_by_side(runs[first : first + TOGETHER], start)
+    return results
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,51 +170,71 @@ class _Run:
     settings: Settings
     options: SharingOptions
 
-    def motion(self, state: State) -> Course[SteadyState]:
-        """The motion that counts."""
-        return watching(self.model, self.speed_rpm, self.settings, self.options, state)
+    def motion(self, state: State) -> RunPlan[SteadyState]:
+        """Plan the motion that counts."""
+        return steady_motion(self.model, self.speed_rpm, self.settings, self.options, state)
 
-    def other(self, state: State, known: KnownOrbit | None) -> Course[SteadyState | None]:
-        """That from another start, coarsely sampled; None where it comes to the known orbit."""
+    def motion_from_start(self, state: State, orbit: KnownOrbit | None) -> RunPlan[SteadyState | None]:
+        """Plan the motion from another start, coarsely sampled; it is None where it comes to the known
+        orbit.
+        """
         coarse = replace(self.settings, samples=min(SAMPLES, self.options.samples))
-        watched = watched_for(coarse, self.options, WATCHED)
-        begun = yield from started(self.model, self.speed_rpm, watched, state, known=known)
-        return None if begun.known else (yield from followed(self.model, begun, coarse, self.options))
+        window_settings = watched_for(coarse, self.options, FIRST_WINDOW)
+        first_window = yield from start_run(
+            self.model, self.speed_rpm, window_settings, state, known_orbit=orbit
+        )
+        return (
+            None
+            if first_window.is_known_orbit
+            else (yield from follow_first_window(self.model, first_window, coarse, self.options))
+        )
 
-    def known(self, response: SteadyState) -> KnownOrbit | None:
-        """The orbit of a response that other starts may come to."""
+    def stored_orbit(self, response: SteadyState) -> KnownOrbit | None:
+        """Return the orbit of a response that other starts may come to."""
         precision = self.settings.tolerance, self.settings.order
         return known_orbit(Integrator(response.system, response.frequency, *precision), response.orbit)
 
-    def sharing(self, response: SteadyState, others: list[SteadyState | None]) -> Sharing:
-        """What the motion that counts and those from the other starts say."""
+    def sharing(self, response: SteadyState, start_responses: list[SteadyState | None]) -> Sharing:
+        """Combine the motion that counts and the motions from the other starts."""
         groups = split_groups(self.model.machine.layout)
-        elsewhere = [other for other in others if other is not None and not same_orbit(response, other)]
-        means = [_means(densely_sampled(other), groups) for other in elsewhere]
+        elsewhere = [
+            response_of_start
+            for response_of_start in start_responses
+            if response_of_start is not None and not same_orbit(response, response_of_start)
+        ]
+        means = [_means(densely_sampled(response_of_start), groups) for response_of_start in elsewhere]
         again = [
             mean
-            for other, mean in zip(elsewhere, means, strict=True)
-            if response.motion is not Motion.PERIODIC and other.label == response.label
+            for response_of_start, mean in zip(elsewhere, means, strict=True)
+            if response.motion is not Motion.PERIODIC and response_of_start.label == response.label
         ]
         dense = densely_sampled(response)
-        shared = tuple(
+        group_results = tuple(
             _group(dense, group, self.options, [mean[i] for mean in means], [mean[i] for mean in again])
             for i, group in enumerate(groups)
         )
-        return Sharing(dense, shared, tuple((other or response).label for other in (None, *others)))
+        return Sharing(
+            dense,
+            group_results,
+            tuple((response_of_start or response).label for response_of_start in (None, *start_responses)),
+        )
 
 
 def _side_by_side(runs: Sequence[_Run], start: int) -> list[Sharing]:
-    """The motions from number `start` of the starting states, then those from the others."""
+    """Run the motions from number `start` of the starting states, then the motions from the others."""
     states = [starting_states(run.model, run.options, max(run.options.starts, start + 1)) for run in runs]
-    responses = side_by_side([run.motion(own[start]) for run, own in zip(runs, states, strict=True)])
-    courses, counts = [], []
-    for run, own, response in zip(runs, states, responses, strict=True):
-        known = run.known(response)
-        others = [state for number, state in enumerate(own[: run.options.starts]) if number != start]
-        courses += [run.other(state, known) for state in others]
-        counts.append(len(others))
-    motions = iter(side_by_side(courses))
+    responses = side_by_side(
+        [run.motion(run_states[start]) for run, run_states in zip(runs, states, strict=True)]
+    )
+    plans, counts = [], []
+    for run, run_states, response in zip(runs, states, responses, strict=True):
+        orbit = run.stored_orbit(response)
+        start_states = [
+            state for number, state in enumerate(run_states[: run.options.starts]) if number != start
+        ]
+        plans += [run.motion_from_start(state, orbit) for state in start_states]
+        counts.append(len(start_states))
+    motions = iter(side_by_side(plans))
     return [
         run.sharing(response, list(islice(motions, count)))
         for run, response, count in zip(runs, responses, counts, strict=True)
@@ -161,77 +244,209 @@ def _side_by_side(runs: Sequence[_Run], start: int) -> list[Sharing]:
 def measured_motion(
     model: Model, speed_rpm: float, settings: Settings, options: SharingOptions, guide: Guide | None = None
 ) -> DenseMotion:
-    """The motion from static equilibrium, as load_sharing() measures it; `guide`: an orbit of a like machine.
+    """Compute the motion from static equilibrium, as load_sharing() measures it.
 
-    Raises NotConverged.
+    Parameters
+    ----------
+    model : Model
+        Reduced model of the machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+    settings : Settings
+        Settings of the integration; its window and samples are replaced by those of the options.
+    options : SharingOptions
+        Cycles and samples.
+    guide : Guide or None
+        Orbit of a similar machine, from which the search starts.
+
+    Returns
+    -------
+    DenseMotion
+        Densely sampled motion, SI units.
+
+    Raises
+    ------
+    NotConverged
+        If the integration fails.
     """
     settings = replace(settings, window=options.cycles, samples=options.samples)
     start = static_start(model)
-    return densely_sampled(alone(watching(model, speed_rpm, settings, options, start, guide)))
+    return densely_sampled(alone(steady_motion(model, speed_rpm, settings, options, start, guide)))
 
 
 def starting_states(model: Model, options: SharingOptions, count: int) -> list[State]:
-    """The first `count` starting states: static equilibrium, then the same disturbed at random."""
+    """Return the first starting states: static equilibrium, then static equilibrium disturbed at random.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced model of the machine.
+    options : SharingOptions
+        Size of the disturbance and seed of the random numbers.
+    count : int
+        Number of states.
+
+    Returns
+    -------
+    list of State
+        SI units.
+    """
     rest, random = static_start(model), np.random.default_rng(options.seed)
     return [rest, *(disturb(model, rest, options.spread, random) for _ in range(count - 1))]
 
 
-def watching(
+def steady_motion(
     model: Model,
     speed_rpm: float,
     settings: Settings,
     options: SharingOptions,
     start: State,
     guide: Guide | None = None,
-) -> Course[SteadyState]:
-    """The motion from a start: what has not closed after a few times the cycles averaged is measured.
+) -> RunPlan[SteadyState]:
+    """Plan the motion from a start; a motion that has not closed after its windows is measured as it is.
 
-    `guide`: an orbit of a like machine.
+    Parameters
+    ----------
+    model : Model
+        Reduced model of the machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Number of cycles that are averaged.
+    start : State
+        Starting state.
+    guide : Guide or None
+        Orbit of a similar machine, from which the search starts.
+
+    Returns
+    -------
+    RunPlan[SteadyState]
+        Steps that end with the response.
     """
-    begun = yield from started(model, speed_rpm, watched_for(settings, options, WATCHED), start, guide)
-    return (yield from followed(model, begun, settings, options))
+    first_window = yield from start_run(
+        model, speed_rpm, watched_for(settings, options, FIRST_WINDOW), start, guide
+    )
+    return (yield from follow_first_window(model, first_window, settings, options))
 
 
-def followed(
-    model: Model, motion: Started, settings: Settings, options: SharingOptions
-) -> Course[SteadyState]:
-    """What comes of a motion that was watched for the first time.
+def follow_first_window(
+    model: Model, motion: StartedRun, settings: Settings, options: SharingOptions
+) -> RunPlan[SteadyState]:
+    """Classify a motion after its first window; extend the window if it looks quasi-periodic.
 
     A body that is pushed through its backlash for long, or an orbit that is approached slowly, looks like a
-    torus for a while: what seems to be one is watched on. A class that must hold for good, as that of the
-    response at the nominal speed, is watched for longer.
+    torus for a while. A class that must hold for good, as that of the response at the nominal speed,
+    therefore needs a longer window.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced model of the machine.
+    motion : StartedRun
+        Motion after its first window.
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Number of cycles that are averaged.
+
+    Returns
+    -------
+    RunPlan[SteadyState]
+        Steps that end with the response.
     """
-    state = yield from motion.followed()
+    state = yield from motion.follow()
     if state.motion is not Motion.QUASI_PERIODIC:
         return state
-    longer = watched_for(settings, options, TORUS_WATCHED)
+    longer = watched_for(settings, options, TORUS_WINDOW)
     again = yield from simulating(model, motion.speed_rpm, longer, state.state)
     return replace(again, periods_run=state.periods_run + again.periods_run)
 
 
 def watched_for(settings: Settings, options: SharingOptions, times: int) -> Settings:
-    """Settings with patience for so many times the cycles averaged, and no more than they had."""
+    """Return settings whose longest run is a multiple of the cycles averaged, and no longer than before.
+
+    Parameters
+    ----------
+    settings : Settings
+        Settings of the integration.
+    options : SharingOptions
+        Number of cycles that are averaged.
+    times : int
+        Factor on that number, dimensionless.
+
+    Returns
+    -------
+    Settings
+        The same settings with another `settle`.
+    """
     return replace(settings, settle=min(settings.settle, times * options.cycles))
 
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:
-    """A start moved by normal displacements of size `spread` (m; rotations at the mesh radius)."""
+    """Return a start with normally distributed displacements added.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced model of the machine.
+    start : State
+        Starting state.
+    spread : float
+        Standard deviation of the displacements, m; rotations count at the mesh radius.
+    random : np.random.Generator
+        Random number generator, which this call advances.
+
+    Returns
+    -------
+    State
+        SI units.
+    """
     linear = model.machine.linear
-    moved = spread * random.normal(size=linear.size) / linear.lengths
-    return replace(start, displacement=start.displacement + model.reduced.basis.T @ linear.momentum(moved))
+    displacements = spread * random.normal(size=linear.size) / linear.lengths
+    return replace(
+        start, displacement=start.displacement + model.reduction.basis.T @ linear.momentum(displacements)
+    )
 
 
 def cycle_forces(motion: DenseMotion) -> Array:
-    """Elastic mesh forces by cycle, shape (meshes, cycles, samples), N."""
+    """Return the elastic mesh forces by cycle.
+
+    Parameters
+    ----------
+    motion : DenseMotion
+        Densely sampled motion.
+
+    Returns
+    -------
+    (meshes, cycles, samples) array
+        N.
+    """
     return motion.loads.reshape(len(motion.loads), -1, motion.per_period)
 
 
 def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> tuple[Array, Mask, Average]:
-    """Coefficient and lost contact of a group, each (cycles, samples), and their average."""
+    """Return coefficient and lost contact of a group, and their average.
+
+    Parameters
+    ----------
+    motion : DenseMotion
+        Densely sampled motion.
+    group : LoadGroup
+        Meshes that share a load.
+    confidence : float
+        Confidence level from 0 to 1, dimensionless.
+
+    Returns
+    -------
+    tuple of (cycles, samples) array, (cycles, samples) array of bool and Average
+        Coefficient (dimensionless), whether a path is without load, and averages over all defined instants.
+    """
     forces = np.moveaxis(cycle_forces(motion)[list(group.meshes)], 0, -1)
-    coefficients, lost = sharing_coefficient(forces), lost_contact(forces)
+    coefficients, lost_mask = sharing_coefficient(forces), lost_contact(forces)
     periodic = motion.response.motion is Motion.PERIODIC
-    return coefficients, lost, average(coefficients, lost, confidence, periodic)
+    return coefficients, lost_mask, average(coefficients, lost_mask, confidence, periodic)
 
 
 def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
@@ -241,17 +456,23 @@ def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
 
 
 def _group(
-    motion: DenseMotion, group: LoadGroup, options: SharingOptions, others: list[float], again: list[float]
+    motion: DenseMotion,
+    group: LoadGroup,
+    options: SharingOptions,
+    start_means: list[float],
+    again: list[float],
 ) -> GroupSharing:
-    """`others`: the means from other starts, of which `again` are those of the same irregular motion."""
-    coefficients, lost, first = group_average(motion, group, options.confidence)
+    """Return the result of a group; `start_means` are the means from other starts, of which `again` are those
+    of the same irregular motion.
+    """
+    coefficients, lost_mask, first = group_average(motion, group, options.confidence)
     every = max(coefficients.shape[1] // options.samples, 1)
-    defined = [mean for mean in (first.mean, *others) if not np.isnan(mean)] or [float("nan")]
+    defined_means = [mean for mean in (first.mean, *start_means) if not np.isnan(mean)] or [float("nan")]
     return GroupSharing(
         group=group,
         coefficients=coefficients[:, ::every],
-        lost=lost[:, ::every],
+        lost_contact=lost_mask[:, ::every],
         average=held_over_starts(first, again, options.confidence),
-        starts_low=min(defined),
-        starts_high=max(defined),
+        starts_low=min(defined_means),
+        starts_high=max(defined_means),
     )

@@ -9,15 +9,25 @@ from facegear.dynamics.track import track
 
 DENSE, MAX_SAMPLES_OF_RUN = 2048, 16_384
 """Samples of a mesh cycle, and of a period of many cycles."""
-SAME = 1e-5
-"""Distance over the length scale, in mesh deflections, within which two places are one."""
+ORBIT_TOLERANCE = 1e-5
+"""Distance over the length scale, in mesh deflections, within which two positions count as one."""
 
 
 def densely_sampled(response: SteadyState) -> DenseMotion:
-    """A periodic motion at many instants, others at their samples.
+    """Return a periodic motion at many instants, others at their samples.
 
     Coefficients jump where a path takes up or loses load, so their means err by the time between two samples:
     by 6e-3 with 256 a cycle. The motion has no jumps, and its Fourier series gives the instants between.
+
+    Parameters
+    ----------
+    response : SteadyState
+        The motion at its own samples.
+
+    Returns
+    -------
+    DenseMotion
+        At most DENSE samples in a mesh cycle, or MAX_SAMPLES_OF_RUN in a period of many cycles.
     """
     factor = 1
     if response.motion is Motion.PERIODIC:
@@ -26,12 +36,23 @@ def densely_sampled(response: SteadyState) -> DenseMotion:
     return DenseMotion(response, factor * response.per_period, track(response, factor))
 
 
-def same_orbit(first: SteadyState, other: SteadyState) -> bool:
-    """Whether two periodic motions are one, perhaps begun at another cycle of it: what holds for the first
-    holds for the other.
+def same_orbit(first: SteadyState, second: SteadyState) -> bool:
+    """Whether two periodic motions are one, perhaps begun at another cycle of it.
+
+    Parameters
+    ----------
+    first : SteadyState
+        A motion.
+    second : SteadyState
+        Another motion of the same machine.
+
+    Returns
+    -------
+    bool
+        False where one is not periodic.
     """
-    if not first.period or first.period != other.period:
+    if not first.period or first.period != second.period:
         return False
-    moved = first.coordinates[:: first.per_period] - other.coordinates[0]
-    far = np.abs(moved @ first.system.mesh_jacobian.T).max(axis=1)
-    return bool(far.min() <= SAME * first.system.scale)
+    distances = first.coordinates[:: first.per_period] - second.coordinates[0]
+    far = np.abs(distances @ first.system.mesh_jacobian.T).max(axis=1)
+    return bool(far.min() <= ORBIT_TOLERANCE * first.system.scale)

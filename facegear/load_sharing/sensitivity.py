@@ -24,32 +24,64 @@ from facegear.transmission.layout import Kinematics, Layout, Role
 from facegear.transmission.machine import Machine, balanced_torques
 
 STEP = 1e-10
-"""Of the differences, m: far above rounding, and so small that no other mesh cycle becomes the hardest."""
+"""Step of the differences, m: far above rounding, and so small that no other mesh cycle becomes the
+hardest.
+"""
 POSITIONS = 8
+"""Positions in a mesh cycle."""
 BEARINGS = np.geomspace(1e6, 1e11, 26)
+"""Stiffness of the bearings in the scan, N/m."""
 
 
 def worst_factor(run: HuntingCycle, kind: str | None = None) -> float:
-    """Largest K_gamma of all paths, or of the groups of one kind; nan where there is none."""
+    """Return the largest K_gamma of all paths, or of the groups of one kind.
+
+    Parameters
+    ----------
+    run : HuntingCycle
+        The quasi-static motion.
+    kind : str or None
+        Value of a GroupKind; None for all groups.
+
+    Returns
+    -------
+    float
+        K_gamma, dimensionless; nan where there is none.
+    """
     factors = [largest(run.path_factors(group)) for group in run.groups if kind in (None, group.kind.value)]
     return largest(np.array(factors))
 
 
 def sensitivities(base: HuntingCycle) -> pd.DataFrame:
-    """Change of K_gamma per um of each error, one row an error and group, largest first.
+    """Compute the change of K_gamma per um of each error.
 
-    Columns error, group, per_um. `base` is the whole hunting cycle of the machine as it is. Central
-    differences about it; sizes that cannot be negative count from where they are. Both ends are taken at the
-    same positions, POSITIONS or more, of the same mesh cycles: of the longer of their hunting cycles those
-    that can be the hardest of a group. A group whose paths have no K_gamma has no row. Raises NotConverged.
+    Central differences about the machine as it is; sizes that cannot be negative count from where they are.
+    Both ends are taken at the same positions, POSITIONS or more, of the same mesh cycles: of the longer of
+    their hunting cycles those that can be the hardest of a group. A group whose paths have no K_gamma has no
+    row.
+
+    Parameters
+    ----------
+    base : HuntingCycle
+        The whole hunting cycle of the machine as it is.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row an error and group, largest first: columns error, group, per_um.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     base = _coarser(base)
     machine, rows, hard = base.machine, [], _may_be_hardest(base)
     for name, low, high, width in _changes(machine):
-        changed = (low, high)
+        end_machines = (low, high)
         # The base repeats itself through a longer hunting cycle.
-        hardest = np.flatnonzero(np.tile(hard, max(map(hunting_length, changed)) // hard.size))
-        ends = [at_cycles(shifted, hardest, base.positions) for shifted in changed]
+        hardest = np.flatnonzero(np.tile(hard, max(map(hunting_length, end_machines)) // hard.size))
+        ends = [at_cycles(end_machine, hardest, base.positions) for end_machine in end_machines]
         for group in base.groups:
             before, after = (largest(run.path_factors(group)) for run in ends)
             rows.append((name, group.name, 1e-6 * (after - before) / width))
@@ -58,7 +90,7 @@ def sensitivities(base: HuntingCycle) -> pd.DataFrame:
 
 
 def _coarser(base: HuntingCycle) -> HuntingCycle:
-    """The same at fewer positions of each mesh cycle, evenly spaced."""
+    """Return the hunting cycle at fewer positions of each mesh cycle, evenly spaced."""
     every = base.positions // POSITIONS
     if every < 2 or base.positions % every:
         return base
@@ -80,27 +112,45 @@ def _may_be_hardest(base: HuntingCycle) -> Mask:
     reach = 2.0 * STEP * stiffest * np.sqrt(base.flank_forces.shape[1])
     hard = np.zeros(len(factors), dtype=bool)
     for group in base.groups:
-        own = factors[:, list(group.meshes)]
-        threshold = own.max() - reach / np.nanmin(even) if np.isfinite(own).any() else np.inf
-        hard |= (own >= threshold).any(axis=1)
+        group_factors = factors[:, list(group.meshes)]
+        threshold = (
+            group_factors.max() - reach / np.nanmin(even) if np.isfinite(group_factors).any() else np.inf
+        )
+        hard |= (group_factors >= threshold).any(axis=1)
     hard[0] |= not hard.any()
     return hard
 
 
 def bearing_scan(machine: Machine) -> pd.DataFrame:
-    """K_gamma of each kind of group against bearing stiffness of inputs or idlers, both kinematics.
+    """Compute K_gamma of each kind of group against the bearing stiffness of inputs or idlers, in both
+    kinematics.
 
-    Columns kinematics, varied, stiffness_n_per_m, kind, k_gamma; over one mesh cycle, with constant errors of
-    meshes only. A kind whose paths have no even share has no K_gamma and no row.
+    The scan takes one mesh cycle, with constant errors of meshes only. A kind whose paths have no even share
+    has no K_gamma and no row.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns kinematics, varied, stiffness_n_per_m, kind, k_gamma.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     rows = []
     for name, kinematics in KINEMATICS.items():
-        based = _with_kinematics(machine, kinematics)
-        for varied, roles in (("inputs", (Role.INPUT,)), ("idlers", (Role.IDLER, Role.TAIL))):
+        base = _with_kinematics(machine, kinematics)
+        for varied_pinions, roles in (("inputs", (Role.INPUT,)), ("idlers", (Role.IDLER, Role.TAIL))):
             for stiffness in BEARINGS:
-                run = hunting_cycle(_with_bearings(based, roles, float(stiffness)), POSITIONS)
+                run = hunting_cycle(_with_bearings(base, roles, float(stiffness)), POSITIONS)
                 for kind in dict.fromkeys(group.kind.value for group in run.groups):
-                    rows.append((name, varied, stiffness, kind, worst_factor(run, kind)))
+                    rows.append((name, varied_pinions, stiffness, kind, worst_factor(run, kind)))
     columns = ["kinematics", "varied", "stiffness_n_per_m", "kind", "k_gamma"]
     return pd.DataFrame(rows, columns=columns).dropna(ignore_index=True)
 
@@ -109,15 +159,15 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
     """Yield the name of each error, the machine with less and more of it, and the difference (m)."""
     layout, errors, half = machine.layout, machine.imperfections, machine.half_backlash
     for mesh, name in enumerate(layout.mesh_names):
-        yield f"error {name}", *_moved(machine, "error", mesh), 2 * STEP
+        yield f"error {name}", *_shift_error(machine, "error", mesh), 2 * STEP
         tighter, looser = _with_step(half, mesh, -min(STEP, half[mesh])), _with_step(half, mesh, STEP)
         low, high = (replace(machine, half_backlash=values) for values in (tighter, looser))
         yield f"backlash {name}", low, high, 2 * float(looser[mesh] - tighter[mesh])
     for i, pinion in enumerate(layout.pinions):
         for k, letter in enumerate("xy"):
-            yield f"position {letter} {pinion.name}", *_moved(machine, "position", (i, k)), 2 * STEP
+            yield f"position {letter} {pinion.name}", *_shift_error(machine, "position", (i, k)), 2 * STEP
         if errors.bearing_clearance[i] > STEP:
-            yield f"clearance {pinion.name}", *_moved(machine, "bearing_clearance", i), 2 * STEP
+            yield f"clearance {pinion.name}", *_shift_error(machine, "bearing_clearance", i), 2 * STEP
     for key, names in (
         ("pinion_runout", [pinion.name for pinion in layout.pinions]),
         ("gear_runout", [gear.name for gear in layout.gears]),
@@ -129,7 +179,7 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
             yield f"runout {name}", low, high, ends[1] - ends[0]
 
 
-def _moved(machine: Machine, key: str, index: int | tuple[int, int]) -> tuple[Machine, Machine]:
+def _shift_error(machine: Machine, key: str, index: int | tuple[int, int]) -> tuple[Machine, Machine]:
     """Return the machine with one value of its errors smaller, and larger, by STEP."""
     errors = machine.imperfections
 
@@ -150,41 +200,46 @@ def _with_step(values: Array, index: int | tuple[int, int], step: float) -> Arra
 def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> Imperfections:
     runouts: list[Runout] = list(getattr(base, key))
     runouts[body] = replace(runouts[body], amplitude=amplitude)
-    changed: dict[str, Any] = {key: tuple(runouts)}
-    return replace(base, **changed)
+    values: dict[str, Any] = {key: tuple(runouts)}
+    return replace(base, **values)
 
 
 def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
-    """The machine with the other way of counting deflections, keeping mesh errors, backlash and stiffness."""
+    """Return the machine with the given kinematics, with its mesh errors, backlash and stiffness."""
     layout = machine.layout
     conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
     radius = kinematics.gear_radius(conjugate, layout.pressure_angle)
     gears = tuple(replace(gear, body=replace(gear.body, tilt=None)) for gear in layout.gears)
-    other = replace(layout, gear_radius=radius, kinematics=kinematics, gears=gears)
-    kept = machine.imperfections
-    errors = replace(perfect(other), error=kept.error, stiffness=kept.stiffness)
+    new_layout = replace(layout, gear_radius=radius, kinematics=kinematics, gears=gears)
+    old_errors = machine.imperfections
+    errors = replace(perfect(new_layout), error=old_errors.error, stiffness=old_errors.stiffness)
     pinions = len(layout.pinions)
     lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
-    torques = balanced_torques(other, machine.torques[:pinions], float(lower))
+    torques = balanced_torques(new_layout, machine.torques[:pinions], float(lower))
     # At rest a drive line is what the layout has in its place.
-    changed = replace(machine, layout=other, torques=torques, imperfections=errors, drive_line=None)
+    machine_with_layout = replace(
+        machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=None
+    )
     if kinematics is not layout.kinematics:
-        return replace(changed, bodies=None, softening=None)
+        return replace(machine_with_layout, bodies=None, softening=None)
     if isinstance(machine.bodies, ElasticGears):
-        return replace(changed, bodies=replace(machine.bodies, layout=other))
-    return changed
+        return replace(machine_with_layout, bodies=replace(machine.bodies, layout=new_layout))
+    return machine_with_layout
 
 
 def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:
-    """Bearings take the places of the shafts of these pinions, too."""
-    stiffened = replace(machine, layout=_stiffened(machine.layout, roles, stiffness))
+    """Return the machine with other bearings of these pinions, which replace their shafts, too."""
+    machine_with_bearings = replace(machine, layout=_layout_with_bearings(machine.layout, roles, stiffness))
     if machine.drive_line is None:
-        return stiffened
-    named = {i for i, pinion in enumerate(machine.layout.pinions) if pinion.role in roles}
-    return replace(stiffened, drive_line=machine.drive_line.without_shafts(named, stiffened.layout))
+        return machine_with_bearings
+    pinions = {i for i, pinion in enumerate(machine.layout.pinions) if pinion.role in roles}
+    return replace(
+        machine_with_bearings,
+        drive_line=machine.drive_line.without_shafts(pinions, machine_with_bearings.layout),
+    )
 
 
-def _stiffened(layout: Layout, roles: tuple[Role, ...], stiffness: float) -> Layout:
+def _layout_with_bearings(layout: Layout, roles: tuple[Role, ...], stiffness: float) -> Layout:
     pinions = tuple(
         replace(
             pinion,

@@ -15,11 +15,12 @@ SIGNIFICANCE = 0.05
 
 @dataclass(frozen=True)
 class Average:
-    """Mean over all defined instants, its confidence half-width, extremes, and what single cycles show.
+    """Mean over all defined instants, its confidence half-width, extremes, and statistics of single cycles.
 
     `cycle_low` and `cycle_high` bound the means of single cycles at the confidence level; `cycle_minimum` is
-    the median of their minima. `lost` and `undefined` are shares of time with a path without load and with no
-    load at all; undefined instants are left out of everything else. All NaN where nothing is ever loaded.
+    the median of their minima. `lost_fraction` and `undefined_fraction` are shares of time with a path
+    without load and with no load at all; undefined instants are left out of everything else. All are NaN
+    where nothing is ever loaded.
     """
 
     mean: float
@@ -29,26 +30,42 @@ class Average:
     cycle_low: float
     cycle_high: float
     cycle_minimum: float
-    lost: float
-    undefined: float
+    lost_fraction: float
+    undefined_fraction: float
     cycles: int
 
 
 def average(
     coefficients: Array,
-    lost: Mask,
+    lost_mask: Mask,
     confidence: float = 0.95,
     periodic: bool = False,
 ) -> Average:
-    """Average a coefficient given as (cycles, samples), NaN where undefined; `lost` likewise.
+    """Average a coefficient over many mesh cycles.
 
     A periodic motion given over its whole period has an exact mean: its half-width is zero.
+
+    Parameters
+    ----------
+    coefficients : (cycles, samples) array
+        Dimensionless; NaN where undefined.
+    lost_mask : (cycles, samples) array of bool
+        Whether a path is without load.
+    confidence : float
+        Confidence level from 0 to 1, dimensionless.
+    periodic : bool
+        Whether the samples are of a whole period.
+
+    Returns
+    -------
+    Average
+        Dimensionless.
     """
-    undefined = np.isnan(coefficients)
-    counts = (~undefined).sum(axis=-1)
-    loaded = counts > 0
+    is_undefined = np.isnan(coefficients)
+    counts = (~is_undefined).sum(axis=-1)
+    has_load = counts > 0
     count = len(coefficients)
-    if not loaded.any():
+    if not has_load.any():
         nan = float("nan")
         return Average(
             mean=nan,
@@ -58,13 +75,13 @@ def average(
             cycle_low=nan,
             cycle_high=nan,
             cycle_minimum=nan,
-            lost=float(lost.mean()),
-            undefined=1.0,
+            lost_fraction=float(lost_mask.mean()),
+            undefined_fraction=1.0,
             cycles=count,
         )
-    sums = np.where(undefined, 0.0, coefficients).sum(axis=-1)
-    means = sums[loaded] / counts[loaded]
-    lows = np.where(undefined, np.inf, coefficients).min(axis=-1)[loaded]
+    sums = np.where(is_undefined, 0.0, coefficients).sum(axis=-1)
+    means = sums[has_load] / counts[has_load]
+    lows = np.where(is_undefined, np.inf, coefficients).min(axis=-1)[has_load]
     tail = 0.5 * (1.0 - confidence)
     return Average(
         mean=float(sums.sum() / counts.sum()),
@@ -74,38 +91,65 @@ def average(
         cycle_low=float(np.quantile(means, tail)),
         cycle_high=float(np.quantile(means, 1.0 - tail)),
         cycle_minimum=float(np.median(lows)),
-        lost=float(lost.mean()),
-        undefined=float(undefined.mean()),
+        lost_fraction=float(lost_mask.mean()),
+        undefined_fraction=float(is_undefined.mean()),
         cycles=count,
     )
 
 
-def held_over_starts(own: Average, again: Sequence[float], confidence: float) -> Average:
-    """The average of an irregular motion with a half-width that holds for its means `again` (n,) as well,
-    those of the same motion from other starts.
+def held_over_starts(first_average: Average, again: Sequence[float], confidence: float) -> Average:
+    """Return the average of an irregular motion with a half-width that also holds for its means from other
+    starts.
 
     Batches of one run show nothing of what changes more slowly than the run lasts, other runs do. Where the
     variance of the means is more than chance makes of that of the batches (F test at SIGNIFICANCE), the
     half-width is Student's of a single one of n + 1 runs.
+
+    Parameters
+    ----------
+    first_average : Average
+        Average of one run.
+    again : sequence of n floats
+        Means of the same motion from other starts, dimensionless.
+    confidence : float
+        Confidence level from 0 to 1, dimensionless.
+
+    Returns
+    -------
+    Average
+        Dimensionless.
     """
-    means = [own.mean, *(mean for mean in again if not np.isnan(mean))]
+    means = [first_average.mean, *(mean for mean in again if not np.isnan(mean))]
     freedom = len(means) - 1
-    if freedom < 1 or not own.half_width > 0.0:
-        return own
-    batches = min(BATCHES, own.cycles) - 1
-    error = own.half_width / scipy.special.stdtrit(batches, 0.5 + 0.5 * confidence)
+    if freedom < 1 or not first_average.half_width > 0.0:
+        return first_average
+    batches = min(BATCHES, first_average.cycles) - 1
+    error = first_average.half_width / scipy.special.stdtrit(batches, 0.5 + 0.5 * confidence)
     spread = float(np.std(means, ddof=1))
     if (spread / error) ** 2 <= scipy.special.fdtri(freedom, batches, 1.0 - SIGNIFICANCE):
-        return own
-    return replace(own, half_width=float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence)) * spread)
+        return first_average
+    return replace(
+        first_average, half_width=float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence)) * spread
+    )
 
 
 def defined_mean(coefficients: Array) -> float:
-    """Mean over all defined instants, NaN where there are none: that of `average` alone."""
-    undefined = np.isnan(coefficients)
-    if not undefined.any():
+    """Return the mean over all defined instants, as `average` has it.
+
+    Parameters
+    ----------
+    coefficients : array of any shape (...)
+        Dimensionless; NaN where undefined.
+
+    Returns
+    -------
+    float
+        Dimensionless; NaN where no instant is defined.
+    """
+    is_undefined = np.isnan(coefficients)
+    if not is_undefined.any():
         return float(coefficients.mean())
-    return float("nan") if undefined.all() else float(coefficients[~undefined].mean())
+    return float("nan") if is_undefined.all() else float(coefficients[~is_undefined].mean())
 
 
 def _half_width(sums: Array, counts: Integers, confidence: float) -> float:

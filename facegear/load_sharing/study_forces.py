@@ -1,4 +1,4 @@
-"""What each mesh of a running machine carries of its group's load, and its largest force."""
+"""Fraction of its group's load that each mesh of a running machine carries, and its largest force."""
 
 import numpy as np
 import pandas as pd
@@ -9,16 +9,29 @@ from facegear.transmission.layout import Layout
 
 
 def force_table(layout: Layout, mean: Array, largest: Array, motion: str) -> pd.DataFrame:
-    """One row a mesh: columns mesh, group, fraction, mean_n, largest_n, motion.
+    """Return mean and largest force of each mesh.
 
-    `mean` and `largest` (M,): mean magnitude over time of each mesh force and its largest, N. fraction
-    is the mean over the sum of its group's, empty with the group where the mesh shares with nobody. `motion`:
-    class of the motion.
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and meshes.
+    mean : (M,) array
+        Mean magnitude over time of each mesh force, N.
+    largest : (M,) array
+        Largest magnitude of each mesh force, N.
+    motion : str
+        Class of the motion.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a mesh: columns mesh, group, fraction, mean_n, largest_n, motion. fraction is the mean over
+        the sum of its group's, empty with the group where the mesh shares its load with none.
     """
     group, total = np.full(mean.size, "", dtype=object), np.full(mean.size, np.nan)
-    for shared in load_groups(layout):
-        meshes = list(shared.meshes)
-        group[meshes], total[meshes] = shared.name, mean[meshes].sum()
+    for load_group in load_groups(layout):
+        meshes = list(load_group.meshes)
+        group[meshes], total[meshes] = load_group.name, mean[meshes].sum()
     return pd.DataFrame(
         {
             "mesh": layout.mesh_names,

@@ -16,6 +16,7 @@ CURVE_COLUMNS = (
     "envelope_high",
     "lost_fraction",
 )
+"""Columns of curve_table()."""
 SUMMARY_COLUMNS = (
     "group",
     "kind",
@@ -35,13 +36,23 @@ SUMMARY_COLUMNS = (
     "motions_from_starts",
     "periodic",
 )
+"""Columns of summary_table()."""
 
 
 def curve_table(sharing: Sharing) -> pd.DataFrame:
-    """One mesh cycle of each group with the envelope over all cycles; empty cells where undefined.
+    """Return one mesh cycle of each group with the envelope over all cycles.
 
-    `lost_fraction` is the fraction of cycles with a path out of contact at that instant. No rows where no
-    meshes share a load.
+    `lost_fraction` is the fraction of cycles with a path out of contact at that instant.
+
+    Parameters
+    ----------
+    sharing : Sharing
+        All groups of a machine.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns CURVE_COLUMNS; empty cells where undefined. No rows where no meshes share a load.
     """
     curves = [_curve(group, sharing.period) for group in sharing.groups]
     return pd.concat(curves, ignore_index=True) if curves else pd.DataFrame(columns=list(CURVE_COLUMNS))
@@ -50,9 +61,9 @@ def curve_table(sharing: Sharing) -> pd.DataFrame:
 def _curve(group: GroupSharing, period: float) -> pd.DataFrame:
     samples = group.coefficients.shape[1]
     fraction = np.arange(samples) / samples
-    undefined = np.isnan(group.coefficients)
-    low = np.where(undefined, np.inf, group.coefficients).min(axis=0)
-    high = np.where(undefined, -np.inf, group.coefficients).max(axis=0)
+    is_undefined = np.isnan(group.coefficients)
+    low = np.where(is_undefined, np.inf, group.coefficients).min(axis=0)
+    high = np.where(is_undefined, -np.inf, group.coefficients).max(axis=0)
     values = (
         group.group.name,
         group.group.kind.value,
@@ -61,13 +72,24 @@ def _curve(group: GroupSharing, period: float) -> pd.DataFrame:
         group.coefficients[0],
         np.where(np.isfinite(low), low, np.nan),
         np.where(np.isfinite(high), high, np.nan),
-        group.lost.mean(axis=0),
+        group.lost_contact.mean(axis=0),
     )
     return pd.DataFrame(dict(zip(CURVE_COLUMNS, values, strict=True)))
 
 
 def summary_table(sharing: Sharing) -> pd.DataFrame:
-    """One row a group."""
+    """Return the averages of each group.
+
+    Parameters
+    ----------
+    sharing : Sharing
+        All groups of a machine.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a group, columns SUMMARY_COLUMNS.
+    """
     motions = "; ".join(dict.fromkeys(sharing.motions))
     rows = []
     for group in sharing.groups:
@@ -82,8 +104,8 @@ def summary_table(sharing: Sharing) -> pd.DataFrame:
             average.cycle_minimum,
             average.cycle_low,
             average.cycle_high,
-            average.lost,
-            average.undefined,
+            average.lost_fraction,
+            average.undefined_fraction,
             sharing.response.label,
             average.cycles,
             group.starts_low,

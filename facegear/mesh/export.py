@@ -1,4 +1,4 @@
-"""What the mesh stage writes: files for gmsh, ParaView, Abaqus and CalculiX, and the quality table."""
+"""Output of the mesh stage: files for gmsh, ParaView, Abaqus and CalculiX, and the quality table."""
 
 from pathlib import Path
 
@@ -18,7 +18,24 @@ QUANTILES = (0.0, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
 
 
 def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataFrame:
-    """Write the sector in three formats and return the body's rows of quality.csv."""
+    """Write the sector in three formats.
+
+    Parameters
+    ----------
+    sector : SectorMesh
+        Mesh of the teeth.
+    msh : Path
+        File for gmsh.
+    vtu : Path
+        File for ParaView.
+    inp : Path
+        File for Abaqus and CalculiX.
+
+    Returns
+    -------
+    pd.DataFrame
+        Rows of the body in quality.csv.
+    """
     with atomic_path(msh) as temporary:
         condition = write_msh(sector, temporary)
     jacobian = scaled_jacobians(sector.nodes, sector.hexes)
@@ -41,7 +58,22 @@ def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataF
 
 
 def quality_table(sector: SectorMesh, jacobian: Array, condition: Array) -> pd.DataFrame:
-    """Rows (body, quantity, statistic, value): counts and volume, and quality by quantile."""
+    """Tabulate counts, volume, and quality by quantile.
+
+    Parameters
+    ----------
+    sector : SectorMesh
+        Mesh of the teeth.
+    jacobian : (elements,) array
+        Scaled Jacobians, dimensionless.
+    condition : (elements,) array
+        gmsh's minSICN, dimensionless.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns body, quantity, statistic and value.
+    """
     body, serendipity = sector.tooth.body, np.unique(sector.hexes[:, SERENDIPITY20])
     rows = [
         (body, "teeth", "count", len(sector.tooth_nodes)),

@@ -18,7 +18,18 @@ HEXAHEDRON_27, QUADRANGLE_9 = 12, 10
 
 @contextmanager
 def gmsh_model(sector: SectorMesh) -> Iterator[NDArray[np.uint64]]:
-    """A gmsh session holding the sector; yields the tags of its hexahedra."""
+    """Open a gmsh session that holds the sector.
+
+    Parameters
+    ----------
+    sector : SectorMesh
+        Mesh of the teeth.
+
+    Yields
+    ------
+    (elements,) array of int
+        Tags of its hexahedra.
+    """
     with gmsh_session(sector.tooth.body):
         yield _fill(sector)
 
@@ -42,7 +53,20 @@ def _fill(sector: SectorMesh) -> NDArray[np.uint64]:
 
 
 def write_msh(sector: SectorMesh, path: Path) -> Array:
-    """Write the sector as .msh 4.1 (binary) and return gmsh's minSICN of every hexahedron."""
+    """Write the sector as .msh 4.1 (binary).
+
+    Parameters
+    ----------
+    sector : SectorMesh
+        Mesh of the teeth.
+    path : Path
+        File to write.
+
+    Returns
+    -------
+    (elements,) array
+        gmsh's minSICN of every hexahedron, dimensionless.
+    """
     with gmsh_model(sector) as elements:
         quality = gmsh.model.mesh.getElementQualities(elements, "minSICN")
         gmsh.option.setNumber("Mesh.Binary", 1)

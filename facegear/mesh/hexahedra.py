@@ -10,10 +10,21 @@ TENSOR = (2 * ElementHex2.doflocs @ np.array([1, 3, 9])).astype(np.int64)
 
 
 def hex_mesh(nodes: Array, hexes: Integers) -> tuple[MeshHex2, Integers]:
-    """Mesh of hexahedra (m, 27) in tensor order on nodes (n, 3), and the number (n,) of each node in it.
+    """Build a mesh of hexahedra.
 
-    Displacement i of a node with the number k has the dof 3 k + i of `ElementVector(ElementHex2())`. Nodes
-    that no element uses have the number -1.
+    Displacement i of a node with the number k has the dof 3 k + i of `ElementVector(ElementHex2())`.
+
+    Parameters
+    ----------
+    nodes : (n, 3) array
+        Positions, m.
+    hexes : (m, 27) array of int
+        Nodes of each hexahedron in tensor order.
+
+    Returns
+    -------
+    tuple[MeshHex2, Integers]
+        Mesh, and number (n,) of each node in it; -1 for nodes that no element uses.
     """
     local = hexes[:, TENSOR].T
     mesh = MeshHex2(np.ascontiguousarray(nodes.T), np.ascontiguousarray(local))

@@ -48,25 +48,47 @@ class Outline:
         return self.body == "pinion" and self.design.pinion.tip_chamfer > 0
 
     def flank_parameters(self, fraction: Array) -> tuple[Array, Array]:
-        """Surface parameters (len(fraction), planes): pinion roll and y, gear roll and psi."""
+        """Compute the surface parameters of the flank.
+
+        Parameters
+        ----------
+        fraction : (n,) array
+            Fractions of the segment, 0..1.
+
+        Returns
+        -------
+        tuple of (n, planes) arrays
+            Pinion: roll, rad, and y, m; gear: roll and psi, rad.
+        """
         fraction = fraction[:, None]
         if self.body == "pinion":
             top, bottom = self.design.pinion_tip_roll, pinion.junction_roll(self.design)
             roll = np.sqrt(top**2 + fraction * (bottom**2 - top**2))
-            return _alike(roll, self.planes[None, :])
+            return _has_same_sections(roll, self.planes[None, :])
         radius = self.planes[None, :]
         start, _ = face_gear.roll_and_psi_at_height(self.design, radius, self.design.gear_tip_plane)
         roll = start + fraction * (self.design.shaper_tip_roll - start)
         return roll, face_gear.psi_at(self.design, radius, roll)
 
     def fillet_parameters(self, fraction: Array) -> tuple[Array, Array]:
-        """Surface parameters (len(fraction), planes): pinion gamma and y, gear psi and gear radius."""
+        """Compute the surface parameters of the fillet.
+
+        Parameters
+        ----------
+        fraction : (n,) array
+            Fractions of the segment, 0..1.
+
+        Returns
+        -------
+        tuple of (n, planes) arrays
+            Pinion: gamma, rad, and y, m; gear: psi, rad, and gear radius, m.
+        """
         if self.body == "pinion":
             start = self.design.pressure_angle
             gamma = start + self._even(fraction) * (pi / 2 - start)
-            return _alike(gamma[:, None], self.planes[None, :])
+            return _has_same_sections(gamma[:, None], self.planes[None, :])
         slopes = face_gear.fillet_slopes(self.design, self.planes[None, :], self._even(fraction)[:, None])
-        return _alike(slopes, self.planes[None, :])
+        return _has_same_sections(slopes, self.planes[None, :])
 
     def _even(self, fraction: Array) -> Array:
         """Fractions of the fillet's parameter that are evenly spaced along it (in the middle plane)."""
@@ -84,7 +106,20 @@ class Outline:
         return np.interp(fraction, length / length[-1], grid)
 
     def points(self, segment: str, fraction: Array) -> tuple[Array, Array]:
-        """Angle (rad) and height (m), (len(fraction), planes), at fractions 0..1 of a segment."""
+        """Compute points of a segment.
+
+        Parameters
+        ----------
+        segment : str
+            `chamfer`, `flank`, `fillet` or `root_land`.
+        fraction : (n,) array
+            Fractions of the segment, 0..1.
+
+        Returns
+        -------
+        tuple of (n, planes) arrays
+            Angle, rad, and height, m.
+        """
         if segment == "flank":
             return self._flank(fraction)
         if segment == "fillet":
@@ -112,13 +147,26 @@ class Outline:
         return np.arctan2(point[..., 0], point[..., 1]), point[..., 2]
 
     def cartesian(self, angle: Array, height: Array) -> Array:
-        """Points (..., planes, 3) of the body frame."""
+        """Convert points to the body frame.
+
+        Parameters
+        ----------
+        angle : (..., planes) array
+            rad.
+        height : (..., planes) array
+            m.
+
+        Returns
+        -------
+        (..., planes, 3) array
+            m.
+        """
         if self.body == "pinion":
             return pinion.cartesian(height, angle, self.planes)
         return face_gear.cylindrical(self.planes, angle, height)
 
 
-def _alike(u: Array, v: Array) -> tuple[Array, Array]:
+def _has_same_sections(u: Array, v: Array) -> tuple[Array, Array]:
     """Both arrays at the shape of their product."""
     u, v = np.broadcast_arrays(u, v)
     return u, v

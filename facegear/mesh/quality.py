@@ -14,13 +14,26 @@ from facegear.mesh.tooth import FeTooth
 
 ELEMENTS_AT_ONCE = 2000
 DEGREE = 5
-"""Of the quadrature of volumes: the determinant of the 27-node geometry has at most the degree 5 each way."""
+"""Degree of the quadrature of volumes: the determinant of the 27-node geometry has at most the degree 5 each
+way."""
 
 
 def scaled_jacobians(nodes: Array, hexes: Integers) -> Array:
-    """Smallest scaled Jacobian of each element over its 27 nodes, -1..1, 1 for a box.
+    """Compute the smallest scaled Jacobian of each element over its 27 nodes.
 
     The determinant is divided by the product of the lengths of the three edge directions.
+
+    Parameters
+    ----------
+    nodes : (n, 3) array
+        m.
+    hexes : (m, 27) array of int
+        Nodes of each element.
+
+    Returns
+    -------
+    (m,) array
+        Dimensionless number, -1..1, 1 for a box.
     """
     points = nodes[hexes[:, TENSOR]]
     edges = np.einsum("qja,mai->jiqm", _slopes_at_nodes(), points, optimize=True)
@@ -39,10 +52,21 @@ def _slopes_at_nodes() -> Array:
 
 
 def require_right_side_out(tooth: FeTooth) -> None:
-    """Raises InvalidInput for a mesh with an element turned inside out, which no stiffness may come from."""
-    turned = np.count_nonzero(scaled_jacobians(tooth.nodes, tooth.hexes) <= 0.0)
-    if turned:
-        elements = f"{turned} elements of the {tooth.body.replace('_', ' ')} turned inside out"
+    """Refuse a mesh with an element turned inside out, which no stiffness may come from.
+
+    Parameters
+    ----------
+    tooth : FeTooth
+        Mesh of a tooth.
+
+    Raises
+    ------
+    InvalidInput
+        Names the number of such elements.
+    """
+    orientation = np.count_nonzero(scaled_jacobians(tooth.nodes, tooth.hexes) <= 0.0)
+    if orientation:
+        elements = f"{orientation} elements of the {tooth.body.replace('_', ' ')} turned inside out"
         raise InvalidInput(
             "element size",
             elements,
@@ -52,7 +76,20 @@ def require_right_side_out(tooth: FeTooth) -> None:
 
 
 def volume(nodes: Array, hexes: Integers) -> float:
-    """Volume (m^3), exact for the 27-node geometry."""
+    """Compute the volume, exact for the 27-node geometry.
+
+    Parameters
+    ----------
+    nodes : (n, 3) array
+        m.
+    hexes : (m, 27) array of int
+        Nodes of each element.
+
+    Returns
+    -------
+    float
+        m^3.
+    """
     mesh, _ = hex_mesh(nodes, hexes)
     points, weights = get_quadrature(ElementHex2, DEGREE)
     return sum(float(np.sum(mesh.mapping().detDF(points, tind=batch) @ weights)) for batch in _batches(mesh))

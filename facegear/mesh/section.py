@@ -35,7 +35,20 @@ class SectionPlan:
 
 
 def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
-    """Choose columns, refinement levels and rows for the sizes; one plan serves all planes of the width."""
+    """Choose columns, refinement levels and rows for the sizes; one plan serves all planes of the width.
+
+    Parameters
+    ----------
+    outline : Outline
+        Outline of half a tooth.
+    sizes : MeshSizes
+        Element sizes.
+
+    Returns
+    -------
+    SectionPlan
+        Topology of the section.
+    """
     scale = outline.tip_height if outline.body == "pinion" else float(np.mean(outline.planes))
     lengths = {name: _length(outline, name, scale) for name in ("flank", "fillet", "root_land")}
     floor = _floor_height(outline)
@@ -81,11 +94,27 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
 
 
 def first_row(outline: Outline, sizes: MeshSizes) -> float:
-    """Depth (m) of the first row below the fillet: less below a sharp one, but half of what was asked."""
-    asked = sizes.fillet_depth
-    if asked is None:
+    """Return the depth of the first row below the fillet: less below a sharp one, but at least half the given
+    depth.
+
+    Parameters
+    ----------
+    outline : Outline
+        Outline of half a tooth.
+    sizes : MeshSizes
+        Element sizes.
+
+    Returns
+    -------
+    float
+        m; inf if no depth is given.
+    """
+    depth_limit = sizes.fillet_depth
+    if depth_limit is None:
         return np.inf
-    return float(np.clip(SHARP * smallest_radius(outline.design, outline.body), 0.5 * asked, asked))
+    return float(
+        np.clip(SHARP * smallest_radius(outline.design, outline.body), 0.5 * depth_limit, depth_limit)
+    )
 
 
 def _fillet_rows(rows: Array, first: float) -> Array:
@@ -105,9 +134,20 @@ def _length(outline: Outline, segment: str, scale: float) -> float:
 
 
 def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[Mask, Array]]:
-    """For each segment of the outline: which sigma lie on it (ends included) and their fractions 0..1.
+    """Assign positions sigma to the segments of the outline.
 
-    `sigma` must hold the segments' ends, which may differ by rounding.
+    Parameters
+    ----------
+    plan : SectionPlan
+        Topology of the section.
+    sigma : (n,) array
+        Positions along the boundary in coarse columns, dimensionless; they must hold the segments' ends,
+        which may differ by rounding.
+
+    Returns
+    -------
+    dict of tuples
+        For each segment the mask (n,) of the sigma on it (ends included), and their fractions (k,), 0..1.
     """
     result = {}
     breaks = {name: [_nearest(sigma, end) for end in ends] for name, ends in plan.breaks.items()}
@@ -127,7 +167,20 @@ def _nearest(values: Array, value: float) -> float:
 
 
 def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
-    """Angle (rad) and height (m) of the right half's nodes, (nodes, planes)."""
+    """Compute the nodes of the right half.
+
+    Parameters
+    ----------
+    outline : Outline
+        Outline of half a tooth.
+    plan : SectionPlan
+        Topology of the section.
+
+    Returns
+    -------
+    tuple of (nodes, planes) arrays
+        Angle, rad, and height, m.
+    """
     half = plan.half
     sigma, index = np.unique(half.sigma, return_inverse=True)
     shape = (len(sigma), len(outline.planes))

@@ -1,4 +1,4 @@
-"""Which side of which element each face of a named group is, in the names of Abaqus and CalculiX."""
+"""Element sides of the faces of a named group, in the names of Abaqus and CalculiX."""
 
 import numpy as np
 
@@ -7,7 +7,25 @@ from facegear.mesh.sector import SectorMesh
 
 
 def element_faces(sector: SectorMesh, name: str) -> list[tuple[int, str]]:
-    """Element index and side S1..S6 of every face of a group. Raises KeyError for an unknown group."""
+    """Return the element and its side of every face of a group.
+
+    Parameters
+    ----------
+    sector : SectorMesh
+        Mesh of the teeth.
+    name : str
+        Name of the group.
+
+    Returns
+    -------
+    list[tuple[int, str]]
+        Index of the element and side S1..S6.
+
+    Raises
+    ------
+    KeyError
+        For an unknown group.
+    """
     middle = sector.faces(name)[:, 4]
     sides = sector.hexes[:, list(FACES.values())]
     order = np.argsort(sides.ravel(), kind="stable")

@@ -52,7 +52,20 @@ THIN_COLUMN = 0.5
 
 
 def thin_fillet(sizes: MeshSizes, name: str = "") -> MeshSizes:
-    """Sizes with the elements at the fillet that reading stress there takes, unless they give them."""
+    """Return sizes with the elements at the fillet that reading stress there needs, unless they are given.
+
+    Parameters
+    ----------
+    sizes : MeshSizes
+        Element sizes.
+    name : str
+        Name of the resolution; empty for other sizes.
+
+    Returns
+    -------
+    MeshSizes
+        Element sizes, m.
+    """
     return replace(
         sizes,
         fillet=sizes.fillet or THIN_COLUMN * sizes.profile,
@@ -62,6 +75,24 @@ def thin_fillet(sizes: MeshSizes, name: str = "") -> MeshSizes:
 
 
 def named_sizes(name: str, module: float) -> MeshSizes:
-    """Sizes of a named resolution for a module (m). Raises KeyError for an unknown name."""
+    """Return the sizes of a named resolution.
+
+    Parameters
+    ----------
+    name : str
+        Key of RESOLUTIONS.
+    module : float
+        m.
+
+    Returns
+    -------
+    MeshSizes
+        Element sizes, m.
+
+    Raises
+    ------
+    KeyError
+        For an unknown name.
+    """
     profile, width, thickness = RESOLUTIONS[name]
     return MeshSizes(profile * module, width * module, thickness * module)

@@ -38,11 +38,29 @@ class HalfSection:
 def depth_rows(
     profile: float, thickness: float, depth: float, levels: int, second: float | None = None
 ) -> list[ElementRow]:
-    """Rows from the surface to the centre line for a reference depth; all lengths in one unit.
+    """Return the rows from the surface to the centre line for a reference depth; all lengths in one unit.
 
     A plain row and a coarsening row per level, or one plain row where nothing coarsens, then plain coarse
     rows over what is left. So a smaller `thickness` never makes the first row deeper. A row `second` deep
     follows the first of the finest level, if given.
+
+    Parameters
+    ----------
+    profile : float
+        Element size at the surface, any unit.
+    thickness : float
+        Largest size inside, same unit.
+    depth : float
+        Depth of the centre line, same unit.
+    levels : int
+        Number of coarsening levels.
+    second : float, optional
+        Depth of a second fine row, same unit; None without.
+
+    Returns
+    -------
+    list[ElementRow]
+        Rows from the surface inwards.
     """
     heights: list[tuple[float, int, bool]] = []
     if levels == 0 and profile < thickness and profile <= 0.75 * depth:
@@ -63,24 +81,57 @@ def depth_rows(
 
 
 def coarsening_levels(profile: float, thickness: float, depth: float) -> int:
-    """As many three-to-one steps as the inner size wants and three quarters of the depth can hold."""
+    """Return as many three-to-one steps as the inner size needs and three quarters of the depth can hold.
+
+    Parameters
+    ----------
+    profile : float
+        Element size at the surface, any unit.
+    thickness : float
+        Largest size inside, same unit.
+    depth : float
+        Depth of the centre line, same unit.
+
+    Returns
+    -------
+    int
+        Number of steps.
+    """
     levels = 0
-    while 3.0 ** (levels + 1) * profile <= 1.2 * thickness and _used(profile, levels + 1) <= 0.75 * depth:
+    while (
+        3.0 ** (levels + 1) * profile <= 1.2 * thickness
+        and _coarsening_depth(profile, levels + 1) <= 0.75 * depth
+    ):
         levels += 1
     return levels
 
 
-def _used(profile: float, levels: int) -> float:
+def _coarsening_depth(profile: float, levels: int) -> float:
     return sum(2.5 * profile * 3.0**step for step in range(levels))
 
 
 def half_section(
     rows: list[ElementRow], column_levels: list[int], columns: tuple[int, int], block: int
 ) -> HalfSection:
-    """Quads of the strip and of `block` rows below it.
+    """Build the quads of the strip and of the rows below it.
 
-    column_levels: refinement of each coarse column at the surface; columns: how many stand against the centre
-    line and against the floor. Columns of different levels conform, as no row's sides are divided.
+    Columns of different levels conform, as no row's sides are divided.
+
+    Parameters
+    ----------
+    rows : list[ElementRow]
+        Rows of the strip.
+    column_levels : list[int]
+        Refinement of each coarse column at the surface.
+    columns : tuple[int, int]
+        Numbers of columns against the centre line and against the floor.
+    block : int
+        Number of rows below the strip.
+
+    Returns
+    -------
+    HalfSection
+        Topology of the half section.
     """
     corners: list[Array] = []
     for column, finest in enumerate(column_levels):

@@ -63,7 +63,20 @@ class FeTooth:
         return 2 * pi / self.teeth
 
     def rotated(self, points: Array, angle: float) -> Array:
-        """Points (or vectors) (..., 3) turned about the body's axis, positive as in `geometry.design`."""
+        """Rotate points or vectors about the body's axis.
+
+        Parameters
+        ----------
+        points : (..., 3) array
+            m, or any unit.
+        angle : float
+            rad, positive as in `geometry.design`.
+
+        Returns
+        -------
+        (..., 3) array
+            Same unit.
+        """
         return points @ body_rotation(self.body, angle).T
 
 
@@ -72,13 +85,39 @@ CORNERS = np.array([0, 2, 6, 8, 18, 20, 24, 26])
 
 
 def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
-    """Mesh of one pinion tooth; the face is centred on the gear's mean radius."""
+    """Build the mesh of one pinion tooth; the face is centred on the gear's mean radius.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+
+    Returns
+    -------
+    FeTooth
+        Mesh of the tooth.
+    """
     half = design.pinion.width / 2
     return _tooth(design, "pinion", sizes, design.mean_radius - half, design.mean_radius + half)
 
 
 def gear_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
-    """Mesh of one face gear tooth from the inner to the outer cylinder."""
+    """Build the mesh of one face gear tooth from the inner to the outer cylinder.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    sizes : MeshSizes
+        Element sizes.
+
+    Returns
+    -------
+    FeTooth
+        Mesh of the tooth.
+    """
     return _tooth(design, "face_gear", sizes, design.face_gear.inner_radius, design.face_gear.outer_radius)
 
 
@@ -98,9 +137,9 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     points = outline.cartesian(angle, height)
 
     # sigma down the flank, t inwards, width along y: right handed for the gear's right half (x, z) only
-    right, left = half.quads, mirror[_transposed(half.quads)]
+    right, left = half.quads, mirror[_transpose_grid(half.quads)]
     if body == "pinion":
-        right, left = _transposed(right), mirror[half.quads]
+        right, left = _transpose_grid(right), mirror[half.quads]
     quads = np.concatenate([right, left])
     count = len(angle)
     hexes = _extruded(quads, layers, count)
@@ -127,7 +166,7 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     )
 
 
-def _transposed(quads: Integers) -> Integers:
+def _transpose_grid(quads: Integers) -> Integers:
     return quads.reshape(-1, 3, 3).transpose(0, 2, 1).reshape(-1, 9)
 
 
@@ -160,8 +199,8 @@ def _boundary_edges(plan: SectionPlan, mirror: Integers, back: str) -> dict[str,
     }
     groups = {f"{name}_right": sides[mask] for name, mask in halves.items()}
     groups |= {f"{name}_left": mirror[sides[mask]] for name, mask in halves.items()}
-    both = {"tip": (sigma == 0).all(axis=1) | between("chamfer"), back: (t == 2).all(axis=1)}
-    return groups | {n: np.concatenate([sides[mask], mirror[sides[mask]]]) for n, mask in both.items()}
+    directions = {"tip": (sigma == 0).all(axis=1) | between("chamfer"), back: (t == 2).all(axis=1)}
+    return groups | {n: np.concatenate([sides[mask], mirror[sides[mask]]]) for n, mask in directions.items()}
 
 
 def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, hexes: Integers) -> Integers:
@@ -174,7 +213,7 @@ def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, 
             owner[face_of[int(hexes[row, [4, 10, 12, 14, 16, 22][column]])]] = centre[row]
     along, across = nodes[faces[:, 5]] - nodes[faces[:, 3]], nodes[faces[:, 7]] - nodes[faces[:, 1]]
     out = np.sum(np.cross(along, across) * (nodes[faces[:, 4]] - owner), axis=1) > 0
-    return np.where(out[:, None], faces, _transposed(faces))
+    return np.where(out[:, None], faces, _transpose_grid(faces))
 
 
 def _surfaces(

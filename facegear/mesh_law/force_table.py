@@ -40,8 +40,8 @@ class ForceTable:
 
     @cached_property
     def coefficients(self) -> Array:
-        """Of the powers 0 to 3 of the amount beyond the level at which a piece begins, (L, 4, 2, harmonics +
-        1).
+        """Coefficients of the powers 0 to 3 of the amount beyond the level at which a piece begins, (L, 4, 2,
+        harmonics + 1).
         """
         return hermite(self.levels, self.forces, self.slopes)
 
@@ -64,29 +64,72 @@ class ForceTable:
         amounts = np.linspace(0.0, 1.0, LOOKS + 1)[:, None] * np.append(np.diff(self.levels), 0.0)
         return float((first + amounts * (2.0 * second + 3.0 * amounts * third)).min())
 
-    def mirrored(self) -> "ForceTable":
-        """The table of a contact that goes through the phases the other way round."""
+    def mirror(self) -> "ForceTable":
+        """Return the table of a contact that goes through the phases the other way round.
+
+        Returns
+        -------
+        ForceTable
+            The same levels, N and N/m.
+        """
         sign = np.array([-1.0, 1.0])[:, None]
         return ForceTable(self.levels, sign * self.forces, sign * self.slopes)
 
-    def scaled(self, factor: float) -> "ForceTable":
-        """Forces and slopes times a factor."""
+    def scale(self, factor: float) -> "ForceTable":
+        """Return the table with forces and slopes times a factor.
+
+        Parameters
+        ----------
+        factor : float
+            The factor, dimensionless.
+
+        Returns
+        -------
+        ForceTable
+            The same levels, N and N/m.
+        """
         return ForceTable(self.levels, factor * self.forces, factor * self.slopes)
 
 
-def lagging(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
-    """The tables of contacts that come later by some mesh periods each."""
+def shift_tables(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
+    """Return the tables of contacts that come later by some mesh periods each.
+
+    Parameters
+    ----------
+    tables : Sequence of ForceTable
+        Tables with as many levels and harmonics.
+    cycles : Sequence of float
+        Lag of each contact, mesh periods.
+
+    Returns
+    -------
+    list of ForceTable
+        One table for each contact, N and N/m.
+    """
     series = np.array([[table.forces, table.slopes] for table in tables])
     angle = 2.0 * np.pi * np.multiply.outer(cycles, np.arange(series.shape[-1]))[:, None, None]
     cosine, sine = np.cos(angle), np.sin(angle)
     a, b = series[..., 0, :], series[..., 1, :]
     later = np.stack([a * cosine + b * sine, b * cosine - a * sine], axis=-2)
-    return [ForceTable(table.levels, *both) for table, both in zip(tables, later, strict=True)]
+    return [ForceTable(table.levels, *series) for table, series in zip(tables, later, strict=True)]
 
 
 def hermite(levels: Array, forces: Array, slopes: Array) -> Array:
-    """Coefficients (..., L, 4, 2, harmonics + 1) of cubics with forces and slopes (..., L, 2, harmonics + 1)
-    at levels (..., L).
+    """Return the coefficients of cubics with given forces and slopes at levels.
+
+    Parameters
+    ----------
+    levels : (..., L) array
+        Levels, m.
+    forces : (..., L, 2, harmonics + 1) array
+        Series of the forces, N.
+    slopes : (..., L, 2, harmonics + 1) array
+        Series of the slopes, N/m.
+
+    Returns
+    -------
+    (..., L, 4, 2, harmonics + 1) array
+        N/m^k for the power k = 0 to 3.
     """
     spacing = np.diff(levels)[..., None, None]
     rise = np.diff(forces, axis=-3) / spacing
@@ -99,10 +142,22 @@ def hermite(levels: Array, forces: Array, slopes: Array) -> Array:
 
 
 def slope_bounds(levels: Array, coefficients: Array) -> Array:
-    """Series (..., 2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m.
+    """Return the series between whose extremes all slopes lie.
 
     They are the slopes at the levels, and between two of them the middle coefficient of the slope in
     Bernstein form.
+
+    Parameters
+    ----------
+    levels : (..., L) array
+        Levels, m.
+    coefficients : (..., L, 4, 2, harmonics + 1) array
+        Coefficients of `hermite`, N/m^k for the power k.
+
+    Returns
+    -------
+    (..., 2 L - 1, 2, harmonics + 1) array
+        N/m.
     """
     spacing, slopes = np.diff(levels)[..., None, None], coefficients[..., 1, :, :]
     middle = slopes[..., :-1, :, :] + spacing * coefficients[..., :-1, 2, :, :]
@@ -110,12 +165,36 @@ def slope_bounds(levels: Array, coefficients: Array) -> Array:
 
 
 def amplitudes(series: Array) -> Array:
-    """Amplitudes (..., harmonics + 1) of Fourier series (..., 2, harmonics + 1)."""
+    """Return the amplitudes of Fourier series.
+
+    Parameters
+    ----------
+    series : (..., 2, harmonics + 1) array
+        Sine part first, any unit.
+
+    Returns
+    -------
+    (..., harmonics + 1) array
+        In the same unit.
+    """
     return np.asarray(np.hypot(series[..., 0, :], series[..., 1, :]))
 
 
 def values_at(series: Array, cycles: Array) -> Array:
-    """Values (K, ...) of Fourier series (..., 2, harmonics + 1) at phases (K,)."""
+    """Return the values of Fourier series at phases.
+
+    Parameters
+    ----------
+    series : (..., 2, harmonics + 1) array
+        Sine part first, any unit.
+    cycles : (K,) array
+        Phases, mesh periods.
+
+    Returns
+    -------
+    (K, ...) array
+        In the same unit.
+    """
     angle = 2.0 * np.pi * np.outer(cycles, np.arange(series.shape[-1]))
     return np.asarray(
         np.tensordot(np.sin(angle), series[..., 0, :], axes=(1, -1))

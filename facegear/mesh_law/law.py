@@ -1,4 +1,4 @@
-"""What the force of a contact offers to statics, dynamics, tangents and load sharing."""
+"""Interface of a contact's force for statics, dynamics, tangents and load sharing."""
 
 from typing import Any, Protocol
 
@@ -7,7 +7,7 @@ import numpy as np
 from facegear.arrays import Array
 
 
-class Held(Protocol):
+class LawAtPhases(Protocol):
     """A law of M contacts at K phases: its field `stiffness` (K, M) bounds the slopes, N/m."""
 
     @property
@@ -54,18 +54,61 @@ class MeshLaw(Protocol):
         """Largest fraction (H + 1,) of the slope's bound that each harmonic of the phase makes up."""
 
     def force(self, cycles: Array, beyond: Array) -> Array:
-        """Forces (..., K, M), N."""
+        """Return the forces of the contacts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m.
+
+        Returns
+        -------
+        (..., K, M) array
+            N.
+        """
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Derivatives (..., K, M) of the forces by the amounts, N/m; zero where nothing is pressed in."""
+        """Return the derivatives of the forces by the amounts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m.
+
+        Returns
+        -------
+        (..., K, M) array
+            N/m; zero where nothing is pressed in.
+        """
 
     def mean(self) -> "MeshLaw":
-        """The law averaged over the mesh period at fixed amounts."""
+        """Return the law averaged over the mesh period at fixed amounts.
+
+        Returns
+        -------
+        MeshLaw
+            A law that does not depend on the phase.
+        """
 
     def at_phase(self, cycle: float) -> "MeshLaw":
-        """The law at one phase, whatever the phase."""
+        """Return the law at one phase, whatever the phase.
 
-    def statics_law(self, cycles: Array) -> Held:
+        Parameters
+        ----------
+        cycle : float
+            Mesh periods since the start.
+
+        Returns
+        -------
+        MeshLaw
+            A law that does not depend on the phase.
+        """
+
+    def statics_law(self, cycles: Array) -> LawAtPhases:
         """Evaluate the law at some phases for statics.
 
         Laws of `facegear.mesh_law.laws_at_phases` have a kernel. With any other, statics evaluates the forces
@@ -92,8 +135,19 @@ class MeshLaw(Protocol):
 
 
 def past_levels(law: MeshLaw, beyond: Array) -> Array:
-    """How often (M,), as a fraction of the rows, contacts (K, M) are pressed in past the last level of a law;
-    nowhere on one that is straight.
+    """Return how often contacts are pressed in past the last level of a law.
+
+    Parameters
+    ----------
+    law : MeshLaw
+        The law.
+    beyond : (K, M) array
+        Compression of the contacts, m.
+
+    Returns
+    -------
+    (M,) array
+        Fraction of the K rows, relative; 0 for a law that is straight.
     """
     if law.straight:
         return np.zeros(law.contacts)
@@ -101,9 +155,23 @@ def past_levels(law: MeshLaw, beyond: Array) -> Array:
 
 
 def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
-    """How far contacts (..., M) are pressed in: above `upper`, or below `lower` as a negative amount.
+    """Return how far contacts are pressed in: above `upper`, or below `lower` as a negative amount.
 
     A contact with lower >= upper is never open; both directions count from `upper`.
+
+    Parameters
+    ----------
+    deflections : (..., M) array
+        Deflections, m.
+    lower : (M,) array
+        Lower edges, m; minus infinity for a contact that only pushes.
+    upper : (M,) array
+        Upper edges, m.
+
+    Returns
+    -------
+    (..., M) array
+        Compression, m.
     """
     lower = np.where(lower >= upper, upper, lower)
     inside = np.maximum(deflections, lower)

@@ -9,7 +9,7 @@ import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array, Integers
-from facegear.harmonics.series import Harmonics, stacked, stacked_values
+from facegear.harmonics.series import Harmonics, stack_series, stacked_values
 from facegear.mesh_law.laws_at_phases import LinearHeld
 
 
@@ -103,7 +103,18 @@ class LinearLaw:
         return self.fourier[self.kind, 1, 0] if alone else None
 
     def stiffness(self, cycles: Array) -> Array:
-        """k (K, M) at phases (K,) in mesh periods."""
+        """Return the stiffness k at phases.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+
+        Returns
+        -------
+        (K, M) array
+            N/m.
+        """
         if self._constant is not None:
             return np.repeat(self._constant[None], cycles.size, axis=0)
         values = stacked_values(self.fourier, cycles)
@@ -112,23 +123,66 @@ class LinearLaw:
         return values[:, self.kind]
 
     def force(self, cycles: Array, beyond: Array) -> Array:
-        """k times the amounts, (..., K, M)."""
+        """Return k times the amounts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m; negative on a back flank.
+
+        Returns
+        -------
+        (..., K, M) array
+            N.
+        """
         return beyond * (self.stiffness(cycles) if self._constant is None else self._constant)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """k where a contact is pressed in, (..., K, M)."""
+        """Return k where a contact is pressed in, 0 elsewhere.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m; negative on a back flank.
+
+        Returns
+        -------
+        (..., K, M) array
+            N/m.
+        """
         stiffness = self.stiffness(cycles) if self._constant is None else self._constant
         return np.where(beyond != 0.0, stiffness, 0.0)
 
     def mean(self) -> "LinearLaw":
-        """Mean stiffness."""
+        """Return the law with the mean stiffness.
+
+        Returns
+        -------
+        LinearLaw
+            A law that does not depend on the phase, N/m.
+        """
         fourier = self.fourier[:, :, :1].copy()
         if self.pieces:
             fourier[:, 1, 0] += [piece.mean for piece in self.pieces]
         return LinearLaw(fourier, self.kind)
 
     def at_phase(self, cycle: float) -> "LinearLaw":
-        """k at a phase."""
+        """Return the law with k at one phase.
+
+        Parameters
+        ----------
+        cycle : float
+            Mesh periods since the start.
+
+        Returns
+        -------
+        LinearLaw
+            A law that does not depend on the phase, N/m.
+        """
         fourier = np.zeros((self.contacts, 2, 1))
         fourier[:, 1, 0] = self.stiffness(np.array([cycle]))[0]
         return LinearLaw(fourier, np.arange(self.contacts))
@@ -165,14 +219,36 @@ class LinearLaw:
 
 
 def linear_law(series: Sequence[Harmonics]) -> LinearLaw:
-    """The linear law of contacts with a stiffness series each; series that are alike make one kind."""
+    """Return the linear law of contacts with a stiffness series each; equal series make one kind.
+
+    Parameters
+    ----------
+    series : Sequence of Harmonics
+        Stiffness of each contact, N/m.
+
+    Returns
+    -------
+    LinearLaw
+        N/m.
+    """
     fourier, kind = different(series)
     return LinearLaw(fourier, kind)
 
 
 def different(series: Sequence[Harmonics]) -> tuple[Array, Integers]:
-    """The different ones among Fourier series, (kinds, 2, harmonics + 1), and the kind of each."""
-    rows = stacked(series)
+    """Return the different ones among Fourier series, and the kind of each.
+
+    Parameters
+    ----------
+    series : Sequence of Harmonics
+        Series in any unit.
+
+    Returns
+    -------
+    tuple of (kinds, 2, harmonics + 1) array and (series,) array of int
+        Different series in the same unit, and index of the kind.
+    """
+    rows = stack_series(series)
     distinct, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
     return distinct.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
 
@@ -189,6 +265,10 @@ def _pieces(law: LinearLaw) -> Array:
         for row, start in zip(table, breaks[:-1], strict=True):
             source = int(np.searchsorted(piece.breaks, start, side="right")) - 1
             ahead = np.polynomial.Polynomial([start - piece.breaks[source], 1.0])
-            shifted = np.asarray(np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef, float)
-            row[: shifted.size, contact] = shifted / (2.0 * np.pi) ** np.arange(shifted.size)
+            shifted_coefficients = np.asarray(
+                np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef, float
+            )
+            row[: shifted_coefficients.size, contact] = shifted_coefficients / (2.0 * np.pi) ** np.arange(
+                shifted_coefficients.size
+            )
     return table

@@ -74,11 +74,37 @@ class LoadDependentLaw:
         return hermite(self._levels, forces, slopes)
 
     def force(self, cycles: Array, beyond: Array) -> Array:
-        """Forces (..., K, M)."""
+        """Return the forces of the contacts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m; negative on a back flank.
+
+        Returns
+        -------
+        (..., K, M) array
+            N.
+        """
         return self._pieces.at(self.kind, cycles, beyond)
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
-        """Slopes (..., K, M), zero where nothing is pressed in."""
+        """Return the derivatives of the forces by the amounts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m; negative on a back flank.
+
+        Returns
+        -------
+        (..., K, M) array
+            N/m; zero where nothing is pressed in.
+        """
         return self._pieces.at(self.kind, cycles, beyond, slopes=True)
 
     @cached_property
@@ -86,28 +112,47 @@ class LoadDependentLaw:
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
-        """Mean forces and slopes at every level."""
+        """Return the law with the mean forces and slopes at every level.
+
+        Returns
+        -------
+        LoadDependentLaw
+            A law that does not depend on the phase.
+        """
         return self._mean
 
     @cached_property
     def _mean(self) -> "LoadDependentLaw":
-        return self._changed(
+        return self._with_series(
             [(table.forces[..., :1], table.slopes[..., :1]) for table in self.tables], self.kind
         )
 
     def at_phase(self, cycle: float) -> "LoadDependentLaw":
-        """The law of every kind at one phase."""
-        at = np.array([cycle])
-        held = []
-        for table in self.tables:
-            both = np.zeros((2, table.levels.size, 2, 1))
-            both[..., 1, 0] = values_at(np.array([table.forces, table.slopes]), at)[0]
-            held.append((both[0], both[1]))
-        return self._changed(held, self.kind)
+        """Return the law of every kind at one phase.
 
-    def _changed(self, series: Sequence[tuple[Array, Array]], kind: Integers) -> "LoadDependentLaw":
+        Parameters
+        ----------
+        cycle : float
+            Mesh periods since the start.
+
+        Returns
+        -------
+        LoadDependentLaw
+            A law that does not depend on the phase.
+        """
+        at = np.array([cycle])
+        series = []
+        for table in self.tables:
+            values = np.zeros((2, table.levels.size, 2, 1))
+            values[..., 1, 0] = values_at(np.array([table.forces, table.slopes]), at)[0]
+            series.append((values[0], values[1]))
+        return self._with_series(series, self.kind)
+
+    def _with_series(self, series: Sequence[tuple[Array, Array]], kind: Integers) -> "LoadDependentLaw":
         tables = zip(self.tables, series, strict=True)
-        return LoadDependentLaw(tuple(ForceTable(table.levels, *both) for table, both in tables), kind)
+        return LoadDependentLaw(
+            tuple(ForceTable(table.levels, *table_series) for table, table_series in tables), kind
+        )
 
     def statics_law(self, cycles: Array) -> LoadDependentHeld:
         """Evaluate the law at some phases for statics.
@@ -145,7 +190,18 @@ class LoadDependentLaw:
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
-    """The law of contacts with a table each."""
+    """Return the law of contacts with a table each.
+
+    Parameters
+    ----------
+    tables : Sequence of ForceTable
+        Table of each contact.
+
+    Returns
+    -------
+    LoadDependentLaw
+        N and N/m.
+    """
     return LoadDependentLaw(tuple(tables), np.arange(len(tables)))
 
 

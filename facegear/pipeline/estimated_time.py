@@ -73,7 +73,7 @@ def estimated_seconds(case: Case, stages: Sequence[Stage]) -> float:
         Processor time, s, without compilation.
     """
     before = {name for stage in stages for name in stages_before(stage.name, case.values)}
-    figures = sum(len(stage.figures.named(case)) for stage in stages if stage.figures)
+    figures = sum(len(stage.figures.figure_names(case)) for stage in stages if stage.figures)
     return START + FIGURE * figures + sum(ESTIMATES[name](case) for name in before & set(ESTIMATES))
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from facegear.pipeline.needs import stages_before
-from facegear.pipeline.stage import Case, Computed, Need
+from facegear.pipeline.stage import Case, ComputedValue, Need
 from facegear.pipeline.table import STAGES
 
 ALWAYS_READ = ("case", "extends", "studies", "reproduction", "transmission.backlash_um")
@@ -48,7 +48,7 @@ def idle_keys(file_values: Mapping[str, Any], cases: Mapping[str, Mapping[str, A
 
 def _keys_read(case: Case) -> Iterator[str]:
     """Dotted keys that the stages of a plain run, those before them and their figures take."""
-    run = [name for name, stage in STAGES.items() if stage.asked is not None and stage.asked(case)]
+    run = [name for name, stage in STAGES.items() if stage.condition is not None and stage.condition(case)]
     for name in dict.fromkeys(before for stage in run for before in stages_before(stage, case.values)):
         for need in STAGES[name].needs.values():
             yield from _keys(need)
@@ -59,7 +59,7 @@ def _is_below(key: str, sections: list[str]) -> bool:
 
 
 def _keys(need: Need) -> tuple[str, ...]:
-    if isinstance(need, Computed):
+    if isinstance(need, ComputedValue):
         return need.sections
     return (need,) if isinstance(need, str) else need
 

@@ -2,40 +2,52 @@
 
 from pathlib import PurePosixPath
 
-from facegear.pipeline.stage import Computed, Need, Stage
+from facegear.pipeline.stage import ComputedValue, Need, Stage
 from facegear.pipeline.table import STAGES
 
 HEAD = (
     "| stage | what it does | made where | takes from | of the config | writes |",
     "|---|---|---|---|---|---|",
 )
-NOTHING = "-"
+EMPTY_CELL = "-"
 
 
 def listing() -> str:
-    """A row a stage, in Markdown."""
-    taken = {source.stage for stage in STAGES.values() for source in stage.upstream.values()}
-    return "\n".join((*HEAD, *(_row(stage, stage.name in taken) for stage in STAGES.values())))
+    """Return the table of stages in Markdown, a row for each stage.
+
+    Returns
+    -------
+    str
+        The table.
+    """
+    source_stages = {source.stage for stage in STAGES.values() for source in stage.upstream.values()}
+    return "\n".join((*HEAD, *(_row(stage, stage.name in source_stages) for stage in STAGES.values())))
 
 
-def _row(stage: Stage, taken: bool) -> str:
+def _row(stage: Stage, is_source: bool) -> str:
     before = dict.fromkeys(source.stage for source in stage.upstream.values())
     sections = dict.fromkeys(name for need in stage.needs.values() for name in _sections(need))
-    cells = (stage.title, _where(stage, taken), ", ".join(before), ", ".join(sections), _files(stage))
-    return " | ".join((f"| {stage.name}", *(cell or NOTHING for cell in cells))) + " |"
+    cells = (
+        stage.title,
+        _made_where(stage, is_source),
+        ", ".join(before),
+        ", ".join(sections),
+        _files(stage),
+    )
+    return " | ".join((f"| {stage.name}", *(cell or EMPTY_CELL for cell in cells))) + " |"
 
 
-def _where(stage: Stage, taken: bool) -> str:
-    """When a plain run makes the stage, as its function says it."""
-    if stage.asked:
-        text = (stage.asked.__doc__ or "").splitlines()[0]
+def _made_where(stage: Stage, is_source: bool) -> str:
+    """Return when a plain run makes the stage, in the words of its condition."""
+    if stage.condition:
+        text = (stage.condition.__doc__ or "").splitlines()[0]
         return text.removeprefix("Whether ").rstrip(".").replace("Always", "always")
-    return "another stage takes from it" if taken else "its file is asked for by name"
+    return "another stage takes from it" if is_source else "its file is asked for by name"
 
 
 def _sections(need: Need) -> list[str]:
     """Sections of the config that a value is taken from."""
-    if isinstance(need, Computed):
+    if isinstance(need, ComputedValue):
         return list(need.sections)
     return [key.partition(".")[0] for key in ((need,) if isinstance(need, str) else need)]
 

@@ -1,4 +1,4 @@
-"""What of each stage the report of a case reads."""
+"""Tables and view of each stage that the report of a case reads."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,7 +11,7 @@ from facegear.pipeline.table import STAGES
 if TYPE_CHECKING:
     import pandas as pd
 
-REPORTED = {
+REPORT_TABLES = {
     "stiffness": ["harmonics"],
     "ratings": ["ratings", "bodies", "meshes"],
     "modal": ["frequencies", "contacts"],
@@ -38,24 +38,59 @@ REPORTED = {
 }
 """Tables of each stage that the report reads."""
 OWN_NAMES = ("shafts", "poses")
-"""Folders with tables that are called like others of the machine."""
+"""Folders with tables that have the same names as others of the machine."""
 
 
 def table_name(path: str | Path) -> str:
-    """What the report calls a table: its file's name, behind that of a folder of OWN_NAMES."""
+    """Return the report's name of a table: the name of its file, behind that of a folder of OWN_NAMES.
+
+    Parameters
+    ----------
+    path : str or Path
+        Path of the file.
+
+    Returns
+    -------
+    str
+        The name.
+    """
     path = Path(path)
     return f"{path.parent.name}_{path.stem}" if path.parent.name in OWN_NAMES else path.stem
 
 
 def reported_tables(case: Case) -> list[tuple[str, str]]:
-    """Stage and file of every table that the report of a case reads."""
-    return [(name, file) for name, files in REPORTED.items() for file in files if asked_for(name, case)]
+    """Return stage and file of every table that the report of a case reads.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list[tuple[str, str]]
+        Stage and file of each table.
+    """
+    return [(name, file) for name, files in REPORT_TABLES.items() for file in files if asked_for(name, case)]
 
 
 def asked_for(stage: str, case: Case) -> bool:
-    """Whether a plain run of a case makes a stage."""
-    wanted = STAGES[stage].asked
-    return wanted is not None and wanted(case)
+    """Whether a plain run of a case makes a stage.
+
+    Parameters
+    ----------
+    stage : str
+        Name of the stage.
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    is_made = STAGES[stage].condition
+    return is_made is not None and is_made(case)
 
 
 def shown_pair(
@@ -65,7 +100,26 @@ def shown_pair(
     stress: Arrays | None,
     friction: Arrays | None,
 ) -> Any:
-    """The pair in mesh as the report shows it (`facegear.report.page.View`), from what the contact gave."""
+    """Return the pair in mesh as the report shows it.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the case.
+    ltca : 'pd.DataFrame'
+        Table `ltca` of stage contact.
+    loads : Arrays
+        Arrays `loads` of stage contact.
+    stress : Arrays or None
+        Arrays of stage root_stress, None if there are none.
+    friction : Arrays or None
+        Arrays `local` of stage lubrication, None if there are none.
+
+    Returns
+    -------
+    Any
+        View (`facegear.report.page.View`).
+    """
     from facegear.config.tooth_pair import ToothPair, pair_design
     from facegear.report.pair_view import pair_view
 

@@ -1,4 +1,4 @@
-"""A stage or its figures from files: read what it takes, call it, write what it gives.
+"""Run a stage or its figures from files: read the inputs, call the function, write the results.
 
 This module names no stage: the fingerprint of a rule holds it and what that rule's stage reaches alone.
 """
@@ -22,41 +22,87 @@ Paths = Mapping[str, str | Sequence[str]]
 
 
 def read_all(upstream: Mapping[str, From], paths: Paths, stages: Mapping[str, Stage]) -> dict[str, Any]:
-    """Arguments from the files of earlier stages, those of `stages`; one without a file is left out.
+    """Read the arguments from the files of earlier stages; an argument without a file is left out.
 
-    Raises CorruptFile if one is missing, altered or lacks something.
+    Parameters
+    ----------
+    upstream : Mapping[str, From]
+        Source of each argument by name.
+    paths : Paths
+        Path, or list of paths, of each argument by name.
+    stages : Mapping[str, Stage]
+        Rows of the table of stages by name.
+
+    Returns
+    -------
+    dict[str, Any]
+        Contents by name of the argument.
+
+    Raises
+    ------
+    CorruptFile
+        If a file is missing, altered or lacks something.
     """
     contents: dict[str, Any] = {}
     for name, source in upstream.items():
-        file, given = stages[source.stage].files[source.file], paths[name]
-        if source.each or file.each:
-            contents[name] = [file.read(Path(path)) for path in given]
-        elif given:
-            contents[name] = file.read(Path(str(given)))
+        file, argument_paths = stages[source.stage].files[source.file], paths[name]
+        if source.each_wildcards or file.each_text:
+            contents[name] = [file.read(Path(path)) for path in argument_paths]
+        elif argument_paths:
+            contents[name] = file.read(Path(str(argument_paths)))
     return contents
 
 
 def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[Path]:
-    """Write what a stage gave, each file in the format that its ending names; returns the paths."""
-    written = []
+    """Write the content of a stage, each file in the format that its ending names.
+
+    Parameters
+    ----------
+    stage : Stage
+        Row of the table of stages.
+    content : Mapping[str, Any]
+        Content of each file by name.
+    paths : Paths
+        Path, or list of paths, of each file by name.
+
+    Returns
+    -------
+    list[Path]
+        The paths.
+    """
+    written_paths = []
     for name, file in stage.files.items():
         part = load(file.view)(content[file.of]) if file.view else content[name]
-        for path, target in zip(paths[name], part, strict=True) if file.each else [(paths[name], part)]:
+        for path, target in zip(paths[name], part, strict=True) if file.each_text else [(paths[name], part)]:
             write_part(str(path), target)
-            written.append(Path(str(path)))
-    return written
+            written_paths.append(Path(str(path)))
+    return written_paths
 
 
-def call(stage: Stage, given: Mapping[str, Any], **more: Any) -> "Outcome":
-    """The stage with arguments `given`, plain values of the config as the sections that it asks for.
+def call(stage: Stage, arguments_given: Mapping[str, Any], **extra_arguments: Any) -> "Outcome":
+    """Run a stage; plain values of the config become the sections that its function takes.
 
-    What it refuses is named by the key of the config. It runs on one thread of BLAS, in a job as through the
-    Python door.
+    A value that the stage refuses is named by its key in the config. It runs on one thread of BLAS, in a job
+    as through the Python interface.
+
+    Parameters
+    ----------
+    stage : Stage
+        Row of the table of stages.
+    arguments_given : Mapping[str, Any]
+        Arguments from the config and from earlier stages by name.
+    **extra_arguments : Any
+        Further arguments of the stage's function, such as wildcards.
+
+    Returns
+    -------
+    'Outcome'
+        Content of its files, and one line about it.
     """
     function = load(stage.function)
     with keys_named(), one_blas_thread():
-        arguments = typed_arguments(function, with_machine(stage, given))
-        outcome: Outcome = function(**arguments, **more)
+        arguments = typed_arguments(function, with_machine(stage, arguments_given))
+        outcome: Outcome = function(**arguments, **extra_arguments)
     return outcome
 
 

@@ -1,4 +1,4 @@
-"""What one row of the table of stages is made of."""
+"""Types of a row of the table of stages."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from facegear.io.checksums import MANIFEST_SUFFIX
 Values = Mapping[str, Any]
 """Plain values of a whole config."""
 Wildcards = Mapping[str, str]
-NONE: Mapping[str, Any] = MappingProxyType({})
+NO_WILDCARDS: Mapping[str, Any] = MappingProxyType({})
 READABLE = {".csv", ".npz", ".parquet", ".json"}
 FIGURES = "_figures"
 """Ending of the name of a rule that draws the figures of a chapter."""
@@ -38,21 +38,34 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Computed:
+class ComputedValue:
     """A value that follows from some sections of the config by a function of the case."""
 
     function: Callable[[Case], Any]
     sections: tuple[str, ...]
 
 
-Need = str | tuple[str, ...] | Computed
+Need = str | tuple[str, ...] | ComputedValue
 """A dotted key of the config, several of them as a section of their own, or what follows from sections."""
 Needs = Mapping[str, Need]
 """Arguments from the config by name."""
 
 
 def load(reference: str) -> Any:
-    """What `module:name` names. Nothing that is named so counts as an import of the module that names it."""
+    """Import the object that `module:name` names.
+
+    An object named this way does not count as an import of the module that names it.
+
+    Parameters
+    ----------
+    reference : str
+        `module:name`.
+
+    Returns
+    -------
+    Any
+        The object.
+    """
     module, _, name = reference.partition(":")
     return getattr(import_module(module), name)
 
@@ -66,7 +79,7 @@ class File:
       `module:name` that holds them; numbers of such columns are finite
     - text: columns that stay text
     - view, of: `module:function` that makes the file's content from the part `of`, for other programs
-    - each: where the stage writes several such files, the text that stands for `{each}` in each path
+    - each_text: where the stage writes several such files, the text that stands for `{each}` in each path
     """
 
     path: str
@@ -75,19 +88,46 @@ class File:
     text: Sequence[str] = ()
     view: str = ""
     of: str = ""
-    each: Callable[[Case], Sequence[str]] | None = None
+    each_text: Callable[[Case], Sequence[str]] | None = None
 
     @property
     def readable(self) -> bool:
         """Whether it is read again, not only by other programs."""
-        return PurePosixPath(self.path).suffix in READABLE and self.each is None
+        return PurePosixPath(self.path).suffix in READABLE and self.each_text is None
 
-    def at(self, wildcards: Wildcards = NONE) -> str:
-        """The path with these wildcards filled in."""
+    def at(self, wildcards: Wildcards = NO_WILDCARDS) -> str:
+        """Return the path with wildcards filled in.
+
+        Parameters
+        ----------
+        wildcards : Wildcards
+            Text of each wildcard by name.
+
+        Returns
+        -------
+        str
+            Path below the case's folder.
+        """
         return self.path.format(**wildcards)
 
     def read(self, path: Path) -> Any:
-        """What is stored. Raises CorruptFile if it is missing, altered or lacks something."""
+        """Read the stored content.
+
+        Parameters
+        ----------
+        path : Path
+            Path of the file.
+
+        Returns
+        -------
+        Any
+            A table, arrays or a record.
+
+        Raises
+        ------
+        CorruptFile
+            If the file is missing, altered or lacks something.
+        """
         from facegear.io.files import read_part
 
         holds = load(self.holds) if isinstance(self.holds, str) else self.holds
@@ -96,30 +136,66 @@ class File:
 
 @dataclass(frozen=True)
 class From:
-    """Where an argument comes from: a file of an earlier stage.
+    """Source of an argument: a file of an earlier stage.
 
-    - where: values of that stage's wildcards
-    - each: instead, several of them; the argument is then a list. A wildcard `case` names another case
+    - wildcards: values of that stage's wildcards
+    - each_wildcards: instead, several of them; the argument is then a list. A wildcard `case` names
+      another case
     - when: whether the argument is given at all
     """
 
     stage: str
     file: str
-    where: Wildcards = field(default_factory=dict)
-    each: Callable[[Case], Sequence[Wildcards]] | None = None
+    wildcards: Wildcards = field(default_factory=dict)
+    each_wildcards: Callable[[Case], Sequence[Wildcards]] | None = None
     when: Callable[[Case], bool] | None = None
 
-    def wanted(self, case: Case) -> bool:
-        """Whether the argument is given."""
+    def is_needed(self, case: Case) -> bool:
+        """Whether the argument is given.
+
+        Parameters
+        ----------
+        case : Case
+            The case.
+
+        Returns
+        -------
+        bool
+            True if so.
+        """
         return self.when is None or self.when(case)
 
-    def places(self, case: Case) -> Sequence[Wildcards]:
-        """Wildcards of each file that is read."""
-        return [self.where] if self.each is None else self.each(case)
+    def file_wildcards(self, case: Case) -> Sequence[Wildcards]:
+        """Return the wildcards of each file that is read.
+
+        Parameters
+        ----------
+        case : Case
+            The case.
+
+        Returns
+        -------
+        Sequence[Wildcards]
+            Wildcards of each file.
+        """
+        return [self.wildcards] if self.each_wildcards is None else self.each_wildcards(case)
 
 
 def from_stage(stage: str, *files: str) -> dict[str, From]:
-    """Arguments that are files of an earlier stage, under the names that these have there."""
+    """Return arguments that are files of an earlier stage, under the names that these have there.
+
+    Parameters
+    ----------
+    stage : str
+        Name of the earlier stage.
+    *files : str
+        Names of its files.
+
+    Returns
+    -------
+    dict[str, From]
+        Source of each argument by name.
+    """
     return {file: From(stage, file) for file in files}
 
 
@@ -138,8 +214,19 @@ class Figures:
     needs: Needs = field(default_factory=dict)
     memory_mb: int | None = None
 
-    def named(self, case: Case) -> Sequence[str]:
-        """Names of all that are drawn."""
+    def figure_names(self, case: Case) -> Sequence[str]:
+        """Return the names of all figures that are drawn.
+
+        Parameters
+        ----------
+        case : Case
+            The case.
+
+        Returns
+        -------
+        Sequence[str]
+            The names.
+        """
         return self.names(case) if callable(self.names) else self.names
 
 
@@ -150,8 +237,8 @@ class Stage:
     - needs: its arguments from the config; nothing else of it decides a result
     - upstream: its arguments from earlier stages
     - wildcards: of its files beside the case, as regular expressions; they are arguments, too
-    - asked: whether a plain run of a case makes it; one without is made where another stage takes from it,
-      or where its file is asked for by name
+    - condition: whether a plain run of a case makes it; one without is made where another stage takes from
+      it, or where its file is asked for by name
     - section: optional section of the config without which there is nothing to do
     - resumable: file beside which finished parts are kept, so that a killed job goes on after the last
     - machine: "machine" where the stage takes the machine in motion or at rest, built of its inputs; "inputs"
@@ -168,7 +255,7 @@ class Stage:
     files: Mapping[str, File] = field(default_factory=dict)
     figures: Figures | None = None
     wildcards: Mapping[str, str] = field(default_factory=dict)
-    asked: Callable[[Case], bool] | None = None
+    condition: Callable[[Case], bool] | None = None
     section: str = ""
     resumable: str = ""
     machine: Literal["", "machine", "inputs"] = ""
@@ -202,7 +289,18 @@ class Stage:
         """Its files that are read again."""
         return {name: file for name, file in self.files.items() if file.readable}
 
-    def typed(self, wildcards: Wildcards) -> dict[str, Any]:
-        """Wildcards as arguments."""
+    def typed_wildcards(self, wildcards: Wildcards) -> dict[str, Any]:
+        """Convert wildcards to arguments of the stage's function.
+
+        Parameters
+        ----------
+        wildcards : Wildcards
+            Text of each wildcard by name.
+
+        Returns
+        -------
+        dict[str, Any]
+            Integers for wildcards that stand for a number, text for the others.
+        """
         types = self.wildcards
         return {name: int(text) if types[name] == NUMBER else text for name, text in wildcards.items()}

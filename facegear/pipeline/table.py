@@ -6,7 +6,7 @@ reading this table loads nothing that computes.
 
 from facegear.pipeline.rows import branches, dynamics, friction, machine, sharing, strength, teeth, variants
 
-ALL = (
+ROWS = (
     *teeth.ROWS,
     *friction.PAIR_ROWS,
     *machine.ROWS,
@@ -19,5 +19,5 @@ ALL = (
     *variants.ROWS,
 )
 
-STAGES = {stage.name: stage for stage in ALL}
+STAGES = {stage.name: stage for stage in ROWS}
 """By name, in the order in which a case goes through them."""

@@ -26,7 +26,7 @@ from facegear.plots.sweep import rms_axis, select
 
 PERIOD_COLOURS = (BLUE, RED, GREEN, PURPLE)
 """Colours of period 1, 2, 4 and any other."""
-NAMED = (1, 2, 4)
+LABELLED_PERIODS = (1, 2, 4)
 MARKERS = {
     "fold": "triangle-up",
     "period doubling": "square",
@@ -35,14 +35,27 @@ MARKERS = {
 }
 SWEEPS = {"up": ("y-up", grey(0.45)), "down": ("y-down", grey(0.7))}
 IRREGULAR = grey(0.55)
-SHOWN = 0.06
+MIN_FRACTION_SHOWN = 0.06
 """Smallest fraction of a bar that has room for its number."""
 LOCI: Mapping[str, tuple[str, LineStyle]] = {"fold": (BLUE, "solid"), "period doubling": (RED, "dash")}
 UNIT_CIRCLE = 2.0 * np.pi * np.arange(361) / 360
 
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
-    """The first mesh of the first pinion of each role; pinions as in the config, meshes `pinion/side`."""
+    """Return the first mesh of the first pinion of each role.
+
+    Parameters
+    ----------
+    pinions : Sequence[Mapping[str, Any]]
+        Pinions as in the config.
+    meshes : Iterable[str]
+        Names `pinion/side` of the meshes.
+
+    Returns
+    -------
+    list[str]
+        Names of the meshes.
+    """
     roles = [pinion["role"] for pinion in pinions]
     names = [pinion["name"] for i, pinion in enumerate(pinions) if roles[i] not in roles[:i]]
     different = list(dict.fromkeys(meshes))
@@ -56,8 +69,28 @@ def amplitudes(
     meshes: Sequence[str],
     speed_rpm: float,
 ) -> Figure:
-    """RMS without mean of mesh deflections over speed, a panel for each mesh: stable parts solid, unstable
-    dashed, special points marked, points of the sweep beneath; the operating speed as a line.
+    """Draw the RMS without mean of mesh deflections over speed, a panel for each mesh.
+
+    Stable parts are solid, unstable ones dashed, special points marked, points of the sweep beneath; the
+    operating speed is a line.
+
+    Parameters
+    ----------
+    branches : pd.DataFrame
+        Table `branches` of stage branches.
+    special : pd.DataFrame
+        Table `special` of stage branches.
+    sweep : pd.DataFrame
+        Table `sweep` of stage dynamics_sweep.
+    meshes : Sequence[str]
+        Names of the meshes.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     low, high = branches["speed_rpm"].min(), branches["speed_rpm"].max()
     sweep = sweep[sweep["speed_rpm"].between(low, high)]
@@ -103,7 +136,9 @@ def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _colour(period: int) -> str:
-    return PERIOD_COLOURS[NAMED.index(period) if period in NAMED else len(NAMED)]
+    return PERIOD_COLOURS[
+        LABELLED_PERIODS.index(period) if period in LABELLED_PERIODS else len(LABELLED_PERIODS)
+    ]
 
 
 def _keys(branches: pd.DataFrame) -> Iterator[Key]:
@@ -116,11 +151,25 @@ def _keys(branches: pd.DataFrame) -> Iterator[Key]:
 
 def _by_size(periods: pd.Series) -> list[int]:
     """Periods with a colour of their own first."""
-    return sorted(periods.unique(), key=lambda period: (period not in NAMED, period))
+    return sorted(periods.unique(), key=lambda period: (period not in LABELLED_PERIODS, period))
 
 
 def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
-    """Folds and period doublings in the plane of speed and each second parameter; the operating point."""
+    """Draw folds and period doublings in the plane of speed and each second parameter, and the operating
+    point.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `loci` of stage branches_loci.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     panels = []
     for parameter in list(dict.fromkeys(table["parameter"])) or ["torque"]:
         rows = table[table["parameter"] == parameter]
@@ -142,9 +191,20 @@ def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
 
 
 def fractions(table: pd.DataFrame) -> Figure:
-    """Share of random starts that ends on each motion, a stacked bar for each speed with standard errors.
+    """Draw the share of random starts that ends on each motion, a stacked bar for each speed with standard
+    errors.
 
     Colours tell the period as in amplitudes(), numbers the branch.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `coexistence` of stage branches.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     speeds = sorted(table["speed_rpm"].unique())
     bars = []
@@ -153,7 +213,7 @@ def fractions(table: pd.DataFrame) -> Figure:
         for row in table[table["speed_rpm"] == speed].itertuples():
             name, colour = _motion(str(row.motion))
             top = bottom + row.fraction
-            has_number = str(row.branch).isdigit() and row.fraction > SHOWN
+            has_number = str(row.branch).isdigit() and row.fraction > MIN_FRACTION_SHOWN
             is_inner = 0.0 < row.fraction < 1.0 and top < 1.0 - 1e-9
             ends: Look = (
                 {"low": _array_of(top - row.error), "high": _array_of(top + row.error)} if is_inner else {}
@@ -181,13 +241,26 @@ def _motion(label: str) -> tuple[str, str]:
     if not label.startswith("period-"):
         return "not periodic", IRREGULAR
     period = int(label.removeprefix("period-"))
-    if period in NAMED:
+    if period in LABELLED_PERIODS:
         return f"period {period}", _colour(period)
     return "other periods", _colour(period)
 
 
 def multipliers(table: pd.DataFrame, branch: int = 0) -> Figure:
-    """The largest Floquet multipliers of a branch in the complex plane, coloured by speed."""
+    """Draw the largest Floquet multipliers of a branch in the complex plane, coloured by speed.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `multipliers` of stage branches.
+    branch : int
+        Number of the branch.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     rows = table[table["branch"] == branch]
     reach = 1.05 * float(np.clip(rows[["real", "imaginary"]].abs().to_numpy().max(), 1.0, 2.0))
     speeds = rows["speed_rpm"].to_numpy(float)
@@ -218,7 +291,32 @@ def figures(
     speed_rpm: float,
     pinions: Sequence[Mapping[str, Any]],
 ) -> tuple[Figure, ...]:
-    """Amplitudes over speed, loci (`curves`), fractions of random starts, multipliers (`circle`)."""
+    """Draw amplitudes over speed, loci (`curves`), fractions of random starts and multipliers (`circle`).
+
+    Parameters
+    ----------
+    branches : pd.DataFrame
+        Table `branches` of stage branches.
+    special : pd.DataFrame
+        Table `special` of stage branches.
+    circle : pd.DataFrame
+        Table `multipliers` of stage branches.
+    coexistence : pd.DataFrame
+        Table of stage branches.
+    curves : pd.DataFrame
+        Table of stage branches_loci.
+    sweep : pd.DataFrame
+        Table `sweep` of stage dynamics_sweep.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+    pinions : Sequence[Mapping[str, Any]]
+        Pinions as in the config.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     meshes = typical_meshes(pinions, branches["mesh"])
     return (
         amplitudes(branches, special, sweep, meshes, speed_rpm),

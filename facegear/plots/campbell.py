@@ -23,8 +23,8 @@ def campbell(
     """
     elastic = frequencies[frequencies["class"] != "rigid body"]
     top = 1.1 * elastic["frequency_hz"].max()
-    marked = pd.concat([resonances["order"], jumps["order"]]).astype(float)
-    lines = sorted(set(ORDER_LINES) | set(marked[_on_line(marked)]))
+    marked_orders = pd.concat([resonances["order"], jumps["order"]]).astype(float)
+    lines = sorted(set(ORDER_LINES) | set(marked_orders[_on_line(marked_orders)]))
     marks: list[Curve | Text] = []
     for name, modes in elastic.groupby("class", sort=False):
         values = 1e-3 * modes["frequency_hz"].drop_duplicates().to_numpy()

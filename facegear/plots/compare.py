@@ -13,7 +13,7 @@ def curves_compared(
 
     `labels`: `x` and `y` in words, with their units in brackets.
     """
-    both = old[[x, y]].merge(new[[x, y]], on=x, suffixes=("_old", "_new"))
+    joined_curves = old[[x, y]].merge(new[[x, y]], on=x, suffixes=("_old", "_new"))
     (across, across_unit), (up, unit) = (split_label(label) for label in labels)
     top = [
         Curve(old[x], old[y], "old", BLUE, width=2.2, opacity=0.6),
@@ -21,7 +21,7 @@ def curves_compared(
     ]
     bottom: list[Curve | Line] = [
         Line(0.0, "y", colour=grey(0.6)),
-        Curve(both[x], both[f"{y}_new"] - both[f"{y}_old"], colour=RED, width=1.2),
+        Curve(joined_curves[x], joined_curves[f"{y}_new"] - joined_curves[f"{y}_old"], colour=RED, width=1.2),
     ]
     axis = Axis(across, across_unit)
     return Figure(

@@ -32,13 +32,23 @@ PAIR_LOOKS: tuple[tuple[str, LineStyle], ...] = (
 
 
 def contact_curves(ltca: pd.DataFrame) -> Figure:
-    """Static transmission error and both stiffnesses for each torque, load shares at the smallest and
+    """Draw static transmission error and both stiffnesses for each torque, load shares at the smallest and
     largest.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     torques = np.sort(ltca["torque_n_m"].unique())
     error, stiffness = [], []
     for torque, colour in zip(torques, shades(torques.size), strict=True):
-        rows = closed(ltca[ltca["torque_n_m"] == torque])
+        rows = close_pitch(ltca[ltca["torque_n_m"] == torque])
         at, name = rows["position"], f"{format_number(torque, 4)} N m"
         error.append(Curve(at, rows["ste_um"], name, colour))
         stiffness += [
@@ -53,15 +63,15 @@ def contact_curves(ltca: pd.DataFrame) -> Figure:
                 in_legend=False,
             ),
         ]
-    unloaded = closed(ltca[ltca["torque_n_m"] == torques[0]])
-    error.append(Curve(unloaded["position"], unloaded["unloaded_ste_um"], "unloaded", BLACK, "dot"))
+    unloaded_rows = close_pitch(ltca[ltca["torque_n_m"] == torques[0]])
+    error.append(Curve(unloaded_rows["position"], unloaded_rows["unloaded_ste_um"], "unloaded", BLACK, "dot"))
     position = Axis("Position", "pitches", low=0.0, high=1.0)
     panels = [
         Panel(position, Axis("Static transmission error", "µm"), error, height=2.2, own_legend=True),
         Panel(position, Axis("Stiffness", "N/µm", "average solid, local dashed"), stiffness, height=2.2),
     ]
     for torque in torques[[0, -1]] if torques.size > 1 else torques:
-        rows = closed(ltca[ltca["torque_n_m"] == torque])
+        rows = close_pitch(ltca[ltca["torque_n_m"] == torque])
         pairs = [
             Curve(rows["position"], rows[column], f"pair {name}", colour, line)
             for column, name, (colour, line) in zip(SHARES, PAIR_NAMES, PAIR_LOOKS, strict=True)
@@ -72,8 +82,20 @@ def contact_curves(ltca: pd.DataFrame) -> Figure:
     return Figure(panels)
 
 
-def closed(rows: pd.DataFrame) -> pd.DataFrame:
-    """The rows of one torque with the end of the pitch: its beginning, each pair in the next one's place."""
+def close_pitch(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of one torque with the end of the pitch: its beginning, each pair in the next one's
+    place.
+
+    Parameters
+    ----------
+    rows : pd.DataFrame
+        Rows of the contact table at one torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        The rows with the added one.
+    """
     rows = rows.sort_values("position")
     last = rows.iloc[[0]].copy()
     last["position"] = rows["position"].iloc[0] + 1.0
@@ -82,7 +104,19 @@ def closed(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def contact_pattern(arrays: Arrays) -> Figure:
-    """Pressure each point of the pinion's flank sees as it passes through the mesh, one panel a torque."""
+    """Draw the pressure that each point of the pinion's flank sees as it passes through the mesh, one panel a
+    torque.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays `pressure` of stage contact.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     torques = np.unique(arrays["line_torque_n_m"])
     return pattern_panels({_title(arrays, torque): (arrays, torque) for torque in torques})
 
@@ -119,9 +153,9 @@ def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Ma
     """Pressures on the surface that the contact lines sweep, and marks at edges."""
     width = 1e3 * flank_pattern.points[..., 1]
     radius = 1e3 * np.hypot(flank_pattern.points[..., 0], flank_pattern.points[..., 2])
-    edge_kind = flank_pattern.where[torque]
+    edge_kind = flank_pattern.edge[torque]
     marks: list[Map | Curve] = [
-        Map(width, radius, 1e-6 * _faded(flank_pattern.pressure[torque], edge_kind), scale, smooth=True)
+        Map(width, radius, 1e-6 * _fade_edges(flank_pattern.pressure[torque], edge_kind), scale, smooth=True)
     ]
     for edges, marker, colour, name in MARKS:
         on = np.isin(edge_kind, [EDGES.index(kind) for kind in edges])
@@ -130,12 +164,12 @@ def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Ma
     return marks
 
 
-def _faded(field: Array, edge_kind: Integers) -> Array:
+def _fade_edges(field: Array, edge_kind: Integers) -> Array:
     """The pressures, with zeros in unloaded planes next to them, where the loaded length ends."""
-    known = np.isfinite(field)
-    beside = np.zeros_like(known)
-    beside[:, 1:] |= known[:, :-1]
-    beside[:, :-1] |= known[:, 1:]
+    is_finite = np.isfinite(field)
+    beside = np.zeros_like(is_finite)
+    beside[:, 1:] |= is_finite[:, :-1]
+    beside[:, :-1] |= is_finite[:, 1:]
     return np.where(beside & (edge_kind < 0), 0.0, field)
 
 
@@ -153,5 +187,18 @@ def _title(arrays: Arrays, torque: float) -> str:
 
 
 def figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
-    """Curves over a pitch, and the contact pattern."""
+    """Draw curves over a pitch, and the contact pattern.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return contact_curves(ltca), contact_pattern(pressure)

@@ -8,7 +8,7 @@ import pandas as pd
 from facegear.arrays import Arrays
 from facegear.contact.studies import StudiedContact
 from facegear.plots.colours import COLOURS
-from facegear.plots.contact import closed, pattern_panels
+from facegear.plots.contact import close_pitch, pattern_panels
 from facegear.plots.description import Axis, Curve, Figure, Line, LineStyle, Panel
 
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
@@ -20,7 +20,7 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
     stiffness: list[Curve] = []
     path: list[Curve | Line] = []
     for number, case in enumerate(cases):
-        rows = closed(case.over_pitch(torque))
+        rows = close_pitch(case.over_pitch(torque))
         colour, line = COLOURS[number % len(COLOURS)], LINES[number // len(COLOURS) % len(LINES)]
         at, name = rows["position"], case.label_at(torque)
         error.append(Curve(at, _variation(rows["ste_um"]), name, colour, line))
@@ -63,9 +63,9 @@ def figures(
 
     `points`: study, point and label of each case; `titles`: of each study by its name.
     """
-    machine, *others = StudiedContact.several(points, pair, ltca, by_torque, pressure)
-    drawn = []
+    machine, *other_cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
+    study_figures = []
     for study, title in titles.items():
-        shown = [machine, *(case for case in others if case.study == study)]
-        drawn += [contact_study(shown, torque, title), pattern_study(shown, torque)]
-    return drawn
+        cases = [machine, *(case for case in other_cases if case.study == study)]
+        study_figures += [contact_study(cases, torque, title), pattern_study(cases, torque)]
+    return study_figures

@@ -17,7 +17,7 @@ class DrawnMachine:
     """What the figures show of a machine: pinions (names), those with a panel, sides of its gears, teeth."""
 
     pinions: tuple[str, ...]
-    shown: tuple[str, ...]
+    pinions_shown: tuple[str, ...]
     sides: tuple[str, ...]
     teeth: int
 
@@ -40,14 +40,18 @@ def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMa
     pinions, gears = transmission["pinions"], transmission["face_gears"]
     differ = any(transmission[key] for key in ("single_pinions", "single_meshes", "single_gears"))
     duties = [(pinion["role"], pinion["torque_n_m"]) for pinion in pinions]
-    shown = [pinion["name"] for i, pinion in enumerate(pinions) if differ or duties[i] not in duties[:i]]
+    pinion_names = [
+        pinion["name"] for i, pinion in enumerate(pinions) if differ or duties[i] not in duties[:i]
+    ]
     sides = [side for side in ("upper", "lower") if side in gears]
-    return DrawnMachine(tuple(pinion["name"] for pinion in pinions), tuple(shown), tuple(sides), pinion_teeth)
+    return DrawnMachine(
+        tuple(pinion["name"] for pinion in pinions), tuple(pinion_names), tuple(sides), pinion_teeth
+    )
 
 
 def _waterfall(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
-    shown = f"{machine.shown[-1]}/{machine.sides[0]}"
-    return waterfall(tables["waterfall"], machine.meshes.index(shown), shown, machine.teeth)
+    mesh_name = f"{machine.pinions_shown[-1]}/{machine.sides[0]}"
+    return waterfall(tables["waterfall"], machine.meshes.index(mesh_name), mesh_name, machine.teeth)
 
 
 def _campbell(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
@@ -56,10 +60,10 @@ def _campbell(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
 
 
 SWEEP_FIGURES: dict[str, Callable[[Mapping[str, Any], DrawnMachine], Figure]] = {
-    "pinions": lambda tables, machine: translations(tables["sweep"], machine.shown, "xy"),
+    "pinions": lambda tables, machine: translations(tables["sweep"], machine.pinions_shown, "xy"),
     "gears": lambda tables, machine: translations(tables["sweep"], machine.gears, "xyz"),
     "meshes": lambda tables, machine: mesh_sweeps(
-        tables["sweep"], tables["jumps"], machine.shown, machine.sides
+        tables["sweep"], tables["jumps"], machine.pinions_shown, machine.sides
     ),
     "campbell": _campbell,
     "waterfall": _waterfall,

@@ -17,14 +17,40 @@ FLANK_COLOURS = {"drive": BLUE, "back": ORANGE}
 
 
 def figures(local: Arrays, pressure: Arrays, map_table: pd.DataFrame) -> tuple[Figure, ...]:
-    """Along the path, over the flank, and the efficiency map."""
+    """Draw quantities along the path, over the flank, and the efficiency map.
+
+    Parameters
+    ----------
+    local : Arrays
+        Arrays `local` of stage lubrication.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+    map_table : pd.DataFrame
+        Table `map` of stage lubrication.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return along_path(local), over_flank(local, pressure), efficiency_map(map_table)
 
 
 def along_path(local: Arrays) -> Figure:
-    """At each place of a tooth's passage the largest sliding velocity and flash, and the thinnest film.
+    """Draw, at each place of a tooth's passage, the largest sliding velocity and flash, and the thinnest
+    film.
 
     Places beside an edge are left out of temperature and film, whose pressure there has no limit.
+
+    Parameters
+    ----------
+    local : Arrays
+        Arrays `local` of stage lubrication.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     torques = np.unique(local["torque_n_m"])
     stage, inside = passage(local["position"], local["tooth"]), local["inside"] > 0
@@ -55,11 +81,27 @@ def along_path(local: Arrays) -> Figure:
 
 
 def over_flank(local: Arrays, pressure: Arrays) -> Figure:
-    """Friction loss and flash temperature over the pinion's flank at the largest torque."""
-    seen = pattern(pressure)
+    """Draw friction loss and flash temperature over the pinion's flank at the largest torque.
+
+    Parameters
+    ----------
+    local : Arrays
+        Arrays `local` of stage lubrication.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    contact_pattern = pattern(pressure)
     torque = local["torque_n_m"].max()
     on = local["torque_n_m"] == torque
-    width, radius = 1e3 * seen.points[..., 1], 1e3 * np.hypot(seen.points[..., 0], seen.points[..., 2])
+    width, radius = (
+        1e3 * contact_pattern.points[..., 1],
+        1e3 * np.hypot(contact_pattern.points[..., 0], contact_pattern.points[..., 2]),
+    )
     stages = np.unique(passage(pressure["contact_position"], pressure["contact_tooth"]))
     row = np.searchsorted(stages, passage(local["position"], local["tooth"])[on])
     cells = row, local["plane"][on].astype(int)
@@ -93,9 +135,19 @@ def over_flank(local: Arrays, pressure: Arrays) -> Figure:
 
 
 def efficiency_map(table: pd.DataFrame) -> Figure:
-    """Loss of a mesh in percent of its power, and contact temperature, over torque and speed.
+    """Draw the loss of a mesh in percent of its power, and contact temperature, over torque and speed.
 
     Left blank where a body would pass the flash point of the oil.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `map` of stage lubrication.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     field_map = table.assign(loss_percent=100 * (1 - table["efficiency"]))
     quantities = (("loss_percent", "Loss", "%"), ("contact_temperature_c", "Contact temperature", "°C"))
@@ -121,12 +173,25 @@ def efficiency_map(table: pd.DataFrame) -> Figure:
 
 
 def machine_heat(meshes: pd.DataFrame, bodies: pd.DataFrame) -> Figure:
-    """Loss of every mesh and heat of every body at the nominal load."""
-    lost, heat = meshes[meshes["bin"] == 0], bodies[bodies["bin"] == 0]
-    positions = {mesh: float(number) for number, mesh in enumerate(dict.fromkeys(lost["mesh"]))}
+    """Draw loss of every mesh and heat of every body at the nominal load.
+
+    Parameters
+    ----------
+    meshes : pd.DataFrame
+        Table `meshes` of stage machine_loss.
+    bodies : pd.DataFrame
+        Table `bodies` of stage machine_loss.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    mesh_losses, heat = meshes[meshes["bin"] == 0], bodies[bodies["bin"] == 0]
+    positions = {mesh: float(number) for number, mesh in enumerate(dict.fromkeys(mesh_losses["mesh"]))}
     loss: list[Bars] = []
     for flank, colour in FLANK_COLOURS.items():
-        rows = lost[lost["flank"] == flank]
+        rows = mesh_losses[mesh_losses["flank"] == flank]
         if len(rows):
             at, lengths = rows["mesh"].map(positions).to_numpy(float), rows["loss_w"].to_numpy(float)
             loss.append(Bars(at, lengths, f"{flank} flank", colour, flat=True))

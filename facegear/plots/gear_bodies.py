@@ -56,14 +56,25 @@ def _section(nodes: Array, quads: AnyArray, shape: Array) -> list[Area | Faces]:
 
 
 def body_waves(modes: pd.DataFrame) -> Figure:
-    """Frequencies at rest and of both waves in space over nodal diameters, a panel for each gear."""
+    """Draw frequencies at rest and of both waves in space over nodal diameters, a panel for each gear.
+
+    Parameters
+    ----------
+    modes : pd.DataFrame
+        Table `modes` of stage gear_bodies.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     orders = Axis("Nodal diameters", "", integer=True)
     panels = []
     for gear in modes["gear"].drop_duplicates():
-        own = modes[modes["gear"] == gear]
-        waves = own[own["nodal_diameters"] > 0]
+        gear_modes = modes[modes["gear"] == gear]
+        waves = gear_modes[gear_modes["nodal_diameters"] > 0]
         rest: Look = {"line": "none", "marker": "line-ew", "size": 9.0}
-        marks = [Curve(own["nodal_diameters"], 1e-3 * own["frequency_hz"], "at rest", **rest)]
+        marks = [Curve(gear_modes["nodal_diameters"], 1e-3 * gear_modes["frequency_hz"], "at rest", **rest)]
         for name in ("forward", "backward"):
             look: Look = {"line": "none", "marker": MARKERS[name], "size": 3.5}
             values = 1e-3 * waves[f"{name}_hz"]
@@ -74,17 +85,33 @@ def body_waves(modes: pd.DataFrame) -> Figure:
 
 
 def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float, teeth: int) -> Figure:
-    """Waves over pinion speed as meshes meet them, with mesh harmonics; one gear, as most are alike.
+    """Draw waves over pinion speed as meshes meet them, with mesh harmonics; one gear, as most are alike.
 
     Marks: crossings with a mesh harmonic, larger where the phases of the meshes add up.
+
+    Parameters
+    ----------
+    modes : pd.DataFrame
+        Table `modes` of stage gear_bodies.
+    crossings : pd.DataFrame
+        Table `crossings` of stage gear_bodies.
+    last_rpm : float
+        Last speed of the pinions, rpm.
+    teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     gear = modes["gear"].iloc[0] if len(modes) else ""
-    own, met = modes[modes["gear"] == gear], crossings[crossings["gear"] == gear]
-    top = 1.02 * own["frequency_hz"].max() if len(own) else 1.0
+    gear_modes, gear_crossings = modes[modes["gear"] == gear], crossings[crossings["gear"] == gear]
+    top = 1.02 * gear_modes["frequency_hz"].max() if len(gear_modes) else 1.0
     speeds = np.linspace(0.0, last_rpm, 60)
     marks: list[Mark] = []
     kinds = set()
-    for row in own.itertuples():
+    for row in gear_modes.itertuples():
         shift = (row.forward_hz - row.backward_hz) / 2.0
         for sign, kind in (
             ((1.0, "forward"), (-1.0, "backward")) if row.nodal_diameters else ((1.0, "standing"),)
@@ -93,8 +120,8 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
             curve = _wave(row.frequency_hz, bend, sign * shift, row.speed_rpm, speeds)
             marks.append(Curve(speeds, 1e-3 * curve, colour=COLOURS[kind], width=0.6, opacity=0.7))
             kinds.add(kind)
-    marks += mesh_harmonics(met["harmonic"], last_rpm, top, teeth)
-    marks += crossing_marks(met)
+    marks += mesh_harmonics(gear_crossings["harmonic"], last_rpm, top, teeth)
+    marks += crossing_marks(gear_crossings)
     keys = [wave_key(kind) for kind in COLOURS if kind in kinds]
     return Figure([frame(marks, last_rpm, top)], title=f"{gear} face gear, hub held", keys=keys)
 
@@ -116,6 +143,25 @@ def figures(
     last_rpm: float,
     teeth: int,
 ) -> tuple[Figure, ...]:
-    """Mode shapes on the section, waves over nodal diameters, and over speed."""
+    """Draw mode shapes on the section, waves over nodal diameters, and over speed.
+
+    Parameters
+    ----------
+    modes : pd.DataFrame
+        Table `modes` of stage gear_bodies.
+    crossings : pd.DataFrame
+        Table `crossings` of stage gear_bodies.
+    shapes : Mapping[str, AnyArray]
+        Arrays of stage gear_bodies (see `facegear.gear_body.tables.shape_arrays`).
+    last_rpm : float
+        Last speed of the pinions, rpm.
+    teeth : int
+        Number of teeth of a pinion.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     campbell = body_campbell(modes, crossings, last_rpm, teeth)
     return body_shapes(modes, shapes), body_waves(modes), campbell

@@ -49,15 +49,17 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame |
     """
     loads = meshes.set_index("mesh")
     forces = None if bearings is None else bearings.set_index("body")
-    pushed = loads["mean_n"].max() * np.cos(layout.pressure_angle)
+    max_tangential_force = loads["mean_n"].max() * np.cos(layout.pressure_angle)
     largest = (
-        pushed if forces is None else max(pushed, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
+        max_tangential_force
+        if forces is None
+        else max(max_tangential_force, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
     )
     order = sorted(range(len(layout.gears)), key=lambda g: -layout.gears[g].sign)
     metres = layout.mesh_radius * LONGEST / max(largest, 1e-300)
     roles = {pinion.role for pinion in layout.pinions}
     keys = [
-        Key(f"tangential force on the gear, largest {_kilo(pushed)} kN", MESH, width=2.0),
+        Key(f"tangential force on the gear, largest {_kilo(max_tangential_force)} kN", MESH, width=2.0),
         *([] if forces is None else [Key(ON_BEARINGS, BEARING, width=2.0)]),
         *(
             Key(f"{role.value} pinion", colour, area=True, opacity=OPACITY)
@@ -101,9 +103,9 @@ def _panel(layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | N
         marks.append(_label(radius, outwards, text))
     title = f"{gear.name.capitalize()}, seen from above"
     if forces is not None:
-        own = forces.loc[gear.name]
-        marks += _arrow(np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
-        title += f"\naxial on its bearing {_kilo(own['mean_z_n'])} kN"
+        gear_forces = forces.loc[gear.name]
+        marks += _arrow(np.zeros(2), metres * gear_forces[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
+        title += f"\naxial on its bearing {_kilo(gear_forces['mean_z_n'])} kN"
     marks.append(Text(0.0, TITLE * radius, title, across="center", upright="bottom"))
     diameter = f"mesh diameter\n{format_number(2e3 * radius, 4)} mm"
     marks.append(Text(0.0, 0.3 * radius, diameter, across="center"))

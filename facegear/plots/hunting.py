@@ -12,7 +12,7 @@ from facegear.plots.description import Axis, Bars, Curve, Figure, Line, LineStyl
 from facegear.plots.gearbox_layout import layout_figure
 
 LINES: Mapping[str, LineStyle] = {"geometric": "solid", "printed": "dash"}
-SHOWN = 20
+MAX_BARS = 20
 """Bars of the sensitivity chart."""
 
 
@@ -24,10 +24,10 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
         loads = cycles[[f"{name} (N)" for name in names]].to_numpy()
         total = loads.sum(axis=1)
         shares = 100.0 * loads / np.where(total > 0.0, total, np.nan)[:, None]
-        several = len(shares) > 1
-        at = cycles["cycle"].to_numpy() if several else np.array([0, 1])
+        has_several = len(shares) > 1
+        at = cycles["cycle"].to_numpy() if has_several else np.array([0, 1])
         marks: list[Curve | Line] = [
-            Curve(at, share if several else np.repeat(share, 2), name, colour_of(number + 1), width=0.9)
+            Curve(at, share if has_several else np.repeat(share, 2), name, colour_of(number + 1), width=0.9)
             for number, (share, name) in enumerate(zip(shares.T, names, strict=True))
         ]
         marks.append(Line(100.0 / len(names), "y", line="dot"))
@@ -41,16 +41,16 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
 def bearing_figure(scan: pd.DataFrame) -> Figure:
     """K_gamma against bearing stiffness of the inputs (top) and of the idlers (below), both kinematics."""
     panels = []
-    for varied in ("inputs", "idlers"):
+    for role in ("inputs", "idlers"):
         curves = []
         for number, kind in enumerate(scan["kind"].unique()):
             for kinematics, line in LINES.items():
-                mask = (scan["varied"] == varied) & (scan["kind"] == kind)
+                mask = (scan["varied"] == role) & (scan["kind"] == kind)
                 rows = scan[mask & (scan["kinematics"] == kinematics)]
                 name = f"Kᵧ of the {kind}, {kinematics}"
                 stiffness = 1e-6 * rows["stiffness_n_per_m"]
                 curves.append(Curve(stiffness, rows["k_gamma"], name, colour_of(number + 1), line))
-        across = Axis(f"Bearing stiffness of the {varied}", "N/µm", logarithmic=True)
+        across = Axis(f"Bearing stiffness of the {role}", "N/µm", logarithmic=True)
         panels.append(Panel(across, Axis("Largest Kᵧ of the paths", ""), curves, height=2.2))
     return Figure(panels, title="Static load sharing against bearing stiffness", shared_x=False)
 
@@ -58,7 +58,7 @@ def bearing_figure(scan: pd.DataFrame) -> Figure:
 def sensitivity_figure(table: pd.DataFrame) -> Figure:
     """The largest sensitivities dK/d(um), one bar an error: that of the group which answers most."""
     largest = table.loc[table.groupby("error")["per_um"].apply(lambda rows: rows.abs().idxmax())]
-    rows = largest.sort_values("per_um", key=np.abs, ascending=False).head(SHOWN)[::-1]
+    rows = largest.sort_values("per_um", key=np.abs, ascending=False).head(MAX_BARS)[::-1]
     positions = np.arange(len(rows), dtype=float)
     marks: list[Bars | Line] = [Line(0.0, colour=BLACK, width=0.6)]
     for number, group in enumerate(table["group"].unique()):

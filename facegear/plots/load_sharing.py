@@ -47,7 +47,7 @@ def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band |
     """One point's curve, its envelope if it has one, and its name with mean and class of motion."""
     colour = colour_of(number)
     if mean["motion"] == "period-1":
-        curve = _closed(curve)
+        curve = _close_cycle(curve)
     time = 1e3 * curve["time_s"]
     if (curve["envelope_high"] - curve["envelope_low"]).max() > ENVELOPE:
         yield Band(time, curve["envelope_low"], curve["envelope_high"], colour=colour, opacity=0.12)
@@ -58,7 +58,7 @@ def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band |
     yield Curve(time, curve["coefficient"], name, colour, LINES[number % len(LINES)], width=1.3)
 
 
-def _closed(curve: pd.DataFrame) -> pd.DataFrame:
+def _close_cycle(curve: pd.DataFrame) -> pd.DataFrame:
     """The samples of one cycle of a motion that repeats with it, with the end of the cycle."""
     end = curve.iloc[[0]].copy()
     end["time_s"] = curve["time_s"].iloc[-1] + curve["time_s"].iloc[1]

@@ -20,7 +20,19 @@ LAW_COLOURS = (RED, BLUE, GREEN, PURPLE)
 
 
 def force_lines(law: Arrays) -> Figure:
-    """Force over a pitch at even deflections up to the last level, with the deflection beside each line."""
+    """Draw the force over a pitch at even deflections up to the last level, with the deflection beside each
+    line.
+
+    Parameters
+    ----------
+    law : Arrays
+        Arrays `law` of stage mesh_law.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     last = law["level_m"][0, -1]
     amounts = last * np.arange(1, LINES + 1) / LINES
     phases = np.linspace(0.0, 1.0, POSITIONS + 1)
@@ -43,7 +55,18 @@ def force_lines(law: Arrays) -> Figure:
 
 
 def force_surface(law: Arrays) -> Figure:
-    """Force over phase and deflection."""
+    """Draw the force over phase and deflection.
+
+    Parameters
+    ----------
+    law : Arrays
+        Arrays `law` of stage mesh_law.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     amounts = np.linspace(0.0, law["level_m"][0, -1], DEPTHS)
     phases = np.linspace(0.0, 1.0, POSITIONS + 1)
     forces = 1e-3 * forces_over_pitch(law, 0, phases, amounts)
@@ -61,12 +84,34 @@ def force_surface(law: Arrays) -> Figure:
 
 
 def figures(law: Arrays) -> tuple[Figure, ...]:
-    """Lines over a pitch and the surface, of the upper gear's drive flank."""
+    """Draw lines over a pitch and the surface, of the upper gear's drive flank.
+
+    Parameters
+    ----------
+    law : Arrays
+        Arrays `law` of stage mesh_law.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return force_lines(law), force_surface(law)
 
 
 def loads_in_table(loads: pd.DataFrame) -> Figure:
-    """Forces of every mesh at the nominal speed and in the sweep beside the levels of its law."""
+    """Draw forces of every mesh at the nominal speed and in the sweep beside the levels of its law.
+
+    Parameters
+    ----------
+    loads : pd.DataFrame
+        Table `loads` of stage law_loads.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     rows = np.arange(len(loads))[::-1].astype(float)
     smallest, mean, largest = loads[["smallest_n", "mean_n", "largest_n"]].to_numpy().T / 1e3
     sweep_largest = 1e-3 * loads["sweep_largest_n"]
@@ -95,8 +140,22 @@ def loads_in_table(loads: pd.DataFrame) -> Figure:
 
 
 def swept_laws(sweeps: Sequence[pd.DataFrame], labels: Sequence[str], meshes: Sequence[str]) -> Figure:
-    """RMS of mesh deflections without their mean of the same machine with several laws laid over each
-    other.
+    """Draw the RMS of mesh deflections without their mean, of the same machine with several laws, laid over
+    each other.
+
+    Parameters
+    ----------
+    sweeps : Sequence[pd.DataFrame]
+        Tables `sweep` of stage dynamics_sweep, one for each law.
+    labels : Sequence[str]
+        Labels of the laws.
+    meshes : Sequence[str]
+        Names of the meshes.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     panels = []
     for mesh in meshes:
@@ -113,12 +172,30 @@ def swept_laws(sweeps: Sequence[pd.DataFrame], labels: Sequence[str], meshes: Se
 def load_figures(
     loads: pd.DataFrame, sweep: pd.DataFrame, others: Sequence[pd.DataFrame], labels: Sequence[str]
 ) -> list[Figure]:
-    """Loads in the table and, where studies have other laws, the sweeps of all of them.
+    """Draw the loads in the table and, where studies have other laws, the sweeps of all of them.
 
-    `labels`: of this machine's law and of the others'. Meshes are those of the first gear.
+    Meshes are those of the first gear.
+
+    Parameters
+    ----------
+    loads : pd.DataFrame
+        Table `loads` of stage law_loads.
+    sweep : pd.DataFrame
+        Table `sweep` of stage dynamics_sweep.
+    others : Sequence[pd.DataFrame]
+        Tables `sweep` of the cases with other laws.
+    labels : Sequence[str]
+        Labels of this machine's law and of the others'.
+
+    Returns
+    -------
+    list[Figure]
+        The figures.
     """
-    drawn = [loads_in_table(loads)]
+    law_figures = [loads_in_table(loads)]
     if others:
         side = loads["mesh"].str.rpartition("/")[2]
-        drawn.append(swept_laws([sweep, *others], labels, loads["mesh"][side == side.iloc[-1]].tolist()))
-    return drawn
+        law_figures.append(
+            swept_laws([sweep, *others], labels, loads["mesh"][side == side.iloc[-1]].tolist())
+        )
+    return law_figures

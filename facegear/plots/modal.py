@@ -11,10 +11,20 @@ from facegear.plots.description import Axis, Bars, Figure, Line, Panel
 
 
 def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
-    """Orders of the first modes of each kind: one mode, or all modes of one frequency.
+    """Return the orders of the first modes of each kind: one mode, or all modes of one frequency.
 
     A kind is a class with the same symbols; rigid modes are left out. A simple mode is taken if there is one,
     as a single vector out of several modes of one frequency is arbitrary.
+
+    Parameters
+    ----------
+    frequencies : pd.DataFrame
+        Table `frequencies` of stage modal.
+
+    Returns
+    -------
+    list[tuple[int, ...]]
+        Orders of the modes of each kind.
     """
     elastic = frequencies[frequencies["class"] != "rigid body"]
     modes = []
@@ -36,7 +46,20 @@ def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
 
 
 def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
-    """Bars over all DOF, relative to the largest in the mode (m and rad alike, as in the paper)."""
+    """Draw bars over all DOF, relative to the largest in the mode (m and rad alike, as in the paper).
+
+    Parameters
+    ----------
+    frequencies : pd.DataFrame
+        Table `frequencies` of stage modal.
+    shapes : pd.DataFrame
+        Table `shapes` of stage modal.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     by_order = frequencies.set_index("order")
     dofs = shapes[shapes["order"] == shapes["order"].iloc[0]].reset_index(drop=True)
     bodies = dofs["body"].drop_duplicates()
@@ -59,12 +82,25 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
 def _title(orders: tuple[int, ...], mode: pd.Series) -> str:
     if len(orders) == 1:
         return f"Mode {orders[0]}, {format_number(mode['frequency_hz'], 4)} Hz\n{mode['symbols']}"
-    which = (
+    order_text = (
         f"Modes {orders[0]} to {orders[-1]} (x {len(orders)}), {format_number(mode['frequency_hz'], 4)} Hz"
     )
-    return f"{which}, root sum of squares\n{mode['symbols']}"
+    return f"{order_text}, root sum of squares\n{mode['symbols']}"
 
 
 def figures(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> tuple[Figure, ...]:
-    """Typical mode shapes."""
+    """Draw typical mode shapes.
+
+    Parameters
+    ----------
+    frequencies : pd.DataFrame
+        Table `frequencies` of stage modal.
+    shapes : pd.DataFrame
+        Table `shapes` of stage modal.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return (mode_shapes(frequencies, shapes),)

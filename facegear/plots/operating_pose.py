@@ -16,12 +16,45 @@ NEAR = 8.0
 def figures(
     meshes: pd.DataFrame, loads: pd.DataFrame, as_assembled: Arrays, running: Arrays
 ) -> tuple[Figure, ...]:
-    """The pattern of the mesh that its pose changes most, and unloaded paths of all meshes over the load."""
+    """Draw the pattern of the mesh that its pose changes most, and unloaded paths of all meshes over the
+    load.
+
+    Parameters
+    ----------
+    meshes : pd.DataFrame
+        Table `meshes` of stage operating_pose.
+    loads : pd.DataFrame
+        Table `loads` of stage operating_pose.
+    as_assembled : Arrays
+        Arrays `as_assembled` of stage operating_pose.
+    running : Arrays
+        Arrays `running` of stage operating_pose.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return pose_pattern(meshes, as_assembled, running), pose_paths(meshes, loads)
 
 
 def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) -> Figure:
-    """Two panels: as assembled, and where the machine's forces put the teeth."""
+    """Draw two panels of the contact pattern: as assembled, and at the pose under the machine's forces.
+
+    Parameters
+    ----------
+    meshes : pd.DataFrame
+        Table `meshes` of stage operating_pose.
+    as_assembled : Arrays
+        Arrays `as_assembled` of stage operating_pose.
+    running : Arrays
+        Arrays `running` of stage operating_pose.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     torque = float(np.unique(running["line_torque_n_m"])[0])
     name = meshes["mesh"].iloc[int(np.argmin(np.abs(meshes["torque_n_m"] - torque)))]
     row = meshes[meshes["mesh"] == name].iloc[0]
@@ -38,7 +71,20 @@ def _title(words: str, path_mm: float, arrays: Arrays) -> str:
 
 
 def pose_paths(meshes: pd.DataFrame, loads: pd.DataFrame) -> Figure:
-    """Where the unloaded contact of every mesh stands along the pinion, and the ends of the face."""
+    """Draw the unloaded contact of every mesh along the pinion, and the ends of the face.
+
+    Parameters
+    ----------
+    meshes : pd.DataFrame
+        Table `meshes` of stage operating_pose.
+    loads : pd.DataFrame
+        Table `loads` of stage operating_pose.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     row = meshes.iloc[0]
     ends: Look = {
         "inner end of the face": row["unloaded_path_mm"] - row["to_inner_end_mm"],

@@ -15,12 +15,29 @@ LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
 def front_figure(
     designs: pd.DataFrame, front: pd.DataFrame, winners: pd.DataFrame, objectives: list[str]
 ) -> Figure:
-    """Every design by its first two objectives, by generation where there is but one; front and winners."""
+    """Draw every design by its first two objectives, by generation where there is but one; front and winners.
+
+    Parameters
+    ----------
+    designs : pd.DataFrame
+        Table `designs` of stage search.
+    front : pd.DataFrame
+        Table `front` of stage search.
+    winners : pd.DataFrame
+        Table `winners` of stage search.
+    objectives : list[str]
+        Names of the objectives.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     across, up = objectives[:2] if len(objectives) > 1 else ("generation", objectives[0])
-    known = designs[designs["error"] == ""]
+    computed_designs = designs[designs["error"] == ""]
     dots: Look = {"line": "none", "marker": "dot", "size": 3.0}
     marks = [
-        Curve(known[across], known[up], "designs tried", grey(0.6), **dots),
+        Curve(computed_designs[across], computed_designs[up], "designs tried", grey(0.6), **dots),
         Curve(front[across], front[up], "front", BLUE, width=1.0, marker="circle", size=4.0),
     ]
     for number, row in enumerate(winners.itertuples() if len(objectives) > 1 else ()):
@@ -36,7 +53,18 @@ def _axis(objective: str) -> Axis:
 
 
 def hypervolume_figure(hypervolume: pd.DataFrame) -> Figure:
-    """Share of the box of all fronts that each island has covered, over its generations."""
+    """Draw the share of the box of all fronts that each island has covered, over its generations.
+
+    Parameters
+    ----------
+    hypervolume : pd.DataFrame
+        Table `hypervolume` of stage search.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     curves = [
         Curve(
             rows["generation"],
@@ -57,6 +85,25 @@ def figures(
     winners: pd.DataFrame,
     objectives: Sequence[Mapping[str, Any]],
 ) -> tuple[Figure, ...]:
-    """The front between the objectives, and how the islands came to it."""
+    """Draw the front between the objectives, and how the islands came to it.
+
+    Parameters
+    ----------
+    designs : pd.DataFrame
+        Table `designs` of stage search.
+    front : pd.DataFrame
+        Table `front` of stage search.
+    hypervolume : pd.DataFrame
+        Table `hypervolume` of stage search.
+    winners : pd.DataFrame
+        Table `winners` of stage search.
+    objectives : Sequence[Mapping[str, Any]]
+        Objectives of section `search` of the config.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     names = [objective["name"] for objective in objectives]
     return front_figure(designs, front, winners, names), hypervolume_figure(hypervolume)

@@ -10,17 +10,43 @@ from facegear.plots.description import Axis, Curve, Figure, LineStyle, Panel, st
 
 GEARS = {"pinion": BLUE, "face_gear": RED}
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
-SHOWN = 3
+ORDERS_SHOWN = 3
 """Orders of each gear that are drawn over speed."""
 
 
 def figures(orders: pd.DataFrame, over_speed: pd.DataFrame) -> tuple[Figure, ...]:
-    """The figure."""
+    """Draw the figure of the orders.
+
+    Parameters
+    ----------
+    orders : pd.DataFrame
+        Table `orders` of stage shaft_orders.
+    over_speed : pd.DataFrame
+        Table `over_speed` of stage shaft_orders.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figure.
+    """
     return (shaft_order_figure(orders, over_speed),)
 
 
 def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure:
-    """Above the largest force of all meshes at each order, below the largest orders over speed."""
+    """Draw above the largest force of all meshes at each order, below the largest orders over speed.
+
+    Parameters
+    ----------
+    orders : pd.DataFrame
+        Table `orders` of stage shaft_orders.
+    over_speed : pd.DataFrame
+        Table `over_speed` of stage shaft_orders.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     above: list[Curve] = []
     below: list[Curve] = []
     for gear, colour in GEARS.items():
@@ -53,7 +79,7 @@ def shaft_order_figure(orders: pd.DataFrame, over_speed: pd.DataFrame) -> Figure
 
 def _over_speed(rows: pd.DataFrame, colour: str, name: str) -> Iterator[Curve]:
     """The orders whose forces become largest."""
-    peaks = rows.groupby("order")["force_n"].max().nlargest(SHOWN)
+    peaks = rows.groupby("order")["force_n"].max().nlargest(ORDERS_SHOWN)
     for line, order in zip(LINES, np.sort(peaks.index), strict=False):
         order_rows = rows[rows["order"] == order]
         yield Curve(order_rows["speed_rpm"], order_rows["force_n"], f"{name}, order {order}", colour, line)

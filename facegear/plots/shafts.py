@@ -31,11 +31,11 @@ def figures(
 ) -> list[Figure]:
     """One figure with a pair of panels for each shaft; none without shafts. `width_mm`: of the pinions."""
     sections = {pinion.name: transmission.shaft_of(pinion) for pinion in transmission.pinions}
-    drawn = {name: section for name, section in sections.items() if section is not None}
-    if not drawn:
+    shaft_sections = {name: section for name, section in sections.items() if section is not None}
+    if not shaft_sections:
         return []
     radius = 1e3 * teeth.pinion_base_radius / np.cos(teeth.pressure_angle)
-    return [shafts_figure(drawn, bearings, deflections, float(radius), width_mm)]
+    return [shafts_figure(shaft_sections, bearings, deflections, float(radius), width_mm)]
 
 
 def shafts_figure(
@@ -49,7 +49,7 @@ def shafts_figure(
     of that share a pair of panels.
     """
     panels = []
-    for names in _alike(sections, bearings, deflections):
+    for names in _group_equal_shafts(sections, bearings, deflections):
         section = sections[names[0]]
         margin = MARGIN * section.length_mm + 0.5 * (width_mm or 0.0)
         along = Axis(
@@ -62,9 +62,9 @@ def shafts_figure(
         forces = bearings[bearings["pinion"] == names[0]]
         side, reach = _side_view(section, forces, radius_mm, width_mm)
         height = Axis("", "", low=-1.1 * reach, high=1.1 * reach)
-        own = deflections[deflections["pinion"] == names[0]]
+        shaft_deflections = deflections[deflections["pinion"] == names[0]]
         curves = [
-            Curve(own["at_mm"], own[f"{key}_um"], words, colour, line)
+            Curve(shaft_deflections["at_mm"], shaft_deflections[f"{key}_um"], words, colour, line)
             for key, (words, colour, line) in CURVES.items()
         ]
         panels += [
@@ -78,17 +78,17 @@ def shafts_figure(
     return Figure(panels, shared_x=False, keys=keys)
 
 
-def _alike(
+def _group_equal_shafts(
     sections: Mapping[str, ShaftSection], bearings: pd.DataFrame, deflections: pd.DataFrame
 ) -> list[list[str]]:
     """Names of pinions with equal shafts that carry and deflect alike."""
     groups: list[tuple[ShaftSection, Array, list[str]]] = []
     for name, section in sections.items():
         forces = bearings.loc[bearings["pinion"] == name, "radial_n"].to_numpy(dtype=float)
-        moved = deflections.loc[deflections["pinion"] == name, ["x_um", "y_um"]].to_numpy(dtype=float)
-        numbers = np.concatenate([forces, moved.ravel()])
-        for other, known, names in groups:
-            if other == section and np.allclose(numbers, known, rtol=1e-4, atol=1e-3):
+        displacements = deflections.loc[deflections["pinion"] == name, ["x_um", "y_um"]].to_numpy(dtype=float)
+        numbers = np.concatenate([forces, displacements.ravel()])
+        for group_section, group_shape, names in groups:
+            if group_section == section and np.allclose(numbers, group_shape, rtol=1e-4, atol=1e-3):
                 names.append(name)
                 break
         else:
@@ -136,9 +136,9 @@ def _box(begin: float, length: float, half: float) -> tuple[Array, Array]:
 def _diameter_at(section: ShaftSection, at: float) -> float:
     """Diameter (mm) at a distance from the beginning: the larger one at a step."""
     ends = np.cumsum([0.0, *(segment.length_mm for segment in section.segments)])
-    there = [
+    diameters = [
         segment.diameter_mm
         for segment, begin, end in zip(section.segments, ends[:-1], ends[1:], strict=True)
         if begin <= at <= end
     ]
-    return max(there or [section.segments[-1].diameter_mm])
+    return max(diameters or [section.segments[-1].diameter_mm])

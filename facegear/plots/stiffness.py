@@ -8,7 +8,18 @@ from facegear.plots.description import Axis, Band, Bars, Curve, Figure, Look, Pa
 
 
 def stiffness_curve(curve: pd.DataFrame) -> Figure:
-    """k over one mesh period, as computed and as the kept harmonics give it."""
+    """Draw k over one mesh period, as computed and as the kept harmonics give it.
+
+    Parameters
+    ----------
+    curve : pd.DataFrame
+        Table `tvms` of stage stiffness.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     first = curve.iloc[[0]].assign(position=1.0)
     whole = pd.concat([curve, first], ignore_index=True)
     curves = [
@@ -20,7 +31,20 @@ def stiffness_curve(curve: pd.DataFrame) -> Figure:
 
 
 def harmonic_amplitudes(spectrum: pd.DataFrame, max_order: int = 15) -> Figure:
-    """Absolute amplitudes of the orders of the stiffness variation."""
+    """Draw absolute amplitudes of the orders of the stiffness variation.
+
+    Parameters
+    ----------
+    spectrum : pd.DataFrame
+        Table `spectrum` of stage stiffness.
+    max_order : int
+        Number of the last order.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     rows = spectrum[(spectrum["order"] >= 1) & (spectrum["order"] <= max_order)]
     orders, heights = rows["order"].to_numpy(dtype=float), 1e-6 * rows["amplitude_n_per_m"].to_numpy()
     errors = 1e-6 * rows["sampling_error_n_per_m"].to_numpy()
@@ -33,7 +57,18 @@ def harmonic_amplitudes(spectrum: pd.DataFrame, max_order: int = 15) -> Figure:
 
 
 def stiffness_against_load(table: pd.DataFrame) -> Figure:
-    """Mean of both stiffnesses with the range over a pitch, and the first harmonic, against torque."""
+    """Draw the mean of both stiffnesses with the range over a pitch, and the first harmonic, against torque.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table of stage load_dependence.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     above: list[Band | Curve] = []
     below = []
     for (definition, rows), colour in zip(
@@ -59,10 +94,34 @@ def stiffness_against_load(table: pd.DataFrame) -> Figure:
 
 
 def figures(tvms: pd.DataFrame, spectrum: pd.DataFrame) -> tuple[Figure, ...]:
-    """k(t) over a period, and its harmonics."""
+    """Draw k(t) over a period, and its harmonics.
+
+    Parameters
+    ----------
+    tvms : pd.DataFrame
+        Table `tvms` of stage stiffness.
+    spectrum : pd.DataFrame
+        Table `spectrum` of stage stiffness.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return stiffness_curve(tvms), harmonic_amplitudes(spectrum)
 
 
 def load_figures(table: pd.DataFrame) -> tuple[Figure, ...]:
-    """Mean stiffness against load."""
+    """Draw the mean stiffness against load.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table of stage load_dependence.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return (stiffness_against_load(table),)

@@ -29,33 +29,62 @@ MARKS = {
 
 
 def passage_figure(table: pd.DataFrame) -> Figure:
-    """Largest tension below the loaded flank, and largest compression below the other, for each torque."""
-    felt = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
-    positions = table.loc[felt > PART_SHOWN * felt.max(), "passage"]
-    shown = table[table["passage"].between(positions.min() - 0.25, positions.max() + 0.25)]
-    return _both(shown, "passage", Axis("Passage of a tooth", "pitches"))
+    """Draw the largest tension below the loaded flank, and largest compression below the other, for each
+    torque.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `passage` of stage root_stress.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    largest_stress = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
+    positions = table.loc[largest_stress > PART_SHOWN * largest_stress.max(), "passage"]
+    rows_shown = table[table["passage"].between(positions.min() - 0.25, positions.max() + 0.25)]
+    return _both_fillets_figure(rows_shown, "passage", Axis("Passage of a tooth", "pitches"))
 
 
 def along_face_figure(table: pd.DataFrame) -> Figure:
-    """The same along the face: the largest over the passage."""
-    return _both(table, "radius_mm", Axis("Gear radius", "mm"))
+    """Draw the root stress along the face: the largest over the passage.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `along_face` of stage root_stress.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    return _both_fillets_figure(table, "radius_mm", Axis("Gear radius", "mm"))
 
 
-def _both(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
+def _both_fillets_figure(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
     torques = np.sort(table["torque_n_m"].unique())
     panels = []
     for body, name in BODIES.items():
         curves = []
         for torque, colour in zip(torques, shades(torques.size), strict=True):
             rows = table[(table["torque_n_m"] == torque) & (table["body"] == body)]
-            loaded, other = (
+            loaded_fillet, other_fillet = (
                 rows[rows["fillet"] == fillet].sort_values(coordinate) for fillet in ("loaded", "other")
             )
             label = f"{format_number(torque, 4)} N m"
             look: Look = {"line": "dash", "width": 0.9, "in_legend": False}
             curves += [
-                Curve(loaded[coordinate], loaded["largest_mpa"], label, colour),
-                Curve(other[coordinate], other["smallest_mpa"], f"{label}, other fillet", colour, **look),
+                Curve(loaded_fillet[coordinate], loaded_fillet["largest_mpa"], label, colour),
+                Curve(
+                    other_fillet[coordinate],
+                    other_fillet["smallest_mpa"],
+                    f"{label}, other fillet",
+                    colour,
+                    **look,
+                ),
             ]
         stress = Axis(f"{name}: root stress", "MPa", "tension solid, compression dashed")
         panels.append(Panel(along, stress, curves, height=2.4))
@@ -63,9 +92,23 @@ def _both(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
 
 
 def life(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> Figure:
-    """Stress and cycles of every bin of a duty cycle, and the stress that may be repeated so often.
+    """Draw stress and cycles of every bin of a duty cycle, and the stress that may be repeated so often.
 
-    Of all pinions, and of all face gears, the flank nearest to its limit.
+    Of all pinions, and of all face gears, the flank nearest to its limit is drawn.
+
+    Parameters
+    ----------
+    rating : pd.DataFrame
+        Table `rating` of stage rating.
+    damage : pd.DataFrame
+        Table `damage` of stage rating.
+    curves : pd.DataFrame
+        Table `curves` of stage rating.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     panels = []
     for failure, stress in (("bending", "Root stress"), ("pitting", "Contact stress")):
@@ -87,7 +130,21 @@ def life(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> Fi
 
 
 def damage_by_bin(rating: pd.DataFrame, damage: pd.DataFrame) -> Figure:
-    """Damage of every bin of a duty cycle to the flanks that `life` shows; Miner's sum is 1 at the end."""
+    """Draw the damage of every bin of a duty cycle to the flanks that `life` shows; Miner's sum is 1 at the
+    end.
+
+    Parameters
+    ----------
+    rating : pd.DataFrame
+        Table `rating` of stage rating.
+    damage : pd.DataFrame
+        Table `damage` of stage rating.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     rows = list(_nearest(rating).itertuples())
     marks: list[Curve | Line] = [Line(1.0, "y")]
     smallest, largest = 1e-3, 3.0
@@ -129,10 +186,38 @@ def _subject(row: Any) -> str:
 
 
 def root_figures(passage: pd.DataFrame, along_face: pd.DataFrame) -> tuple[Figure, ...]:
-    """Root stress over a passage, and along the face."""
+    """Draw root stress over a passage, and along the face.
+
+    Parameters
+    ----------
+    passage : pd.DataFrame
+        Table `passage` of stage root_stress.
+    along_face : pd.DataFrame
+        Table `along_face` of stage root_stress.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return passage_figure(passage), along_face_figure(along_face)
 
 
 def rating_figures(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> tuple[Figure, ...]:
-    """Bins of the duty cycle beside the stress that may be repeated so often, and their damage."""
+    """Draw bins of the duty cycle beside the stress that may be repeated so often, and their damage.
+
+    Parameters
+    ----------
+    rating : pd.DataFrame
+        Table `rating` of stage rating.
+    damage : pd.DataFrame
+        Table `damage` of stage rating.
+    curves : pd.DataFrame
+        Table `curves` of stage rating.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return life(rating, damage, curves), damage_by_bin(rating, damage)

@@ -21,14 +21,14 @@ def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
 
     The operating speed is a line; what lies beyond the torques of the contact analysis is shaded.
     """
-    followed = table[table["motion"].str.startswith("branch ")]
-    solved = table[table["within_torques_solved"]]
+    branch_rows = table[table["motion"].str.startswith("branch ")]
+    rows_within_torques = table[table["within_torques_solved"]]
     speed = Axis("Input speed", "rpm")
     panels = []
     for column, (name, unit) in PANELS.items():
         marks: list[Curve | Line | Span] = []
-        if len(followed):
-            marks.append(Curve(followed["speed_rpm"], followed[column], "stable branch", **BRANCH))
+        if len(branch_rows):
+            marks.append(Curve(branch_rows["speed_rpm"], branch_rows[column], "stable branch", **BRANCH))
         for direction, (colour, line) in DIRECTION_STYLES.items():
             rows = table[table["motion"] == f"sweep {direction}"]
             if len(rows):
@@ -36,8 +36,8 @@ def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
                 marks.append(Curve(rows["speed_rpm"], rows[column], name_of, colour, line, width=1.0))
         marks.append(Line(speed_rpm, name="nominal speed", colour=grey(0.3), line="dot"))
         top = 1.05 * float(table[column].max())
-        if len(solved) < len(table):
-            first = float(solved[column].max()) if len(solved) else 0.0
+        if len(rows_within_torques) < len(table):
+            first = float(rows_within_torques[column].max()) if len(rows_within_torques) else 0.0
             marks.append(Span(first, top, "y", name=BEYOND, opacity=0.12))
         panels.append(Panel(speed, Axis(name, unit, low=0.0, high=top), marks, height=1.5))
     return Figure(panels)

@@ -60,17 +60,19 @@ def _curves(
     for mesh, every in rows.groupby("mesh", sort=False):
         look = looks[str(mesh)]
         marker = MARKERS[colours.index(look["colour"]) % len(MARKERS)]
-        own = every.sort_values("number")
+        sorted_rows = every.sort_values("number")
         yield Curve(
-            own["number"],
-            scale * own[column],
+            sorted_rows["number"],
+            scale * sorted_rows[column],
             str(mesh),
             width=1.3,
             marker=marker,
             in_legend=in_legend,
             **look,
         )
-        other = own[own["motion"] != PERIODIC]
-        if len(other):
+        irregular_rows = sorted_rows[sorted_rows["motion"] != PERIODIC]
+        if len(irregular_rows):
             hollow: Look = {"colour": look["colour"], "line": "none", "marker": marker, "hollow": True}
-            yield Curve(other["number"], scale * other[column], str(mesh), in_legend=False, **hollow)
+            yield Curve(
+                irregular_rows["number"], scale * irregular_rows[column], str(mesh), in_legend=False, **hollow
+            )

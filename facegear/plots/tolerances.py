@@ -18,19 +18,24 @@ PERCENTILE_LINES: Mapping[float, LineStyle] = {
     5.0: "dash",
     1.0: "solid",
 }
-SHOWN = 4
+MAX_PANELS = 4
 """Worst paths that are drawn, beside what comes once a machine."""
-RUBBED = ("friction_loss_w", "contact_temperature_c", "smallest_film_um")
-"""What friction brings."""
+FRICTION_QUANTITIES = ("friction_loss_w", "contact_temperature_c", "smallest_film_um")
+"""Quantities that friction adds."""
 ONCE = (
     "peak_mesh_force_n",
     "pressure_mpa",
     "root_stress_pinion_mpa",
     "root_stress_face_gear_mpa",
     "te_peak_to_peak_um",
-    *RUBBED,
+    *FRICTION_QUANTITIES,
 )
-DECIDED = ("pressure_mpa", "root_stress_face_gear_mpa", "te_peak_to_peak_um", *RUBBED)
+DECISIVE_QUANTITIES = (
+    "pressure_mpa",
+    "root_stress_face_gear_mpa",
+    "te_peak_to_peak_um",
+    *FRICTION_QUANTITIES,
+)
 """Shown with the causes that decide them, beside the worst path; without them the largest mesh force is."""
 BARS = 12
 WORDS = {
@@ -54,7 +59,18 @@ WORDS = {
 
 
 def in_words(quantity: str) -> str:
-    """A column of the table of samples as an axis label."""
+    """Return a column of the table of samples as an axis label.
+
+    Parameters
+    ----------
+    quantity : str
+        Name of the column.
+
+    Returns
+    -------
+    str
+        The label.
+    """
     return axis_of(quantity).label
 
 
@@ -77,14 +93,38 @@ def axis_of(quantity: str) -> Axis:
 
 
 def worst_first(percentiles: pd.DataFrame) -> list[str]:
-    """Path factors by their 99th percentile, the largest first, then what comes once a machine."""
+    """Sort path factors by their 99th percentile, the largest first, then what comes once a machine.
+
+    Parameters
+    ----------
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+
+    Returns
+    -------
+    list[str]
+        Names of the quantities.
+    """
     top = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
     factors = top[top.index.str.startswith("k_gamma")].sort_values(ascending=False, kind="stable")
-    return [*factors.index[:SHOWN], *(name for name in ONCE if (percentiles["quantity"] == name).any())]
+    return [*factors.index[:MAX_PANELS], *(name for name in ONCE if (percentiles["quantity"] == name).any())]
 
 
 def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Figure:
-    """Share of the samples above each value, one panel a quantity, with its percentiles."""
+    """Draw the share of the samples above each value, one panel a quantity, with its percentiles.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table `samples` of stage tolerances.
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     names = worst_first(percentiles)
     up = Axis("", "", low=0.0, high=100.0)
     panels = [
@@ -107,18 +147,39 @@ def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Fig
 
 
 def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame) -> Figure:
-    """Which cause decides: total Sobol indices where they were computed, else rank correlations."""
+    """Draw which cause decides: total Sobol indices where they were computed, else rank correlations.
+
+    Parameters
+    ----------
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+    importance : pd.DataFrame
+        Table `importance` of stage tolerances.
+    indices : pd.DataFrame
+        Table `indices` of stage tolerances.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     table, value = _sizes(importance, indices)
     quantities = worst_first(percentiles)
-    force = [name for name in quantities if name == "peak_mesh_force_n" and not {*quantities} & {*DECIDED}]
-    decided = (name for name in quantities if name in DECIDED)
-    names = list(dict.fromkeys((*quantities[:1], *force, *decided)))
-    own = table[table["quantity"].isin(names)]
-    causes = list(own.groupby("cause")["size"].max().sort_values(ascending=False).index[:BARS])[::-1]
+    force = [
+        name
+        for name in quantities
+        if name == "peak_mesh_force_n" and not {*quantities} & {*DECISIVE_QUANTITIES}
+    ]
+    decisive_names = (name for name in quantities if name in DECISIVE_QUANTITIES)
+    names = list(dict.fromkeys((*quantities[:1], *force, *decisive_names)))
+    rows_of_names = table[table["quantity"].isin(names)]
+    causes = list(rows_of_names.groupby("cause")["size"].max().sort_values(ascending=False).index[:BARS])[
+        ::-1
+    ]
     height = 0.76 / max(len(names), 1)
     marks: list[Bars | Line] = [Line(0.0, colour=BLACK, width=0.6)]
     for number, (name, colour) in enumerate(zip(names, BAR_COLOURS, strict=False)):
-        rows = own[own["quantity"] == name].set_index("cause").reindex(causes)
+        rows = rows_of_names[rows_of_names["quantity"] == name].set_index("cause").reindex(causes)
         lengths = rows[value].to_numpy(float)
         ends: Look = {}
         if value == "total":
@@ -141,10 +202,27 @@ def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indic
 def scatter_figure(
     samples: pd.DataFrame, percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame
 ) -> Figure:
-    """The worst path's factor against the two causes that matter most for it."""
+    """Draw the worst path's factor against the two causes that matter most for it.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table `samples` of stage tolerances.
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+    importance : pd.DataFrame
+        Table `importance` of stage tolerances.
+    indices : pd.DataFrame
+        Table `indices` of stage tolerances.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
     name = (worst_first(percentiles) or [""])[0]
     table, _ = _sizes(importance, indices)
-    own = table[table["quantity"] == name].sort_values("size", ascending=False)
+    quantity_rows = table[table["quantity"] == name].sort_values("size", ascending=False)
     dots: Look = {"line": "none", "marker": "dot", "size": 2.5, "opacity": 0.5}
     panels = [
         Panel(
@@ -153,28 +231,40 @@ def scatter_figure(
             [Curve(samples[cause], samples[name], colour=BLUE, **dots)],
             height=1.8,
         )
-        for cause in own["cause"][:2]
+        for cause in quantity_rows["cause"][:2]
     ]
     title = "Every sample, against the two tolerances that matter most"
     return Figure(panels or [Panel(Axis("", ""), Axis("", ""), [])], title=title, shared_x=False)
 
 
 def load_map_figure(table: pd.DataFrame) -> Figure:
-    """Median and 99th percentile of the worst path's factor over torque, or over speed for each torque.
+    """Draw median and 99th percentile of the worst path's factor over torque, or over speed for each torque.
 
-    `table`: as of `facegear.stages.tolerances_map`. The worst path is that of the largest 99th percentile;
-    where no meshes share a load, the largest mesh force stands in its place.
+    The worst path is that of the largest 99th percentile; where no meshes share a load, the largest mesh
+    force stands in its place.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table `load_map` of stage tolerances_map.
+
+    Returns
+    -------
+    Figure
+        The figure.
     """
     name = (worst_first(table) or [""])[0]
-    own = table[table["quantity"] == name]
+    quantity_rows = table[table["quantity"] == name]
     over, lines = "torque_factor", "speed_rpm"
-    if own["speed_rpm"].nunique() > 1:
+    if quantity_rows["speed_rpm"].nunique() > 1:
         over, lines = lines, over
     unit = {"torque_factor": "x torque", "speed_rpm": "rpm"}[lines]
-    has_several = own[lines].nunique() > 1
+    has_several = quantity_rows[lines].nunique() > 1
     marks: list[Band | Curve] = []
     styles: tuple[tuple[float, LineStyle], ...] = ((50.0, "dot"), (99.0, "solid"))
-    for (value, rows), colour in zip(own.groupby(lines), shades(own[lines].nunique()), strict=True):
+    for (value, rows), colour in zip(
+        quantity_rows.groupby(lines), shades(quantity_rows[lines].nunique()), strict=True
+    ):
         for level, line in styles:
             at = rows[rows["percentile"] == level].sort_values(over)
             words = f"{format_number(value, 4)} {unit}"
@@ -205,19 +295,36 @@ def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFram
 
 
 def _exceedance(values: Array, percentiles: pd.DataFrame) -> Iterator[Curve | Line | Span]:
-    ordered = np.sort(values)
-    above = 100.0 * (1.0 - np.arange(1, ordered.size + 1) / ordered.size)
+    sorted_values = np.sort(values)
+    above = 100.0 * (1.0 - np.arange(1, sorted_values.size + 1) / sorted_values.size)
     for row in percentiles.itertuples():
         if np.isfinite([row.low, row.high]).all():
             yield Span(row.low, row.high, colour=RED)
         yield Line(row.value, colour=RED, line=PERCENTILE_LINES[row.percentile], width=1.0)
-    yield Curve(ordered, above, colour=BLUE, steps=True)
+    yield Curve(sorted_values, above, colour=BLUE, steps=True)
 
 
 def figures(
     samples: pd.DataFrame, percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame
 ) -> tuple[Figure, ...]:
-    """Distributions, what matters most, and how."""
+    """Draw distributions, what matters most, and how.
+
+    Parameters
+    ----------
+    samples : pd.DataFrame
+        Table `samples` of stage tolerances.
+    percentiles : pd.DataFrame
+        Table `percentiles` of stage tolerances.
+    importance : pd.DataFrame
+        Table `importance` of stage tolerances.
+    indices : pd.DataFrame
+        Table `indices` of stage tolerances.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return (
         distribution_figure(samples, percentiles),
         importance_figure(percentiles, importance, indices),
@@ -226,5 +333,16 @@ def figures(
 
 
 def map_figures(load_map: pd.DataFrame) -> tuple[Figure, ...]:
-    """K_gamma of the worst path over torque and speed."""
+    """Draw K_gamma of the worst path over torque and speed.
+
+    Parameters
+    ----------
+    load_map : pd.DataFrame
+        Table `load_map` of stage tolerances_map.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return (load_map_figure(load_map),)

@@ -1,4 +1,4 @@
-"""What single teeth add to the transmission error over a turn of either gear."""
+"""Contribution of single teeth to the transmission error over a turn of either gear."""
 
 import numpy as np
 import pandas as pd
@@ -15,11 +15,11 @@ def tooth_error_figure(curves: Arrays, orders: pd.DataFrame) -> Figure:
         name, curve = body.replace("_", " "), 1e6 * curves[f"{body}_drive_m"]
         turns = np.arange(curve.size) / curve.size
         early = Curve(turns, curve, "drive flank, under load", BLUE, width=0.9)
-        own = orders[orders["body"] == body]
-        at = own["order"].to_numpy(float)
+        body_orders = orders[orders["body"] == body]
+        at = body_orders["order"].to_numpy(float)
         bars = [
-            Bars(at - 0.2, own["unloaded_um"].to_numpy(float), "no load", BLACK, width=0.4),
-            Bars(at + 0.2, own["loaded_um"].to_numpy(float), "under load", BLUE, width=0.4),
+            Bars(at - 0.2, body_orders["unloaded_um"].to_numpy(float), "no load", BLACK, width=0.4),
+            Bars(at + 0.2, body_orders["loaded_um"].to_numpy(float), "under load", BLUE, width=0.4),
         ]
         panels += [
             Panel(

@@ -12,20 +12,33 @@ AXES = {
     "pinion": (("From the middle of the face", "mm"), ("Length of roll", "mm")),
     "face_gear": (("Gear radius", "mm"), ("Depth below the tip plane", "mm")),
 }
-ADDED, MISSING = RED, BLUE
+EXCESS_COLOUR, LACK_COLOUR = RED, BLUE
 HEIGHT = 0.14
 """Height of the largest deviation, in parts of the profile."""
 
 
 def topography_figure(points: pd.DataFrame, body: str) -> Figure:
-    """Left and right flank of a gear, of `points` of stage topography; the mean of all teeth."""
-    own = points[points["body"] == body]
-    largest = float(own["deviation_um"].abs().max())
+    """Draw left and right flank of a gear, with the mean of all teeth.
+
+    Parameters
+    ----------
+    points : pd.DataFrame
+        Table `points` of stage topography.
+    body : str
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    body_points = points[points["body"] == body]
+    largest = float(body_points["deviation_um"].abs().max())
     (across, width_unit), (up, unit) = AXES[body]
-    face = own["face_mm"]
+    face = body_points["face_mm"]
     margin = 0.2 * np.ptp(face)
     panels = []
-    for side, flank in own.groupby("flank", sort=False):
+    for side, flank in body_points.groupby("flank", sort=False):
         title = f"{body.replace('_', ' ')}, {side} flank: {_range(flank)}"
         panels.append(
             Panel(
@@ -49,8 +62,8 @@ def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
     marks: list[Area | Curve | Text] = [
         Area(*_between(face, flat, flat + up * part), name, colour, opacity=0.4)
         for part, name, colour in (
-            (np.maximum(values, 0.0), "material added", ADDED),
-            (np.minimum(values, 0.0), "material missing", MISSING),
+            (np.maximum(values, 0.0), "material added", EXCESS_COLOUR),
+            (np.minimum(values, 0.0), "material missing", LACK_COLOUR),
         )
         if np.nanmax(np.abs(part)) > 0.0
     ]
@@ -85,5 +98,16 @@ def _range(flank: pd.DataFrame) -> str:
 
 
 def figures(points: pd.DataFrame) -> tuple[Figure, ...]:
-    """Charts of the pinion and of the face gear."""
+    """Draw charts of the pinion and of the face gear.
+
+    Parameters
+    ----------
+    points : pd.DataFrame
+        Table `points` of stage topography.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
     return topography_figure(points, "pinion"), topography_figure(points, "face_gear")

@@ -12,19 +12,19 @@ from facegear.transmission.linear_model import LinearModel
 
 @dataclass(frozen=True, eq=False)
 class ForceDirections:
-    """What flanks' deflections and forces follow of a pose beside the motion along the ideal normal.
+    """Directions of the flanks' forces by the pose, beside the motion along the ideal normal.
 
     Attributes
     ----------
     layout
-        Of the machine.
+        Layout of the machine.
     mean_radius
-        Where the middle of the pinion's face is on its axis, m.
+        Position of the middle of the pinion's face on its axis, m.
     slopes : (2 meshes, parts)
-        By the parts of a pose, drive flanks first; m/m and m/rad.
+        Derivatives of the deflections by the parts of a pose, drive flanks first; m/m and m/rad.
     lever
-        Of the ideal contact by an error of the shaft angle, m/rad: rows of a model have it of bodies that
-        tilt, but not of rims that bend.
+        Lever of the ideal contact for an error of the shaft angle, m/rad: rows of a model have it of bodies
+        that tilt, but not of rims that bend.
     """
 
     layout: Layout
@@ -32,16 +32,26 @@ class ForceDirections:
     slopes: Array
     lever: float = 0.0
 
-    def __call__(self, lumped: LinearModel) -> LinearModel:
-        """The model with these directions."""
-        leaning = self.lever * leaning_rows(lumped, self.layout)
-        added = self.beyond(lumped) + np.concatenate([leaning, leaning])
-        return replace(lumped, rows=lumped.rows + added)
+    def __call__(self, base_model: LinearModel) -> LinearModel:
+        """Return the model with these directions."""
+        leaning = self.lever * leaning_rows(base_model, self.layout)
+        added_rows = self.added_flank_rows(base_model) + np.concatenate([leaning, leaning])
+        return replace(base_model, rows=base_model.rows + added_rows)
 
-    def beyond(self, model: LinearModel) -> Array:
-        """What the directions add to the rows of the ideal contact, (2 meshes, n).
+    def added_flank_rows(self, model: LinearModel) -> Array:
+        """Return what the directions add to the rows of the ideal contact.
 
         A mesh turns no pinion about a diameter: the middle of its face takes the force.
+
+        Parameters
+        ----------
+        model : LinearModel
+            Linear model of the machine.
+
+        Returns
+        -------
+        (2 meshes, n) array
+            m for a unit of each coordinate.
         """
         parts = pose_rows(model, self.layout, self.mean_radius)
         tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]

@@ -20,7 +20,9 @@ from facegear.arrays import Array
 from facegear.poses.surface import PoseSurface
 
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(12)
-"""Of Gauss's rule between two torques of the surface; the integrand is an exponential of a cubic."""
+"""Points and weights of Gauss's rule between two torques of the surface; the integrand is an exponential of a
+cubic.
+"""
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class MeshEnergy:
         Along the line of action, N.
     approach
         x, m.
-    stored
+    energy
         U, J.
     by_path
         G_y, J/m.
@@ -43,29 +45,57 @@ class MeshEnergy:
 
     force: float
     approach: float
-    stored: float
+    energy: float
     by_path: float
     by_angle: float
 
-    def scaled(self, factor: float) -> "MeshEnergy":
-        """Of teeth that are so many times as stiff, at the same force."""
-        others = (part / factor for part in (self.approach, self.stored, self.by_path, self.by_angle))
-        return MeshEnergy(self.force, *others)
+    def with_stiffness_factor(self, factor: float) -> "MeshEnergy":
+        """Return the energy of teeth that are so many times as stiff, at the same force.
+
+        Parameters
+        ----------
+        factor : float
+            Factor on the stiffness, dimensionless.
+
+        Returns
+        -------
+        MeshEnergy
+            N, m and J.
+        """
+        scaled_parts = (part / factor for part in (self.approach, self.energy, self.by_path, self.by_angle))
+        return MeshEnergy(self.force, *scaled_parts)
 
 
 def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) -> MeshEnergy:
-    """Under a torque (N m) on the pinion, at an unloaded path (m) and error of the shaft angle (rad)."""
+    """Return the energy of a mesh under a torque.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    torque : float
+        Torque on the pinion, N m.
+    path : float
+        Unloaded path, m.
+    angle : float
+        Error of the shaft angle, rad.
+
+    Returns
+    -------
+    MeshEnergy
+        N, m and J; zeros without a torque.
+    """
     if torque <= 0.0:
         return MeshEnergy(0.0, 0.0, 0.0, 0.0, 0.0)
     base, knots = surface.pair.pinion_base_radius, np.log(surface.nodes.torques)
-    known, last = surface.stiffness_logs(path, angle), float(np.log(torque))
+    stiffness_logs, last = surface.stiffness_logs(path, angle), float(np.log(torque))
     lightest = min(last, float(knots[0]))
-    slope = known @ surface.torque_weights(knots[0], 1)
-    logs = known[:, 0] + (lightest - knots[0]) * slope
+    slope = stiffness_logs @ surface.torque_weights(knots[0], 1)
+    logs = stiffness_logs[:, 0] + (lightest - knots[0]) * slope
     parts = _light(lightest, logs, slope)
     if last > knots[0]:
-        parts += _above(surface, known, np.append(knots[knots < last], last))
-        logs = known @ surface.torque_weights(last)
+        parts += _above(surface, stiffness_logs, np.append(knots[knots < last], last))
+        logs = stiffness_logs @ surface.torque_weights(last)
     complementary, by_path, by_angle = parts / base**2
     force = torque / base
     approach = force / float(np.exp(logs[0]))
@@ -73,31 +103,52 @@ def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) 
 
 
 def linear_energy(surface: PoseSurface, load: float, torque: float, path: float, angle: float) -> MeshEnergy:
-    """The same of a mesh whose stiffness is what it is at the torque `load` (N m), whatever it carries."""
+    """Return the energy of a mesh whose stiffness does not depend on what it carries.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    load : float
+        Torque on the pinion at which the stiffness is taken, N m.
+    torque : float
+        Torque on the pinion, N m.
+    path : float
+        Unloaded path, m.
+    angle : float
+        Error of the shaft angle, rad.
+
+    Returns
+    -------
+    MeshEnergy
+        N, m and J.
+    """
     log, by_path, by_angle = surface.stiffness_logs(path, angle) @ surface.torque_weights(float(np.log(load)))
     force = torque / surface.pair.pinion_base_radius
     approach = force / float(np.exp(log))
-    stored = 0.5 * force * approach
-    return MeshEnergy(force, approach, stored, float(-stored * by_path), float(-stored * by_angle))
+    energy = 0.5 * force * approach
+    return MeshEnergy(force, approach, energy, float(-energy * by_path), float(-energy * by_angle))
 
 
 def _light(last: float, logs: Array, slope: Array) -> Array:
-    """G and its derivatives (3,), for a base radius of 1 m, of loads up to the logarithm `last` of a torque.
+    """Return G and its derivatives (3,), for a base radius of 1 m, of loads up to the logarithm `last` of a
+    torque.
 
-    logs, slope (3,): logarithm of the stiffness there and its derivatives by path and angle, and what they
-    rise by with the logarithm of the torque.
+    logs, slope (3,): logarithm of the stiffness there and its derivatives by path and angle, and their slopes
+    over the logarithm of the torque.
     """
     whole = np.exp(2.0 * last - logs[0]) / (2.0 - slope[0])
     return np.asarray(whole * np.array([1.0, *(slope[1:] / (2.0 - slope[0]) - logs[1:])]))
 
 
-def _above(surface: PoseSurface, known: Array, ends: Array) -> Array:
-    """The same of loads from the first to the last of logarithms `ends` of torques, between nodes.
+def _above(surface: PoseSurface, stiffness_logs: Array, ends: Array) -> Array:
+    """Return G and its derivatives (3,) of loads from the first to the last of logarithms `ends` of torques,
+    between nodes.
 
-    known: as `PoseSurface.stiffness_logs` has it.
+    stiffness_logs: as `PoseSurface.stiffness_logs` has it.
     """
     half = 0.5 * np.diff(ends)[:, None]
     at = ends[:-1, None] + half * (POINTS + 1.0)
-    log, by_path, by_angle = np.moveaxis(surface.torque_weights(at) @ known.T, -1, 0)
-    given = half * WEIGHTS * np.exp(2.0 * at - log)
-    return np.array([given.sum(), -(given * by_path).sum(), -(given * by_angle).sum()])
+    log, by_path, by_angle = np.moveaxis(surface.torque_weights(at) @ stiffness_logs.T, -1, 0)
+    weights = half * WEIGHTS * np.exp(2.0 * at - log)
+    return np.array([weights.sum(), -(weights * by_path).sum(), -(weights * by_angle).sum()])

@@ -12,12 +12,12 @@ from facegear.geometry.placement import RigidMotion, rotation
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a pinion stands against its gear, and how far both have turned.
+    """Pose of a pinion against its gear, and how far both have turned.
 
     Attributes
     ----------
     errors
-        Of assembly.
+        Assembly errors.
     outward
         Shift of the pinion along its axis, away from the gear's axis (m): it moves no normal of the flanks,
         only the ends of the face and what is taken off along it.
@@ -38,10 +38,17 @@ def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
 
     Parameters
     ----------
-    pinion, gear
-        Rigid motions of any size, m; the error of the shaft angle stays within a quarter turn.
-    mean_radius
-        Where the middle of the pinion's face is on its axis, m.
+    pinion : RigidMotion
+        Rigid motion of any size, m; the error of the shaft angle stays within a quarter turn.
+    gear : RigidMotion
+        Rigid motion of any size, m.
+    mean_radius : float
+        Position of the middle of the pinion's face on its axis, m.
+
+    Returns
+    -------
+    Pose
+        m and rad.
     """
     back = gear.inverse()
     turn = back.matrix @ pinion.matrix
@@ -67,12 +74,38 @@ def _about_z(angle: float) -> Array:
 
 
 def to_mesh_frame(sign: float) -> Array:
-    """Matrix (3, 3) from the machine's frame at a pinion to that of its mesh with the gear of a sign."""
+    """Return the matrix from the machine's frame at a pinion to that of its mesh.
+
+    Parameters
+    ----------
+    sign : float
+        1 for a mesh with the upper gear, -1 with the lower, dimensionless.
+
+    Returns
+    -------
+    (3, 3) array
+        Dimensionless, a rotation in units of 1.
+    """
     return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
 
 
 def body_motion(shift: ArrayLike, turn: ArrayLike, pivot: ArrayLike) -> RigidMotion:
-    """A turn about a point by a rotation vector (rad), followed by a shift (m), all (3,) in one frame."""
+    """Return a turn about a point, followed by a shift, all in one frame.
+
+    Parameters
+    ----------
+    shift : (3,) array
+        Shift, m.
+    turn : (3,) array
+        Rotation vector, rad.
+    pivot : (3,) array
+        The point, m.
+
+    Returns
+    -------
+    RigidMotion
+        m.
+    """
     vector, point = np.asarray(turn, float), np.asarray(pivot, float)
     angle = float(np.linalg.norm(vector))
     matrix = rotation(vector / angle, angle) if angle else np.eye(3)
@@ -80,12 +113,38 @@ def body_motion(shift: ArrayLike, turn: ArrayLike, pivot: ArrayLike) -> RigidMot
 
 
 def assembled_motion(errors: AssemblyErrors, mean_radius: float) -> RigidMotion:
-    """Return the motion of a pinion in the mesh frame, from its nominal place, that assembly errors are."""
+    """Return the motion of a pinion in the mesh frame, from its nominal place, that assembly errors are.
+
+    Parameters
+    ----------
+    errors : AssemblyErrors
+        The assembly errors.
+    mean_radius : float
+        Position of the middle of the pinion's face on its axis, m.
+
+    Returns
+    -------
+    RigidMotion
+        m.
+    """
     motion = body_motion((0.0, 0.0, 0.0), (errors.shaft_angle_error, 0.0, 0.0), (0.0, mean_radius, 0.0))
     return RigidMotion(motion.matrix, motion.shift + np.array([errors.offset, 0.0, errors.axial_shift]))
 
 
 def in_mesh_frame(motion: RigidMotion, sign: float) -> RigidMotion:
-    """A motion given in the machine's frame at a pinion, in that of its mesh."""
+    """Return a motion given in the machine's frame at a pinion, in the frame of its mesh.
+
+    Parameters
+    ----------
+    motion : RigidMotion
+        The motion, m.
+    sign : float
+        1 for a mesh with the upper gear, -1 with the lower, dimensionless.
+
+    Returns
+    -------
+    RigidMotion
+        m.
+    """
     frame = to_mesh_frame(sign)
     return RigidMotion(frame @ motion.matrix @ frame.T, frame @ motion.shift)

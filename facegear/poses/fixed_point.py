@@ -1,9 +1,9 @@
-"""The machine with its teeth where its own forces put them: fixed point of statics and contact over pose.
+"""Static equilibrium with pose-dependent contact, by fixed-point iteration.
 
-The pose of every mesh gives a factor on its stiffness, what the exact unloaded contact closes each flank
-by beyond the first order that the meshes' deflections hold, and the direction of its force. Law, force and
+The pose of every mesh gives a factor on its stiffness, what the exact unloaded contact closes each flank by
+beyond the first order that the meshes' deflections hold, and the direction of its force. Law, force and
 reactions of a mesh are the derivatives of one energy (`facegear.poses.energy`), so that the converged machine
-is at rest in a potential. Factor and closing are errors of single meshes and the directions are rows of the
+is at rest in a potential. Factor and closure are errors of single meshes and the directions are rows of the
 linear model, so that everything that is computed of a machine takes them. To first order the line of action's
 part of a displacement is the deflection itself and is counted once.
 """
@@ -26,7 +26,7 @@ from facegear.poses.posed_flanks import (
     unloaded_contacts,
 )
 from facegear.poses.surface import STIFFNESS, PoseSurface
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import significant_forces
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.machine import Machine
 from facegear.transmission.static_gears import at_rest as static
@@ -35,7 +35,9 @@ from facegear.transmission.statics import Equilibria, mean_equilibrium
 TOLERANCE = 1e-6
 """Largest change of a mesh force in the last step, over the largest force."""
 STEPS = 60
+"""Largest number of steps."""
 SAME_FACTOR, FACTOR_STEPS = 1e-13, 100
+"""Change of a stiffness factor at which its iteration ends, and the largest number of its steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,25 +49,25 @@ class OperatingPose:
     machine
         With the factors, errors and directions that the poses give to its meshes.
     forces : (m,)
-        What each mesh transmits with mean stiffness and no e(t), N; negative on the back flank.
+        Force of each mesh with mean stiffness and no e(t), N; negative on the back flank.
     poses
-        Of all meshes, with the assembly errors of the pair in.
+        Poses of all meshes, with the assembly errors of the pair in.
     path, angle : (m,)
-        Where the unloaded contact of the carrying flank stands along the pinion, m; its error of the shaft
+        Position of the unloaded contact of the carrying flank along the pinion, m; its error of the shaft
         angle, rad.
     torque : (m,)
         On the pinion by that mesh, N m.
     factor : (m,)
         Stiffness at pose and load over the machine's own.
-    closing : (2 m,)
+    flank_closure : (2 m,)
         By what the exact contact closes every flank beyond first order, m, drive flanks first.
     reactions : (m, 3)
         Derivatives of the energy of each mesh by offset, axial shift (N) and error of the shaft angle (N m)
         of the flank that carries, at the same turn of the gears.
-    stored : (m,)
+    energy : (m,)
         Energy of each mesh, J.
     steps
-        That were taken, and `change` of the last one relative to the largest force.
+        Number of steps, and `change` of the last one relative to the largest force.
     """
 
     machine: Machine
@@ -75,9 +77,9 @@ class OperatingPose:
     angle: Array
     torque: Array
     factor: Array
-    closing: Array
+    flank_closure: Array
     reactions: Array
-    stored: Array
+    energy: Array
     steps: int
     change: float
 
@@ -88,39 +90,92 @@ def operating_pose(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """The fixed point under the machine's mean torques, to TOLERANCE.
+    """Compute the fixed point under the machine's mean torques, to TOLERANCE.
 
-    load: torque (N m) at which all stiffnesses are taken whatever the meshes carry, None for their own.
-    ideal: whether deflections and forces of the flanks keep to the normals of the ideal contact. Raises
-    InvalidInput for a pose outside the surface, NotConverged.
+    Parameters
+    ----------
+    machine : Machine
+        The machine as assembled.
+    surface : PoseSurface
+        Contact over the pose.
+    load : float or None
+        Torque at which all stiffnesses are taken whatever the meshes carry, N m; None for their own.
+    ideal : bool
+        Whether deflections and forces of the flanks keep to the normals of the ideal contact.
+
+    Returns
+    -------
+    OperatingPose
+        SI units.
+
+    Raises
+    ------
+    InvalidInput
+        For a pose outside the surface.
+    NotConverged
+        If the forces do not settle, or no equilibrium is found.
     """
-    own = machine.imperfections.stiffness
-    machine = prepared(machine, surface)
-    posed, forces = machine, mean_equilibrium(static(machine))
+    machine_stiffness = machine.imperfections.stiffness
+    machine = with_ideal_directions(machine, surface)
+    machine_at_pose, forces = machine, mean_equilibrium(static(machine))
     change = np.inf
     for step in range(1, STEPS + 1):
         result = pose_at(machine, surface, forces, load, ideal)
-        posed, before = result.machine, result.forces
-        forces = mean_equilibrium(static(posed))
-        now = carried(forces.forces[0])
+        machine_at_pose, before = result.machine, result.forces
+        forces = mean_equilibrium(static(machine_at_pose))
+        now = significant_forces(forces.forces[0])
         change = float(np.abs(now - before).max() / max(np.abs(now).max(), 1e-300))
         if change < TOLERANCE:
             last = pose_at(machine, surface, forces, load, ideal)
             return replace(last, steps=step, change=change)
-    tried = f"{STEPS} steps; forces still change by {change:.1e} of the largest (own stiffness {own.max():g})"
-    raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", tried)
+    problem = (
+        f"{STEPS} steps; forces still change by {change:.1e} of the largest "
+        f"(own stiffness {machine_stiffness.max():g})"
+    )
+    raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", problem)
 
 
-def prepared(machine: Machine, surface: PoseSurface) -> Machine:
-    """The machine with the directions of the ideal contact, at rest with the slopes of rims that bend."""
+def with_ideal_directions(machine: Machine, surface: PoseSurface) -> Machine:
+    """Return the machine with the directions of the ideal contact, at rest with the slopes of rims that bend.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+
+    Returns
+    -------
+    Machine
+        The same machine where its directions are set, or its bodies are rigid.
+    """
     if machine.directions is not None or machine.bodies is None:
         return machine
-    none = np.zeros((2 * len(machine.layout.meshes), len(PARTS)))
-    return replace(machine, directions=ForceDirections(machine.layout, surface.pair.mean_radius, none))
+    zeros = np.zeros((2 * len(machine.layout.meshes), len(PARTS)))
+    return replace(machine, directions=ForceDirections(machine.layout, surface.pair.mean_radius, zeros))
 
 
 def posed_machine(machine: Machine, surface: PoseSurface) -> Machine:
-    """The machine with the poses that its own mean torques make. Raises what `operating_pose` raises."""
+    """Return the machine with the poses that its own mean torques make.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine as assembled.
+    surface : PoseSurface
+        Contact over the pose.
+
+    Returns
+    -------
+    Machine
+        The machine at its pose.
+
+    Raises
+    ------
+    InvalidInput, NotConverged
+        As `operating_pose`.
+    """
     return operating_pose(machine, surface).machine
 
 
@@ -131,19 +186,42 @@ def pose_at(
     load: float | None = None,
     ideal: bool = False,
 ) -> OperatingPose:
-    """The machine with the poses of an equilibrium, one step of `operating_pose`.
+    """Return the machine with the poses of an equilibrium, one step of `operating_pose`.
 
-    at_rest: of a `prepared` machine.
+    Parameters
+    ----------
+    machine : Machine
+        The machine as assembled.
+    surface : PoseSurface
+        Contact over the pose.
+    at_rest : Equilibria
+        Equilibrium of a machine of `with_ideal_directions`.
+    load : float or None
+        Torque at which all stiffnesses are taken whatever the meshes carry, N m; None for their own.
+    ideal : bool
+        Whether deflections and forces of the flanks keep to the normals of the ideal contact.
+
+    Returns
+    -------
+    OperatingPose
+        SI units.
+
+    Raises
+    ------
+    InvalidInput
+        For a pose outside the surface.
+    NotConverged
+        If the flanks of a mesh do not face each other.
     """
-    machine = prepared(machine, surface)
+    machine = with_ideal_directions(machine, surface)
     layout, names = machine.layout, machine.layout.mesh_names
     meshes = len(names)
-    forces = carried(at_rest.forces[0])
-    linear, moved = _whole(machine, at_rest)
-    poses = _poses(machine, surface, linear, moved)
-    carrying = np.arange(meshes) + meshes * (forces < 0.0)
+    forces = significant_forces(at_rest.forces[0])
+    linear, displacements = _whole(machine, at_rest)
+    poses = _poses(machine, surface, linear, displacements)
+    loaded_flanks = np.arange(meshes) + meshes * (forces < 0.0)
     contacts = unloaded_contacts(surface, poses, names)
-    path = np.array([contacts[flank].y for flank in carrying])
+    path = np.array([contacts[flank].y for flank in loaded_flanks])
     torque, angle = np.abs(forces) * layout.pinion_arm, poses.shaft_angle_error
     factor, energies = np.ones(meshes), []
     for mesh, name in enumerate(names):
@@ -151,47 +229,49 @@ def pose_at(
         surface.require(name, *at)
         if forces[mesh] != 0.0:
             factor[mesh] = _factor(machine, surface, mesh, at, bool(forces[mesh] < 0.0), load)
-        own = mesh_energy(surface, *at) if load is None else linear_energy(surface, load, *at)
-        energies.append(own.scaled(_scale(machine, surface, mesh)))
-    reactions = flank_reactions(surface, poses, contacts, energies, carrying)
-    closing = closing_beyond(machine, surface, poses, contacts)
+        energy_of_pair = mesh_energy(surface, *at) if load is None else linear_energy(surface, load, *at)
+        energies.append(energy_of_pair.with_stiffness_factor(_scale(machine, surface, mesh)))
+    reactions = flank_reactions(surface, poses, contacts, energies, loaded_flanks)
+    closure = closing_beyond(machine, surface, poses, contacts)
     slopes = force_slopes(surface, reactions, meshes)
     if ideal:
-        slopes, closing = np.zeros_like(slopes), np.zeros_like(closing)
+        slopes, closure = np.zeros_like(slopes), np.zeros_like(closure)
     lever = 0.0 if ideal else float(ideal_slopes(surface.pair)[2])
     directions = ForceDirections(layout, surface.pair.mean_radius, slopes, lever)
-    beyond = directions.beyond(linear) @ moved
+    beyond = directions.added_flank_rows(linear) @ displacements
     return OperatingPose(
-        machine=replace(_with(machine, factor, closing - beyond), directions=directions),
+        machine=replace(_with(machine, factor, closure - beyond), directions=directions),
         forces=forces,
         poses=poses,
         path=path,
         angle=angle,
         torque=torque,
         factor=factor,
-        closing=closing,
-        reactions=np.abs(forces)[:, None] * reactions[carrying],
-        stored=np.array([energy.stored for energy in energies]),
+        flank_closure=closure,
+        reactions=np.abs(forces)[:, None] * reactions[loaded_flanks],
+        energy=np.array([energy.energy for energy in energies]),
         steps=0,
         change=0.0,
     )
 
 
 def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
-    """The model at rest with the shafts of its pinions, and its displacements (n,)."""
-    resting, line = static(machine), machine.drive_line
-    if line is None or resting.drive_line is not None:
-        return resting.linear, at_rest.displacements[0]
-    moved = line.extended(machine.lumped, at_rest.displacements)[0]
-    return replace(resting, drive_line=line).linear, moved
+    """Return the model at rest with the shafts of its pinions, and its displacements (n,)."""
+    static_machine, line = static(machine), machine.drive_line
+    if line is None or static_machine.drive_line is not None:
+        return static_machine.linear, at_rest.displacements[0]
+    displacements = line.extend_displacements(machine.lumped_model, at_rest.displacements)[0]
+    return replace(static_machine, drive_line=line).linear, displacements
 
 
 def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displacements: Array) -> MeshPoses:
-    """Poses at the displacements, of pinions that stand where their bearings are, in the pair's assembly."""
-    nominal, moved = surface.nominal, displacements.copy()
+    """Return the poses at the displacements, of pinions that stand where their bearings are, in the pair's
+    assembly.
+    """
+    nominal, displacements_from_assembly = surface.nominal, displacements.copy()
     for pinion, position in enumerate(machine.imperfections.position):
-        moved[4 * pinion : 4 * pinion + 2] += position
-    motion = mesh_poses(linear, machine.layout, surface.pair.mean_radius, moved)
+        displacements_from_assembly[4 * pinion : 4 * pinion + 2] += position
+    motion = mesh_poses(linear, machine.layout, surface.pair.mean_radius, displacements_from_assembly)
     side = np.array([machine.layout.gears[g].sign for _, g in machine.layout.meshes])
     return MeshPoses(
         offset=motion.offset + side * nominal.offset,
@@ -209,20 +289,21 @@ def _factor(
     back: bool,
     load: float | None,
 ) -> float:
-    """On the stiffness of a mesh at its torque (N m), unloaded path (m) and error of the shaft angle (rad).
+    """Return the factor on the stiffness of a mesh at its torque (N m), unloaded path (m) and error of the
+    shaft angle (rad).
 
     load: torque (N m) at which the stiffnesses are taken, None for its own. Forces that follow the load are
-    all multiplied by it, and then lie at another level of their law: it is the factor with which the mesh
-    is pressed in at its load as the surface says.
+    all multiplied by the factor, and then lie at another level of their law: it is the factor with which the
+    mesh is pressed in at its load as the surface says.
     """
-    taken = at[0] if load is None else load
-    stiffness = surface.at(STIFFNESS, taken, *at[1:])
+    torque = at[0] if load is None else load
+    stiffness = surface.at(STIFFNESS, torque, *at[1:])
     if machine.tables is None:
         return stiffness / surface.reference_stiffness
-    rest, own = nominal_contact(machine, surface, mesh, back), machine.imperfections.stiffness[mesh]
+    rest, mesh_factor = nominal_contact(machine, surface, mesh, back), machine.imperfections.stiffness[mesh]
     factor = 1.0
     for _ in range(FACTOR_STEPS):
-        level = taken / (own * factor) if load is None else load
+        level = torque / (mesh_factor * factor) if load is None else load
         level = min(level, float(surface.nodes.torques[-1]))
         before, factor = factor, stiffness / surface.at(STIFFNESS, level, *rest)
         if abs(factor - before) < SAME_FACTOR:
@@ -231,15 +312,21 @@ def _factor(
 
 
 def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
-    """Stiffness of the machine's teeth over that of the surface."""
-    own = float(machine.imperfections.stiffness[mesh])
-    return own if machine.tables is not None else own * machine.stiffness.mean / surface.reference_stiffness
+    """Return the stiffness of the machine's teeth over that of the surface."""
+    mesh_factor = float(machine.imperfections.stiffness[mesh])
+    return (
+        mesh_factor
+        if machine.tables is not None
+        else mesh_factor * machine.stiffness.mean / surface.reference_stiffness
+    )
 
 
-def _with(machine: Machine, factor: Array, closing: Array) -> Machine:
-    """The machine with a factor on the stiffness of each mesh, and flanks closed by `closing` (2 meshes,)."""
+def _with(machine: Machine, factor: Array, closure: Array) -> Machine:
+    """Return the machine with a factor on the stiffness of each mesh, and flanks closed by `closure` (2
+    meshes,).
+    """
     flaws = machine.imperfections
-    drive, back = np.split(closing, 2)
+    drive, back = np.split(closure, 2)
     return replace(
         machine,
         half_backlash=machine.half_backlash - 0.5 * (drive + back),

@@ -17,6 +17,7 @@ from facegear.transmission.layout import DOF_PER_BODY, TILT_LETTERS, Layout
 from facegear.transmission.linear_model import LinearModel
 
 PARTS = ("offset", "axial_shift", "shaft_angle_error", "outward")
+"""Parts of a pose, in the order of rows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +33,21 @@ class MeshPoses:
     outward: Array
 
     def errors(self, mesh: int, back: bool = False) -> AssemblyErrors:
-        """What a flank of a mesh meets, as errors of a drive flank; of a single pose of every mesh."""
+        """Return the assembly errors that a flank of a mesh meets, as errors of a drive flank; for a single
+        pose of every mesh.
+
+        Parameters
+        ----------
+        mesh : int
+            Index of the mesh.
+        back : bool
+            Whether it is the back flank.
+
+        Returns
+        -------
+        AssemblyErrors
+            m and rad.
+        """
         offset = float(self.offset[mesh])
         return AssemblyErrors(
             offset=-offset if back else offset,
@@ -42,23 +57,51 @@ class MeshPoses:
 
 
 def mesh_poses(linear: LinearModel, layout: Layout, mean_radius: float, displacements: Array) -> MeshPoses:
-    """Poses at displacements (..., n) of the linear model's coordinates.
+    """Return the poses at displacements of the linear model's coordinates.
 
-    mean_radius: where the middle of the pinion's face is on its axis, m.
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    layout : Layout
+        Bodies and mesh geometry.
+    mean_radius : float
+        Position of the middle of the pinion's face on its axis, m.
+    displacements : (..., n) array
+        m and rad.
+
+    Returns
+    -------
+    MeshPoses
+        Each part (..., meshes), m and rad.
     """
     return MeshPoses(*(displacements @ part.T for part in pose_rows(linear, layout, mean_radius)))
 
 
 def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
-    """Derivatives of PARTS by the coordinates, (4, meshes, n).
+    """Return the derivatives of PARTS by the coordinates.
 
     Tilts of a pinion count where the model has coordinates `tilt_x`, `tilt_y` of it, in the machine's frame
     at the pinion. Coordinates of gears that bend lift the teeth, a shift along the axis, and lean them with
     the rim below the mesh: by its slope along the radius about the tangent, by that round the axis about the
     line through the pitch point that is parallel to the pinion's axis, which is an offset as well.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    layout : Layout
+        Bodies and mesh geometry.
+    mean_radius : float
+        Position of the middle of the pinion's face on its axis, m.
+
+    Returns
+    -------
+    (4, meshes, n) array
+        m and rad for a unit of each coordinate.
     """
     offset, shift, angle, outward = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
-    numbered = {label: number for number, label in enumerate(linear.labels)}
+    number_of_label = {label: number for number, label in enumerate(linear.labels)}
     for mesh, (i, g) in enumerate(layout.meshes):
         side, at = layout.gears[g].sign, layout.angles[i]
         tangent = np.array([np.cos(at), np.sin(at)])
@@ -68,7 +111,9 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
         offset[mesh, gear : gear + 2] = -side * tangent
         shift[mesh, gear + 2] = side
         outward[mesh, gear : gear + 2] = -away
-        leaning, yawing = (numbered.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS)
+        leaning, yawing = (
+            number_of_label.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS
+        )
         if leaning is not None and yawing is not None:
             angle[mesh, leaning] = side
             offset[mesh, yawing] = -side * mean_radius
@@ -89,20 +134,37 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
 
 
 def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
-    """Part of the error of the shaft angle that the slopes of rims that bend make, (meshes, n)."""
+    """Return the part of the error of the shaft angle that the slopes of rims that bend make.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    layout : Layout
+        Bodies and mesh geometry.
+
+    Returns
+    -------
+    (meshes, n) array
+        rad for a unit of each coordinate.
+    """
     if linear.slopes is None:
         return np.zeros((len(layout.meshes), linear.size))
     return -linear.slopes[0]
 
 
 def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
-    """Lift of the teeth by coordinates of gears that bend, from what the flanks' deflections have of it."""
+    """Add the lift of the teeth by coordinates of gears that bend, from the flanks' deflections, to
+    `shift`.
+    """
     gears = {gear.name for gear in layout.gears}
-    added = [
+    elastic_coordinates = [
         number
         for number, label in enumerate(linear.labels)
         if number >= layout.dof and label.rpartition(":")[0] in gears
     ]
     meshes = len(layout.meshes)
-    separating = 0.5 * (linear.rows[:meshes, added] + linear.rows[meshes : 2 * meshes, added])
-    shift[:, added] = -separating / np.sin(layout.pressure_angle)
+    separating_motion = 0.5 * (
+        linear.rows[:meshes, elastic_coordinates] + linear.rows[meshes : 2 * meshes, elastic_coordinates]
+    )
+    shift[:, elastic_coordinates] = -separating_motion / np.sin(layout.pressure_angle)

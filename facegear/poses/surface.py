@@ -20,6 +20,7 @@ from facegear.geometry.conjugate import PairNumbers, contact_at, offset_for
 from facegear.geometry.design import AssemblyErrors
 
 STIFFNESS, RADIUS = "stiffness_n_per_m", "path_radius_m"
+"""Names of two of the QUANTITIES."""
 QUANTITIES = (
     STIFFNESS,
     "ste_peak_to_peak_m",
@@ -47,19 +48,35 @@ SURFACE_ARRAYS = {
     STIFFNESS: (None, None, None),
     RADIUS: (None, None, None),
 }
-"""What is stored; quantities beside these are there where they are known."""
+"""Arrays of a surface with their shapes; quantities beside these are stored where they are known."""
 
 
 @dataclass(frozen=True, eq=False)
 class Nodes:
-    """Where contact is solved: angles (a,) rad, paths (y,) m, torques (t,) N m."""
+    """Nodes at which contact is solved: angles (a,) rad, paths (y,) m, torques (t,) N m."""
 
     angles: Array
     paths: Array
     torques: Array
 
     def assemblies(self, pair: PairNumbers) -> list[AssemblyErrors]:
-        """Errors of all angles and, within each, of all paths, by offsets alone."""
+        """Return the assembly errors of all angles and, within each, of all paths, by offsets alone.
+
+        Parameters
+        ----------
+        pair : PairNumbers
+            Numbers of the pair.
+
+        Returns
+        -------
+        list of AssemblyErrors
+            Angles times paths entries, m and rad.
+
+        Raises
+        ------
+        InvalidInput
+            For a path that the pair cannot have.
+        """
         assemblies = []
         for angle in self.angles.tolist():
             for path in self.paths.tolist():
@@ -74,14 +91,32 @@ class Nodes:
 
 
 def surface_nodes(pair: PairNumbers, nominal: AssemblyErrors, largest: float, tilting: bool) -> Nodes:
-    """Nodes of a pair about its nominal assembly, up to a torque `largest` (N m).
+    """Return the nodes of a pair about its nominal assembly, up to a largest torque.
 
-    tilting: whether the error of the shaft angle may change. Raises InvalidInput for a pair whose flanks
-    touch along lines.
+    Parameters
+    ----------
+    pair : PairNumbers
+        Numbers of the pair.
+    nominal : AssemblyErrors
+        Its assembly errors.
+    largest : float
+        Largest torque, N m.
+    tilting : bool
+        Whether the error of the shaft angle may change.
+
+    Returns
+    -------
+    Nodes
+        rad, m and N m.
+
+    Raises
+    ------
+    InvalidInput
+        For a pair whose flanks touch along lines.
     """
     if pair.shaper_lift <= 0.0:
-        allowed = "more than the pinion's for poses: flanks that touch along lines meet them with edges"
-        raise InvalidInput("teeth of the shaper", int(pair.pinion_teeth), allowed)
+        requirement = "more than the pinion's for poses: flanks that touch along lines meet them with edges"
+        raise InvalidInput("teeth of the shaper", int(pair.pinion_teeth), requirement)
     at_rest = contact_at(pair, nominal)
     width = pair.last_end - pair.first_end
     middle = pair.mean_radius if at_rest is None else at_rest.y
@@ -102,7 +137,7 @@ class PoseSurface:
     Attributes
     ----------
     pair
-        What the closed form of the unloaded contact needs.
+        Numbers of the pair, for the closed form of the unloaded contact.
     nominal
         Assembly errors that the machine's own mesh stiffness was computed with.
     nodes
@@ -110,7 +145,7 @@ class PoseSurface:
     values
         By their names in QUANTITIES; those that are not known are left out.
     reference_torque
-        At which the machine takes a mesh stiffness that does not depend on the load (N m).
+        Torque at which the machine takes a mesh stiffness that does not depend on the load (N m).
     """
 
     pair: PairNumbers
@@ -121,7 +156,7 @@ class PoseSurface:
 
     @property
     def arrays(self) -> dict[str, Array]:
-        """As SURFACE_ARRAYS."""
+        """Arrays of the surface, as SURFACE_ARRAYS."""
         errors = self.nominal
         return {
             "pair": self.pair.array,
@@ -135,7 +170,18 @@ class PoseSurface:
 
     @classmethod
     def of_arrays(cls, arrays: Arrays) -> Self:
-        """From what `arrays` gives."""
+        """Read a surface from what `arrays` gives.
+
+        Parameters
+        ----------
+        arrays : Arrays
+            Arrays by name.
+
+        Returns
+        -------
+        Self
+            SI units.
+        """
         return cls(
             pair=PairNumbers.of_array(arrays["pair"]),
             nominal=AssemblyErrors(*(float(value) for value in arrays["errors"])),
@@ -145,10 +191,26 @@ class PoseSurface:
         )
 
     def at(self, quantity: str, torque: float, path: float, angle: float) -> float:
-        """A quantity at a torque (N m), unloaded path (m) and error of the shaft angle (rad), within nodes.
+        """Return a quantity within the nodes.
 
         Below the smallest torque the stiffness goes on as the power of the load that it has there, and all
         else is what it is at that torque.
+
+        Parameters
+        ----------
+        quantity : str
+            Name from QUANTITIES.
+        torque : float
+            Torque on the pinion, N m.
+        path : float
+            Unloaded path, m.
+        angle : float
+            Error of the shaft angle, rad.
+
+        Returns
+        -------
+        float
+            In the unit of the quantity: N/m, m or Pa.
         """
         nodes = self.nodes
         light = min(float(np.log(torque / nodes.torques[0])), 0.0)
@@ -160,9 +222,19 @@ class PoseSurface:
         return value if quantity == RADIUS else float(np.exp(value))
 
     def torque_weights(self, logs: Array | float, order: int = 0) -> Array:
-        """What values at all torques count for at logarithms (...) of torques, (..., torques), by splines.
+        """Return the weights of the values at all torques, by splines over the logarithm of the torque.
 
-        order: 1 for the slope there.
+        Parameters
+        ----------
+        logs : array of any shape (...) or float
+            Logarithms of torques in N m, dimensionless.
+        order : int
+            0 for the value there, 1 for the slope.
+
+        Returns
+        -------
+        (..., torques) array
+            Dimensionless factors.
         """
         return np.asarray(self._torque_spline(logs, order))
 
@@ -174,7 +246,20 @@ class PoseSurface:
         return self.at(STIFFNESS, self.reference_torque, contact.y, self.nominal.shaft_angle_error)
 
     def stiffness_logs(self, path: float, angle: float) -> Array:
-        """Logarithm of the stiffness at all torques, and its derivatives by path and angle, (3, torques)."""
+        """Return the logarithm of the stiffness at all torques, and its derivatives by path and angle.
+
+        Parameters
+        ----------
+        path : float
+            Unloaded path, m.
+        angle : float
+            Error of the shaft angle, rad.
+
+        Returns
+        -------
+        (3, torques) array
+            Logarithm of N/m, and derivatives in 1/m and 1/rad.
+        """
         angles, spline = self.nodes.angles, self._splines[STIFFNESS]
         logs, by_path = spline(path), spline(path, 1)
         if angles.size == 1:
@@ -188,28 +273,53 @@ class PoseSurface:
         return np.stack([weights @ logs[between], weights @ by_path[between], risen])
 
     def require(self, mesh: str, torque: float, path: float, angle: float) -> None:
-        """Raise InvalidInput, naming the mesh, for a pose outside the nodes."""
+        """Raise InvalidInput, naming the mesh, for a pose outside the nodes.
+
+        Parameters
+        ----------
+        mesh : str
+            Name of the mesh.
+        torque : float
+            Torque on the pinion, N m.
+        path : float
+            Unloaded path, m.
+        angle : float
+            Error of the shaft angle, rad.
+        """
         nodes = self.nodes
-        for quantity, value, known, unit in (
+        for quantity, value, range_of_nodes, unit in (
             ("path of the contact", 1e3 * path, 1e3 * nodes.paths, "mm"),
             ("error of the shaft angle", np.degrees(angle), np.degrees(nodes.angles), "deg"),
             ("torque", torque, np.append(0.0, nodes.torques[-1]), "N m"),
         ):
-            low, high = float(known[0]), float(known[-1])
+            low, high = float(range_of_nodes[0]), float(range_of_nodes[-1])
             if not low - 1e-9 <= value <= high + 1e-9:
-                allowed = (
+                requirement = (
                     f"within {low:.6g} to {high:.6g} {unit} of the poses solved: nothing is extrapolated"
                 )
-                raise InvalidInput(f"{quantity} of mesh {mesh}", f"{value:.6g} {unit}", allowed)
+                raise InvalidInput(f"{quantity} of mesh {mesh}", f"{value:.6g} {unit}", requirement)
 
     def left_out(self, quantity: str) -> dict[str, Array]:
-        """Errors at inner nodes of `path` and `torque` if each had not been solved.
+        """Return the errors at inner nodes of `path` and `torque` if each had not been solved.
 
-        Relative; of the path's radius m. They belong to twice the distance of the nodes, and bound the error.
+        They belong to twice the distance of the nodes, and bound the error.
+
+        Parameters
+        ----------
+        quantity : str
+            Name from QUANTITIES.
+
+        Returns
+        -------
+        dict of str to (angles, paths, torques) array without outer nodes
+            Relative; of the path's radius in m.
         """
         logs = self._logs(quantity)
         over = {"path": (1, self.nodes.paths), "torque": (2, np.log(self.nodes.torques))}
-        return {name: _left_out(places, np.moveaxis(logs, axis, 0)) for name, (axis, places) in over.items()}
+        return {
+            name: _left_out(node_coordinates, np.moveaxis(logs, axis, 0))
+            for name, (axis, node_coordinates) in over.items()
+        }
 
     def _logs(self, quantity: str) -> Array:
         values = self.values[quantity]
@@ -228,10 +338,10 @@ class PoseSurface:
         }
 
 
-def _left_out(places: Array, values: Array) -> Array:
-    """What splines over all other places miss at each inner one."""
-    missed = []
-    for inner in range(1, len(places) - 1):
-        fewer = scipy.interpolate.CubicSpline(np.delete(places, inner), np.delete(values, inner, axis=0))
-        missed.append(fewer(places[inner]) - values[inner])
-    return np.array(missed)
+def _left_out(coordinates: Array, values: Array) -> Array:
+    """Return the error of splines over all other nodes at each inner one."""
+    errors = []
+    for inner in range(1, len(coordinates) - 1):
+        fewer = scipy.interpolate.CubicSpline(np.delete(coordinates, inner), np.delete(values, inner, axis=0))
+        errors.append(fewer(coordinates[inner]) - values[inner])
+    return np.array(errors)

@@ -1,1 +1,1 @@
-"""What made an output: versions, config slice, fingerprint of the code, machine, time, seed."""
+"""Record of what made an output: versions, config slice, fingerprint of the code, machine, time, seed."""

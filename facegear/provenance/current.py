@@ -23,8 +23,8 @@ def current_manifest(
     if manifest is None:
         return None
     try:
-        wanted = needs(manifest["rule"])
-        if wanted is None or manifest["params"].get("needs") != wanted:
+        current_needs = needs(manifest["rule"])
+        if current_needs is None or manifest["params"].get("needs") != current_needs:
             return None
         if code(manifest["rule"]) not in manifest["code"].split("."):
             return None
@@ -32,11 +32,15 @@ def current_manifest(
     except (KeyError, TypeError, AttributeError):
         return None
     try:
-        same = all(name.is_file() and sha256(name) == digest for name, digest in inputs.items())
+        are_inputs_current = all(name.is_file() and sha256(name) == digest for name, digest in inputs.items())
     except OSError:
         return None
-    made = [name for name in inputs if same and _manifest(name) is not None]
-    return manifest if same and all(current_manifest(name, needs, code) for name in made) else None
+    made_inputs = [name for name in inputs if are_inputs_current and _manifest(name) is not None]
+    return (
+        manifest
+        if are_inputs_current and all(current_manifest(name, needs, code) for name in made_inputs)
+        else None
+    )
 
 
 def _manifest(path: Path) -> Manifest | None:

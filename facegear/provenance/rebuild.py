@@ -24,17 +24,17 @@ def rebuild_command(
     `--config`.
     """
     folder = Path.cwd()
-    shown = os.path.relpath if directory is None else os.path.abspath
+    path_text = os.path.relpath if directory is None else os.path.abspath
     words = ["snakemake", "--cores", "2"]
     if directory is not None or not any(
         (folder / name).is_file() and os.path.samefile(folder / name, snakefile)
         for name in DEFAULT_SNAKEFILES
     ):
-        words += ["--snakefile", shown(snakefile)]
+        words += ["--snakefile", path_text(snakefile)]
     if directory is not None:
         words += ["--directory", str(folder)]
     if configfiles:
-        words += ["--configfile", *(shown(file) for file in configfiles)]
+        words += ["--configfile", *(path_text(file) for file in configfiles)]
     if config:
         words += ["--config", *(f"{key}={_plain(value)}" for key, value in config.items())]
     return shlex.join([*words, "--force"])

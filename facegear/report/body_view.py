@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Integers
-from facegear.report.page import View, encoded
+from facegear.report.page import View, encode_array
 from facegear.report.pair_view import COLOURS
 
 TURN_DEG, PIECES = 5.0, 100
@@ -27,18 +27,18 @@ def body_view(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> View | Non
     """
     gears: dict[str, dict[str, Any]] = {}
     for name in dict.fromkeys(modes["gear"]):
-        own = _gear(str(name), modes[modes["gear"] == name], shapes)
-        same = next((key for key, other in gears.items() if own == other), None)
-        if same is not None:
-            own = gears.pop(same)
-        gears[f"{same} and {name}" if same else str(name)] = own
-    listed = [{"gear": gear, **mode} for gear, body in gears.items() for mode in body["modes"]]
-    if not listed:
+        gear_view = _gear(str(name), modes[modes["gear"] == name], shapes)
+        equal_gear = next((key for key, other_gear in gears.items() if gear_view == other_gear), None)
+        if equal_gear is not None:
+            gear_view = gears.pop(equal_gear)
+        gears[f"{equal_gear} and {name}" if equal_gear else str(name)] = gear_view
+    mode_records = [{"gear": gear, **mode} for gear, body in gears.items() for mode in body["modes"]]
+    if not mode_records:
         return None
     radius = max(body["radius"] for body in gears.values())
     data = {
         "gears": {gear: {"points": body["points"]} for gear, body in gears.items()},
-        "modes": listed,
+        "modes": mode_records,
         "size": radius,
         "swing": SWING * radius,
         "factor": FACTOR,
@@ -57,22 +57,22 @@ def _gear(gear: str, modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> dic
     nodes, quads = 1e3 * shapes[f"{gear}_nodes"], shapes[f"{gear}_quads"]
     outline = _thinned(nodes, boundary(quads))
     frequencies = modes.set_index(["nodal_diameters", "mode"])["frequency_hz"]
-    listed = []
+    mode_records = []
     for (order, number), shape in zip(shapes[f"{gear}_labels"], shapes[f"{gear}_shapes"], strict=True):
-        moved = shape[outline]
-        coded = np.round(LARGEST_CODE * moved / np.linalg.norm(moved, axis=1).max())
-        listed.append(
+        displacements = shape[outline]
+        coded = np.round(LARGEST_CODE * displacements / np.linalg.norm(displacements, axis=1).max())
+        mode_records.append(
             {
                 "order": int(order),
                 "number": int(number),
                 "frequency_hz": round(float(frequencies[int(order), int(number)]), 1),
-                "shape": encoded(coded, np.int16),
+                "shape": encode_array(coded, np.int16),
             }
         )
     return {
-        "points": encoded(nodes[outline], np.float32),
+        "points": encode_array(nodes[outline], np.float32),
         "radius": float(nodes[:, 0].max()),
-        "modes": listed,
+        "modes": mode_records,
     }
 
 
@@ -86,24 +86,24 @@ def boundary(quads: AnyArray) -> Integers:
         beside.setdefault(second, []).append(first)
     start = next(iter(beside))
     along, before = [start], -1
-    while (node := next(other for other in beside[along[-1]] if other != before)) != start:
+    while (node := next(neighbour for neighbour in beside[along[-1]] if neighbour != before)) != start:
         before = along[-1]
         along.append(node)
     return np.array(along)
 
 
 def _thinned(nodes: Array, along: Integers) -> Integers:
-    """Of the nodes along an outline those at its corners, and enough between them."""
-    places = nodes[along]
-    after = np.roll(places, -1, axis=0) - places
+    """Return the nodes along an outline at its corners, and enough between them."""
+    positions = nodes[along]
+    after = np.roll(positions, -1, axis=0) - positions
     steps = np.linalg.norm(after, axis=1)
     directions = np.unwrap(np.arctan2(after[:, 1], after[:, 0]))
     turns = np.abs(np.diff(directions, prepend=directions[-1]))
-    turned = np.minimum(turns % (2.0 * np.pi), 2.0 * np.pi - turns % (2.0 * np.pi)) > np.radians(TURN_DEG)
-    spacing, passed, kept = steps.sum() / PIECES, np.inf, []
+    is_corner = np.minimum(turns % (2.0 * np.pi), 2.0 * np.pi - turns % (2.0 * np.pi)) > np.radians(TURN_DEG)
+    spacing, distance, kept_nodes = steps.sum() / PIECES, np.inf, []
     for number in range(along.size):
-        if turned[number] or passed >= spacing:
-            kept.append(number)
-            passed = 0.0
-        passed += steps[number]
-    return along[np.array(kept)]
+        if is_corner[number] or distance >= spacing:
+            kept_nodes.append(number)
+            distance = 0.0
+        distance += steps[number]
+    return along[np.array(kept_nodes)]

@@ -1,4 +1,4 @@
-"""What the report of a case holds, from the machine as configured to what made each file."""
+"""Report of a case, from the machine as configured to the record of each file."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -53,7 +53,7 @@ SHAFT_TABLES = {
     "shafts_torsion": "Masses behind torsional springs: twist of the spring, of all before it as well "
     "(windup), and natural frequencies of the chain with its gear free",
 }
-FOLLOWING = (
+FOLLOWING_TITLE = (
     "The running machine, followed while its runouts turn, beside the machine at rest. k_gamma: the largest "
     "mean of a mesh cycle over the nominal even share, running; k_v: the largest load over that "
     "mean; static: "
@@ -178,30 +178,37 @@ def case_report(
     Chapters without a picture or table are left out.
     """
     tables = {name: table.reset_index(drop=True) for name, table in tables.items()}  # parts keep their rows
-    known = {name for _, _, names in CHAPTERS for name in names}
-    others = [name for name in pictures if name not in known and name not in DRAWINGS]
-    studied = [name for name in others if name.startswith("contact_")]
-    added = {STUDIED_CONTACT: studied, SHARING: [name for name in others if name not in studied]}
+    listed_names = {name for _, _, names in CHAPTERS for name in names}
+    other_names = [name for name in pictures if name not in listed_names and name not in DRAWINGS]
+    contact_names = [name for name in other_names if name.startswith("contact_")]
+    added_pictures = {
+        STUDIED_CONTACT: contact_names,
+        SHARING: [name for name in other_names if name not in contact_names],
+    }
     drawing = next((name for name in DRAWINGS if name in pictures), None)
-    drawn = () if drawing is None else (Picture(pictures[drawing], caption_of(drawing, values)),)
-    chapters = [machine_chapter(values, tables, pair, drawn, base)]
+    chapter_drawings = () if drawing is None else (Picture(pictures[drawing], caption_of(drawing, values)),)
+    chapters = [machine_chapter(values, tables, pair, chapter_drawings, base)]
     for title, text, names in CHAPTERS:
-        shown = [*names, *added.get(title, ())]
+        picture_names = [*names, *added_pictures.get(title, ())]
         shown_pictures = [
             Picture(pictures[name], caption_of(name, values))
-            for name in shown
+            for name in picture_names
             if name in pictures and name not in (drawing, "machine")
         ]
-        own = _tables(title, with_study_titles(tables, values["studies"]), values["dynamics"]["speed_rpm"])
-        seen = {"Loaded contact": view, "Modes": bodies}.get(title)
-        said = pose_text(tables) if title == POSES else ""
+        chapter_tables = _tables(
+            title, with_study_titles(tables, values["studies"]), values["dynamics"]["speed_rpm"]
+        )
+        chapter_view = {"Loaded contact": view, "Modes": bodies}.get(title)
+        chapter_text = pose_text(tables) if title == POSES else ""
         if title == SHARING_MAP:
-            said = sharing_map_text(tables)
+            chapter_text = sharing_map_text(tables)
         if title == SHARING and values["transmission"] is not None:
             published = any(study["figures"] is not None for study in values["studies"])
-            said = f"{inputs_caption(values, published)}."
-        if shown_pictures or own or seen:
-            chapters.append(Chapter(title, f"{text}\n\n{said}", shown_pictures, own, seen))
+            chapter_text = f"{inputs_caption(values, published)}."
+        if shown_pictures or chapter_tables or chapter_view:
+            chapters.append(
+                Chapter(title, f"{text}\n\n{chapter_text}", shown_pictures, chapter_tables, chapter_view)
+            )
     if "scorecard" in tables:
         chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))
@@ -237,14 +244,25 @@ def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> s
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
-    """One row a frequency: modes (with how many share it), frequency_hz, what moves, class."""
+    """Tabulate the modes by frequency.
+
+    Parameters
+    ----------
+    frequencies : pd.DataFrame
+        Table `frequencies` of stage modal.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each frequency: modes (with how many share it), frequency_hz, what moves, class.
+    """
     rows, first = [], 0
     while first < len(frequencies):
         mode = frequencies.iloc[first]
         count = int(mode["multiplicity"])
-        which = str(mode["order"]) if count == 1 else f"{mode['order']} to {mode['order'] + count - 1}"
+        order_text = str(mode["order"]) if count == 1 else f"{mode['order']} to {mode['order'] + count - 1}"
         times = "" if count == 1 else f"x {count}"
-        rows.append((which, times, mode["frequency_hz"], mode["symbols"], mode["class"]))
+        rows.append((order_text, times, mode["frequency_hz"], mode["symbols"], mode["class"]))
         first += count
     return pd.DataFrame(rows, columns=["modes", "times", "frequency_hz", "what_moves", "class"])
 
@@ -283,43 +301,43 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
     if title == STUDIED_CONTACT and "studies" in tables:
         return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS])]
     if title == "Strength" and "root_stress" in tables:
-        rated = _rated(tables) if "rating" in tables else []
-        moving = (
+        rating_tables = _rating_tables(tables) if "rating" in tables else []
+        running_tables = (
             [Table(DYNAMIC, tables["dynamic_stress"], main=DYNAMIC_SHOWN)]
             if "dynamic_stress" in tables
             else []
         )
-        moving += _over_speed(tables, speed_rpm)
-        return [*rated, *moving, Table(ROOT_STRESS, tables["root_stress"])]
+        running_tables += _over_speed(tables, speed_rpm)
+        return [*rating_tables, *running_tables, Table(ROOT_STRESS, tables["root_stress"])]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4])]
     if title == "Modes" and "frequencies" in tables:
-        held = [Table(MODE_CONTACTS, tables["contacts"])] if "contacts" in tables else []
+        contact_tables = [Table(MODE_CONTACTS, tables["contacts"])] if "contacts" in tables else []
         rows = mode_rows(tables["frequencies"])
         words = "Natural frequencies; equal ones share a row"
-        return [*held, Table(words, rows, is_folded=len(rows) > LONG_TABLE)]
+        return [*contact_tables, Table(words, rows, is_folded=len(rows) > LONG_TABLE)]
     if title == POSES:
         return pose_tables(tables)
     if title == SHARING_MAP:
         return sharing_map_tables(tables)
     if title == SHAFTS:
-        listed = [Table(words, tables[name]) for name, words in SHAFT_TABLES.items() if name in tables]
-        return [table for table in listed if len(table.frame)]
+        shaft_tables = [Table(words, tables[name]) for name, words in SHAFT_TABLES.items() if name in tables]
+        return [table for table in shaft_tables if len(table.frame)]
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, bearing_reactions(tables["bearings"]))] if "bearings" in tables else []
         return [*bearings, *_jumps(tables)]
     if title == "Load sharing at rest" and "following_groups" in tables:
-        return [Table(FOLLOWING, tables["following_groups"], main=FOLLOWING_SHOWN)]
+        return [Table(FOLLOWING_TITLE, tables["following_groups"], main=FOLLOWING_SHOWN)]
     if title == "Tolerances" and "percentiles" in tables:
         limits = Table("Percentiles with their confidence intervals", tables["percentiles"])
         fractions = Table("Fraction of the samples for which each statement holds", tables["fractions"])
-        missed = Table(
+        sampling_table = Table(
             "Error from taking only some of the mesh cycles: relative; of fractions and temperatures "
             "the difference",
             tables["sampling"],
             2,
         )
-        return [limits, fractions, *([] if tables["sampling"].empty else [missed])]
+        return [limits, fractions, *([] if tables["sampling"].empty else [sampling_table])]
     if title == SHARING and "summary" in tables:
         columns = [
             "study",
@@ -336,37 +354,40 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
     return []
 
 
-def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    shown = tables["safety"].dropna(axis="columns", how="all")
-    listed = [Table(SAFETY, shown, main=SAFETY_SHOWN), Table(RATING, tables["rating"], is_folded=True)]
+def _rating_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    safety_table = tables["safety"].dropna(axis="columns", how="all")
+    report_tables = [
+        Table(SAFETY, safety_table, main=SAFETY_SHOWN),
+        Table(RATING, tables["rating"], is_folded=True),
+    ]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
         hardest = first_largest_rows(loads, "largest_force_n", ["bin"], sort=True)
-        listed += [Table(DUTY_LOADS, hardest), Table(EVERY_LOAD, loads, is_folded=True)]
-    return listed
+        report_tables += [Table(DUTY_LOADS, hardest), Table(EVERY_LOAD, loads, is_folded=True)]
+    return report_tables
 
 
 def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    shown = tables["friction"].dropna(axis="columns", how="all")
-    sources = shown.pop(SOURCE).dropna().unique() if SOURCE in shown else []
+    friction_table = tables["friction"].dropna(axis="columns", how="all")
+    sources = friction_table.pop(SOURCE).dropna().unique() if SOURCE in friction_table else []
     title = ". Allowed contact temperature: ".join(["One mesh at the nominal speed, by torque", *sources])
-    listed = [Table(title, shown)]
+    report_tables = [Table(title, friction_table)]
     if "machine_loss" in tables:
         whole, meshes = (
             bins_in_words(tables[name].dropna(axis="columns", how="all"))
             for name in ("machine_loss", "mesh_losses")
         )
-        listed = [
+        report_tables = [
             Table(LOSSES, whole),
-            *listed,
+            *report_tables,
             Table("Every loaded flank", meshes, is_folded=True),
             Table("Heat of every body", tables["body_heat"], is_folded=True),
         ]
     if "friction_studies" in tables:
-        listed.append(Table("The studies' cases side by side", tables["friction_studies"]))
+        report_tables.append(Table("The studies' cases side by side", tables["friction_studies"]))
     limits = tables["limits"]
     return [
-        *listed,
+        *report_tables,
         Table(
             "Fraction of the loss that lies outside the limits of the friction model",
             limits,
@@ -399,8 +420,8 @@ def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Ta
     table = tables["stress_over_speed"]
     nearest = table["speed_rpm"].iloc[(table["speed_rpm"] - speed_rpm).abs().argmin()]
     hardest = first_largest_rows(table, "largest_force_n", ["motion"])
-    shown = pd.concat([table[table["speed_rpm"] == nearest], hardest]).drop_duplicates()
-    return [Table(OVER_SPEED, shown, main=OVER_SPEED_SHOWN)]
+    speed_rows = pd.concat([table[table["speed_rpm"] == nearest], hardest]).drop_duplicates()
+    return [Table(OVER_SPEED, speed_rows, main=OVER_SPEED_SHOWN)]
 
 
 def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
@@ -411,12 +432,12 @@ def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     linear = jumps["resonance_rpm"].astype(float)
     away = (jumps["speed_before_rpm"].astype(float) / linear - 1.0).abs()
     columns = ["direction", "kind", "speed_before_rpm", "error_rpm", "mesh", "class_before", "class_after"]
-    shown = jumps[columns].assign(
+    jump_rows = jumps[columns].assign(
         moves_most=jumps["resonance"],
         energy_fraction=jumps["energy_fraction"],
         linear_resonance_rpm=linear.where(away <= NEAR_RESONANCE),
     )
-    return [Table(JUMPS, shown)]
+    return [Table(JUMPS, jump_rows)]
 
 
 def _scorecard(frame: pd.DataFrame) -> Chapter:
@@ -465,8 +486,8 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
             ("largest torque imbalance of all contacts, relative", tables["ltca"]["torque_residual"].max())
         )
     if "harmonics" in tables:
-        kept = tables["harmonics"].iloc[-1]
-        left_out = 1e-6 * kept["truncation_error_n_per_m"]
+        last_order = tables["harmonics"].iloc[-1]
+        left_out = 1e-6 * last_order["truncation_error_n_per_m"]
         rows.append(("stiffness left out by the truncated series (N/µm)", left_out))
     if "summary" in tables:
         rows.append(("widest 95 % half-width of a load-sharing mean", tables["summary"]["half_width"].max()))
@@ -481,13 +502,13 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
 
 def _provenance(manifests: Sequence[Mapping[str, Any]]) -> Chapter:
     columns = ["rule", "summary", "seconds", "made_at", "code"]
-    computed = [manifest for manifest in manifests if not manifest["rule"].endswith("_figures")]
-    rows = [{name: manifest.get(name) for name in columns} for manifest in computed]
+    stage_manifests = [manifest for manifest in manifests if not manifest["rule"].endswith("_figures")]
+    rows = [{name: manifest.get(name) for name in columns} for manifest in stage_manifests]
     frame = pd.DataFrame(rows, columns=columns)
     versions = dict(sorted({item for manifest in manifests for item in manifest["versions"].items()}))
     text = (
         "Each output has a manifest beside it with versions, config slice, code fingerprint and checksums. "
         "Figures are drawn from these outputs alone; their own manifests are not listed."
     )
-    stored = pd.DataFrame(list(versions.items()), columns=["library", "version"])
-    return Chapter("Provenance", text, (), [Table("Rules", frame), Table("Versions", stored)])
+    version_table = pd.DataFrame(list(versions.items()), columns=["library", "version"])
+    return Chapter("Provenance", text, (), [Table("Rules", frame), Table("Versions", version_table)])

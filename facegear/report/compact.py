@@ -113,7 +113,7 @@ def pattern_picture(arrays: Arrays | None, torque: float | None) -> Compact | No
     torques = np.array(sorted(passage_map.pressure))
     enough = torques[torques >= (torques[-1] if torque is None else 0.999 * torque)]
     torque_shown = float(enough[0] if enough.size else torques[-1])
-    pressure, edge_kind = passage_map.pressure[torque_shown], passage_map.where[torque_shown]
+    pressure, edge_kind = passage_map.pressure[torque_shown], passage_map.edge[torque_shown]
     width, height = (
         1e3 * passage_map.points[..., 1],
         1e3 * np.hypot(passage_map.points[..., 0], passage_map.points[..., 2]),

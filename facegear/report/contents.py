@@ -92,7 +92,21 @@ KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions"}
 
 
 def caption_of(name: str, values: Mapping[str, Any]) -> str:
-    """Caption of a figure by content; the paper's number goes before it where the config reproduces one."""
+    """Return the caption of a figure by content; the paper's number goes before it where the config
+    reproduces one.
+
+    Parameters
+    ----------
+    name : str
+        Name of the figure.
+    values : Mapping[str, Any]
+        Plain values of the config.
+
+    Returns
+    -------
+    str
+        The caption.
+    """
     words, number = CAPTIONS.get(name, name.replace("_", " ").capitalize()), PAPER_NUMBERS.get(name)
     for study in values["studies"]:
         title = study["title"] or study["name"]

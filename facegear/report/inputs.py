@@ -12,12 +12,23 @@ SOURCES = {
 
 
 def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
-    """One phrase an input, from the plain values of a config."""
+    """Describe the inputs.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the config.
+
+    Returns
+    -------
+    list[str]
+        A phrase for each input.
+    """
     transmission, pair = values["transmission"], values["tooth_pair"]
     torque, error = transmission["torque"], transmission["transmission_error"]
     gear, pinion, shaper = pair["face_gear"], pair["pinion"], pair["shaper"]
     stiffness = values["mesh_stiffness"]
-    more = "; ".join(
+    further_text = "; ".join(
         f"harmonic {term['order']}: {term['amplitude_um']:.3g} µm" for term in error["more_harmonics"]
     )
     mean = "" if stiffness["source"] == "fem" else f", mean {1e-6 * stiffness['mean_n_per_m']:.3g} N/µm"
@@ -31,15 +42,19 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
             f"shaper teeth {shaper['teeth']}"
         ]
     )
-    own = [pinion for pinion in transmission["pinions"] if pinion.get("torque_n_m") is not None]
-    given = "".join(f", {pinion['name']} {pinion['torque_n_m']:g} N m" for pinion in own)
+    pinions_with_torque = [
+        pinion for pinion in transmission["pinions"] if pinion.get("torque_n_m") is not None
+    ]
+    torque_text = "".join(
+        f", {pinion['name']} {pinion['torque_n_m']:g} N m" for pinion in pinions_with_torque
+    )
     return [
-        f"torque per engine {torque['per_input_n_m']:g} N m{given}",
+        f"torque per engine {torque['per_input_n_m']:g} N m{torque_text}",
         f"power at the tail {100 * torque['tail_share']:.3g} %",
         "e(t) from contact"
         if error["source"] == "from_contact"
         else f"e(t): {error['amplitude_um']:.4g} µm read as its {error['meaning']}, cosine, "
-        f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
+        f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {further_text}" if further_text else ""),
         f"phases of the lower meshes {transmission['phase_convention']}",
         f"mesh stiffness {SOURCES[stiffness['source']]}" + mean + _variation(stiffness["variation"]),
         _kinematics(transmission),
@@ -48,7 +63,20 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
 
 
 def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
-    """A figure's line of inputs; for a figure of a publication it says who chose them."""
+    """Write a figure's line of inputs; for a figure of a publication it says who chose them.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the config.
+    of_publication : bool
+        Whether the figure belongs to a publication.
+
+    Returns
+    -------
+    str
+        The line.
+    """
     lead = "Not disclosed by the paper, chosen here: " if of_publication else "Inputs of the base case: "
     return lead + "; ".join(inputs_in_words(values))
 

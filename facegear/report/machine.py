@@ -83,11 +83,11 @@ def machine_chapter(
         Key numbers, data of both gears, torques, powers and config.
     """
     numbers = key_numbers(tables, pair)
-    listed = [Table("Key numbers", numbers)] if len(numbers) else []
+    chapter_tables = [Table("Key numbers", numbers)] if len(numbers) else []
     if pair is not None:
-        listed.append(Table(DATA_SHEET, data_sheet_table(pair)))
+        chapter_tables.append(Table(DATA_SHEET, data_sheet_table(pair)))
     if "bodies" in tables:
-        listed += [
+        chapter_tables += [
             Table("Torque and power of every body; positive values are brought in", tables["bodies"]),
             Table(
                 "Every mesh at rest, with mean stiffness; the force acts along the line of action",
@@ -95,16 +95,18 @@ def machine_chapter(
             ),
         ]
     config = _config_tables(values, base)
-    return Chapter("The machine as configured", _text(values, tables), pictures, [*listed, *config])
+    return Chapter("The machine as configured", _text(values, tables), pictures, [*chapter_tables, *config])
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
     """Columns quantity, value, unit, as text; only what is known."""
-    known = _less_friction(_signed(tables) | machine_numbers(tables)) | ({} if pair is None else _teeth(pair))
+    numbers_by_name = _less_friction(_signed_numbers(tables) | machine_numbers(tables)) | (
+        {} if pair is None else _teeth(pair)
+    )
     rows = []
     for name, (words, unit, digits) in NUMBERS.items():
-        if name in known:
-            value = known[name]
+        if name in numbers_by_name:
+            value = numbers_by_name[name]
             parts = value if isinstance(value, tuple) else (value,)
             rows.append((words, " to ".join(format_number(part, digits) for part in parts), unit))
     return pd.DataFrame(rows, columns=["quantity", "value", "unit"])
@@ -123,7 +125,7 @@ def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _signed(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
+def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
     """Safeties, factors of the load and loss, where they were computed."""
     numbers: dict[str, float] = {}
     if "rating" in tables:
@@ -141,15 +143,15 @@ def _signed(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
 def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
     radii, limits = pair["radii_mm"], pair["limits_mm"]
     path = pair["unloaded"]["drive"]["path_pinion_y_mm"]
-    unloaded, nominal = sum(path) / len(path), radii["gear_contact_path_nominal"]
-    shift = unloaded - nominal
+    path_radius, nominal = sum(path) / len(path), radii["gear_contact_path_nominal"]
+    shift = path_radius - nominal
     return {
         "contact_ratio": pair["contact_ratio"],
         "face_width_mm": radii["gear_outer"] - radii["gear_inner"],
         "face_limits_mm": (limits["inner_undercut"], limits["outer_pointing"]),
         "backlash_um": pair["backlash_um"]["smallest"],
         "nominal_path_mm": nominal,
-        "unloaded_path_mm": unloaded,
+        "unloaded_path_mm": path_radius,
         "path_shift_mm": shift if abs(shift) > 1e-3 else 0.0,
     }
 
@@ -185,7 +187,7 @@ def _materials(values: Mapping[str, Any]) -> str:
 
 
 def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
-    """What e(t) from contact came to."""
+    """State the size of e(t) from contact."""
     if section["source"] == "given" or "harmonics" not in tables:
         return ""
     table = tables["harmonics"]
@@ -202,23 +204,23 @@ def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> st
 
 
 def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
-    """What the powers say: in balance, or by how much equation (13) as printed misses it."""
+    """State whether the powers are in balance, or by how much equation (13) as printed misses it."""
     numbers = machine_numbers(tables)
     if "power_imbalance" not in numbers:
         return ""
-    missing = numbers["power_imbalance"]
-    if abs(missing) <= ROUNDING_OF_POWER:
+    excess = numbers["power_imbalance"]
+    if abs(excess) <= ROUNDING_OF_POWER:
         text = "\n\nThe power brought in equals the power taken out: at rest, bearings and meshes lose none."
-        loss = _signed(tables).get("loss_percent")
+        loss = _signed_numbers(tables).get("loss_percent")
         if loss is None:
             return text
         return (
             f"{text} Friction is not in these torques and powers. It takes {loss:.3g} % of the power brought "
             "in at the nominal load, so that the output gives this much less."
         )
-    relation = "larger" if missing < 0.0 else "smaller"
+    relation = "larger" if excess < 0.0 else "smaller"
     return (
-        f"\n\nThe power taken out is {relation} than the power brought in, by {100 * abs(missing):.3g} % of "
+        f"\n\nThe power taken out is {relation} than the power brought in, by {100 * abs(excess):.3g} % of "
         "the larger of both. Bodies turn as their teeth say, but the lever arms of equation (13) as printed "
         "are not those of the teeth; geometric meshes are in balance."
     )
@@ -231,13 +233,15 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
     caption = "The whole config, with its defaults"
     if base is not None:
         before = _keys(base.values)
-        gone = [(key, "") for key in before if key not in rows]
-        frame = pd.DataFrame([*rows.items(), *gone], columns=["key", "value"], dtype=object)
-        changed = [rows.get(key) != before.get(key) for key in frame["key"]]
-        own = ["changed" if differs else "" for differs in changed]
-        there = [before.get(key, "") if rows.get(key) != before.get(key) else "" for key in frame["key"]]
-        frame = frame.assign(**{f"against {base.name}": own, f"in {base.name}": there})
-        differ = count_noun(sum(changed), "key differs", "keys differ")
+        removed_rows = [(key, "") for key in before if key not in rows]
+        frame = pd.DataFrame([*rows.items(), *removed_rows], columns=["key", "value"], dtype=object)
+        is_changed = [rows.get(key) != before.get(key) for key in frame["key"]]
+        change_marks = ["changed" if differs else "" for differs in is_changed]
+        base_values = [
+            before.get(key, "") if rows.get(key) != before.get(key) else "" for key in frame["key"]
+        ]
+        frame = frame.assign(**{f"against {base.name}": change_marks, f"in {base.name}": base_values})
+        differ = count_noun(sum(is_changed), "key differs", "keys differ")
         caption += f"; {differ} from {base.name}, which it extends"
     config = Table(caption, frame, is_folded=True, exact=True)
     if values["transmission"] is None:

@@ -54,18 +54,24 @@ class Picture:
 
         Raises CorruptFile where that file is not whole.
         """
-        stored = self.path.with_suffix(".json")
-        content = documents.read(stored) if stored.exists() else {}
+        json_path = self.path.with_suffix(".json")
+        content = documents.read(json_path) if json_path.exists() else {}
         return content if content.get("data") else None
 
     def data_uri(self) -> str:
-        """The picture as a data URI."""
+        """Return the picture as a data URI.
+
+        Returns
+        -------
+        str
+            The URI.
+        """
         return data_uri(self.still)
 
 
 @dataclass(frozen=True)
 class View:
-    """What the viewer of a kind draws (plain values, arrays as base64), under a caption.
+    """Content of an interactive view (plain values, arrays as base64), under a caption.
 
     Its controls stand in `<kind>_view.html.j2`, its script in `<kind>_view.js`.
     """
@@ -75,8 +81,14 @@ class View:
     kind: Literal["pair", "body"] = "pair"
 
     def packed(self) -> str:
-        """The data as the page carries them."""
-        return _packed(_json(self.data))
+        """Return the data as the page carries them.
+
+        Returns
+        -------
+        str
+            Text.
+        """
+        return _pack(_json(self.data))
 
 
 @dataclass(frozen=True)
@@ -114,26 +126,26 @@ def render(title: str, lead: str, chapters: Sequence[Chapter], first: FirstScree
     """
     pictures = [picture for chapter in chapters for picture in chapter.pictures]
     figures = {picture.anchor: picture.interactive for picture in pictures if picture.interactive}
-    viewed = sorted({chapter.view.kind for chapter in chapters if chapter.view})
+    view_kinds = sorted({chapter.view.kind for chapter in chapters if chapter.view})
     return pages.render(
         TEMPLATE,
         title=title,
         lead=lead,
         chapters=chapters,
         first=first,
-        css=_own("page.css"),
-        tables=_own("tables.js"),
-        packed=_own("packed.js") if viewed or figures else "",
-        viewers=[_own(name) for name in ("viewer.js", *(f"{kind}_view.js" for kind in viewed))]
-        if viewed
+        css=_own_file("page.css"),
+        tables=_own_file("tables.js"),
+        packed=_own_file("packed.js") if view_kinds or figures else "",
+        viewers=[_own_file(name) for name in ("viewer.js", *(f"{kind}_view.js" for kind in view_kinds))]
+        if view_kinds
         else [],
-        plots=_own("plots.js"),
-        figures=_packed(_json(figures)) if figures else "",
-        library=_packed(LIBRARY.read_bytes()) if figures else "",
+        plots=_own_file("plots.js"),
+        figures=_pack(_json(figures)) if figures else "",
+        library=_pack(LIBRARY.read_bytes()) if figures else "",
     )
 
 
-def _own(name: str) -> str:
+def _own_file(name: str) -> str:
     return (FOLDER / name).read_text(encoding="utf-8")
 
 
@@ -141,11 +153,24 @@ def _json(content: Any) -> bytes:
     return json.dumps(content, separators=(",", ":")).encode()
 
 
-def _packed(content: bytes) -> str:
+def _pack(content: bytes) -> str:
     """Compressed, as text; the same content gives the same text."""
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 
-def encoded(values: AnyArray, kind: type) -> str:
-    """An array as text for a viewer: its bytes, little endian."""
+def encode_array(values: AnyArray, kind: type) -> str:
+    """Encode an array as text for a viewer: its bytes, little endian.
+
+    Parameters
+    ----------
+    values : AnyArray
+        The array, of any shape (...).
+    kind : type
+        Type of its numbers.
+
+    Returns
+    -------
+    str
+        Text; numbers keep their unit.
+    """
     return base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()

@@ -10,7 +10,7 @@ from facegear.contact.columns import EDGES, SHARES
 from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.design import PairDesign
 from facegear.geometry.solids import solid, teeth_of
-from facegear.report.page import View, encoded
+from facegear.report.page import View, encode_array
 
 COLOURS = (
     *("#0d0887", "#4c02a1", "#7e03a8", "#a92395", "#cc4778"),
@@ -84,7 +84,7 @@ def pair_view(
         "size": 1e3 * (design.pinion_tip_radius + design.pinion.width),
         "lattice": {
             "shape": [int(n) for n in loads["shape"]],
-            "points": encoded(1e3 * loads["point_m"], np.float32),
+            "points": encode_array(1e3 * loads["point_m"], np.float32),
         },
         "positions": positions.tolist(),
         "colours": COLOURS,
@@ -95,10 +95,12 @@ def pair_view(
         ],
         "torques": [_torque(float(torque), loads, ltca, positions, stress, friction) for torque in torques],
     }
-    what = "pressure or load" if friction is None else "pressure, load, friction loss or flash temperature"
+    quantities_text = (
+        "pressure or load" if friction is None else "pressure, load, friction loss or flash temperature"
+    )
     return View(
         data,
-        f"The pair in mesh, turning through a pitch: drag to look around. Colours: {what} along "
+        f"The pair in mesh, turning through a pitch: drag to look around. Colours: {quantities_text} along "
         "each line of contact, drawn wider than it is, at the positions that were solved"
         + ("." if stress is None else "; or root stress."),
     )
@@ -106,15 +108,15 @@ def pair_view(
 
 def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, Any]:
     teeth = teeth_of(design, name)
-    shown = teeth if name == "pinion" else min(teeth, SHOWN_GEAR_TEETH)
+    tooth_count = teeth if name == "pinion" else min(teeth, SHOWN_GEAR_TEETH)
     return {
         "name": name,
         "teeth": teeth,
-        "first": -(shown // 2),
-        "shown": shown,
+        "first": -(tooth_count // 2),
+        "shown": tooth_count,
         "turn": -0.5 if name == "pinion" else 0.0,
         "patches": [
-            {"shape": list(patch.shape[:2]), "points": encoded(1e3 * patch, np.float32)}
+            {"shape": list(patch.shape[:2]), "points": encode_array(1e3 * patch, np.float32)}
             for patch in solid(design, name, 1, PROFILE, WIDTH)
         ],
         "fillets": None if stress is None else _fillets(stress, name),
@@ -126,7 +128,7 @@ def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
     position = stress[f"{name}_position_m"]
     return {
         "shape": list(position.shape[1:3]),
-        "points": encoded(1e3 * position, np.float32),
+        "points": encode_array(1e3 * position, np.float32),
         "first": int(np.floor(stress[f"{name}_passage"][0])),
     }
 
@@ -148,13 +150,13 @@ def _torque(
     on = loads["torque_n_m"] == torque
     row = np.searchsorted(positions, loads["position"][on])
     order = np.argsort(row, kind="stable")
-    shown = {"pressure": line_pressure(loads, on)[order], "load": line_load(loads, on)[order]}
+    values_by_name = {"pressure": line_pressure(loads, on)[order], "load": line_load(loads, on)[order]}
     if friction is not None:
-        rising = np.where(friction["inside"] != 0, friction["flash_k"], np.nan)
-        shown["loss"] = of_lines(loads, on, friction, 1e-3 * friction["loss_w_per_m"])[order]
-        shown["flash"] = of_lines(loads, on, friction, rising)[order]
+        flash_temperature = np.where(friction["inside"] != 0, friction["flash_k"], np.nan)
+        values_by_name["loss"] = of_lines(loads, on, friction, 1e-3 * friction["loss_w_per_m"])[order]
+        values_by_name["flash"] = of_lines(loads, on, friction, flash_temperature)[order]
     rows = ltca[ltca["torque_n_m"] == torque].sort_values("position")
-    top = {key: float(np.nanmax(values, initial=0.0)) for key, values in shown.items()}
+    top = {key: float(np.nanmax(values, initial=0.0)) for key, values in values_by_name.items()}
     tension = {} if stress is None else _tension(torque, stress)
     if tension:
         top[ROOT_STRESS["key"]] = max(float(arrays.max()) for arrays in tension.values())
@@ -162,9 +164,9 @@ def _torque(
         "torque_n_m": torque,
         "largest": top,
         "start": np.searchsorted(row[order], np.arange(positions.size + 1)).tolist(),
-        "node": encoded(loads["node"][on][order], np.uint16),
-        "tooth": encoded(loads["tooth"][on][order], np.int8),
-        "values": {key: _parts(values, top[key]) for key, values in shown.items()},
+        "node": encode_array(loads["node"][on][order], np.uint16),
+        "tooth": encode_array(loads["tooth"][on][order], np.int8),
+        "values": {key: _parts(values, top[key]) for key, values in values_by_name.items()},
         "tension": {name: _parts(arrays, top[ROOT_STRESS["key"]]) for name, arrays in tension.items()},
         "error_um": rows["ste_um"].round(3).tolist(),
         "share": rows[list(SHARES)].round(4).to_numpy().tolist(),
@@ -186,10 +188,12 @@ def of_lines(loads: Arrays, on: Mask, lines: Arrays, values: Array) -> Array:
     lines: arrays (m,) under the names LINE, which say where each of the values (m,) holds.
     """
     index = pd.MultiIndex.from_arrays([lines[key] for key in LINE], names=LINE)
-    known = pd.Series(values, index).groupby(level=list(LINE)).max()
+    line_values = pd.Series(values, index).groupby(level=list(LINE)).max()
     columns = int(loads["shape"][1])
     nodes = [loads[key][on] for key in LINE[:-1]]
-    at_nodes = known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
+    at_nodes = line_values.reindex(
+        pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])
+    ).to_numpy()
     return np.where(loads["in_fillet"][on], np.nan, at_nodes)
 
 
@@ -209,4 +213,4 @@ def line_load(loads: Arrays, on: Mask) -> Array:
 
 def _parts(values: AnyArray, largest: float) -> str:
     """Values in 255ths of the largest, rounded up; 0 where there is none."""
-    return encoded(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)
+    return encode_array(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)

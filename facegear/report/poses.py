@@ -1,4 +1,4 @@
-"""What the chapter on operating poses says: where forces put the teeth, and what follows, in numbers."""
+"""Text and tables of the chapter on operating poses: poses under forces, and their effects."""
 
 from collections.abc import Mapping
 from operator import itemgetter
@@ -13,7 +13,7 @@ MESHES = (
     "machine puts it and as assembled; to inner and outer end: from the unloaded path to the ends of the "
     "face; by pose: change at the mesh's own load"
 )
-SHOWN = (
+POSE_COLUMNS = (
     *("mesh", "force_n", "unloaded_path_mm", "path_mm", "path_as_assembled_mm"),
     *("to_inner_end_mm", "to_outer_end_mm"),
     *("stiffness_by_pose_percent", "pressure_by_pose_percent", "face_gear_root_by_pose_percent"),
@@ -23,7 +23,7 @@ POSE = (
     "bodies amount to; outward: how far they move the unloaded contact; closing: what the flanks close "
     "beyond the deflection of the mesh"
 )
-LEAVING = (
+LEAVING_COLUMNS = (
     "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
     "of the face"
 )
@@ -37,7 +37,7 @@ STRESS = (
 )
 PATTERN = "pattern_to_"
 CHECK = "The surface beside the contact solved directly, for the mesh that its pose changes most"
-CHANGED = {
+CHANGE_COLUMNS = {
     "stiffness_by_pose_percent": "stiffness",
     "pressure_by_pose_percent": "pressure",
     "face_gear_root_by_pose_percent": "root stress of the face gear",
@@ -46,39 +46,67 @@ CHANGED = {
 
 
 def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    """Poses of all meshes, contacts that leave the face, and the surface's error; none without poses."""
+    """Return poses of all meshes, contacts that leave the face, and the surface's error.
+
+    Parameters
+    ----------
+    tables : Mapping[str, pd.DataFrame]
+        Tables of the report by name.
+
+    Returns
+    -------
+    list[Table]
+        The tables; none without poses.
+    """
     if "poses_meshes" not in tables:
         return []
-    meshes, leaving = tables["poses_meshes"], tables["poses_leaving"]
+    meshes, leaving_contacts = tables["poses_meshes"], tables["poses_leaving"]
     edges = [name for name in meshes.columns if name.startswith(PATTERN)]
     return [
-        Table(MESHES, meshes[[name for name in SHOWN if name in meshes]], 4),
+        Table(MESHES, meshes[[name for name in POSE_COLUMNS if name in meshes]], 4),
         *([Table(EDGES, meshes[["mesh", *edges]], 4)] if edges else []),
         *([Table(STRESS, tables["posed_stress"], 4)] if "posed_stress" in tables else []),
-        *([Table(LEAVING, leaving, 4)] if len(leaving) else []),
+        *([Table(LEAVING_COLUMNS, leaving_contacts, 4)] if len(leaving_contacts) else []),
         Table(POSE, meshes.drop(columns=edges), is_folded=True),
         Table(CHECK, tables["poses_check"], is_folded=True),
     ]
 
 
 def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
-    """A paragraph of what was computed; nothing without poses."""
+    """Write a paragraph on the computed poses.
+
+    Parameters
+    ----------
+    tables : Mapping[str, pd.DataFrame]
+        Tables of the report by name.
+
+    Returns
+    -------
+    str
+        The paragraph; empty without poses.
+    """
     if "poses_meshes" not in tables:
         return ""
     meshes = tables["poses_meshes"]
-    loaded = meshes[meshes["path_mm"].notna()]
-    parts = [*_path(loaded), _pattern(loaded), _changes(loaded), _force(meshes), _ends(tables)]
+    loaded_meshes = meshes[meshes["path_mm"].notna()]
+    parts = [
+        *_path(loaded_meshes),
+        _pattern(loaded_meshes),
+        _changes(loaded_meshes),
+        _force(meshes),
+        _ends(tables),
+    ]
     return " ".join(part for part in parts if part)
 
 
-def _path(loaded: pd.DataFrame) -> list[str]:
+def _path(loaded_meshes: pd.DataFrame) -> list[str]:
     """The contact that moves most, and the one nearest to an end of the face."""
-    if loaded.empty:
+    if loaded_meshes.empty:
         return ["No mesh carries load."]
-    shift = loaded["path_mm"] - loaded["path_as_assembled_mm"]
-    shifted = loaded.loc[shift.abs().idxmax()]
-    ends = loaded[["to_inner_end_mm", "to_outer_end_mm"]]
-    near = loaded.loc[ends.min(axis=1).idxmin()]
+    shift = loaded_meshes["path_mm"] - loaded_meshes["path_as_assembled_mm"]
+    mesh = loaded_meshes.loc[shift.abs().idxmax()]
+    ends = loaded_meshes[["to_inner_end_mm", "to_outer_end_mm"]]
+    near = loaded_meshes.loc[ends.min(axis=1).idxmin()]
     end, margin = min(
         ("inner", near["to_inner_end_mm"]), ("outer", near["to_outer_end_mm"]), key=itemgetter(1)
     )
@@ -89,61 +117,67 @@ def _path(loaded: pd.DataFrame) -> list[str]:
         if margin >= 0.0
         else f"{nearest} lies {distance} mm beyond the {end} end of the face."
     )
-    before, after = format_number(shifted["path_as_assembled_mm"], 4), format_number(shifted["path_mm"], 4)
-    moved = (
-        f"The loaded contact of {shifted['mesh']} moves furthest, from {before} mm as assembled to {after} mm"
+    before, after = (
+        format_number(mesh["path_as_assembled_mm"], 4),
+        format_number(mesh["path_mm"], 4),
     )
-    return [f"{moved} as the machine runs.", left]
+    moves = (
+        f"The loaded contact of {mesh['mesh']} moves furthest, from {before} mm as assembled to {after} mm"
+    )
+    return [f"{moves} as the machine runs.", left]
 
 
-def _pattern(loaded: pd.DataFrame) -> str:
+def _pattern(loaded_meshes: pd.DataFrame) -> str:
     """At which ends of the face the loaded pattern ends, and which tips carry none of it."""
-    if f"{PATTERN}inner_end_mm" not in loaded or loaded.empty:
+    if f"{PATTERN}inner_end_mm" not in loaded_meshes or loaded_meshes.empty:
         return ""
-    said = []
+    sentences = []
     for end in ("inner", "outer"):
-        left = loaded[f"{PATTERN}{end}_end_mm"]
-        reached = loaded.loc[left <= 0.0, "mesh"].to_list()
-        if reached:
-            names = "every mesh" if len(reached) == len(loaded) else ", ".join(reached)
-            said.append(f"the loaded pattern of {names} reaches the {end} end of the face")
+        left = loaded_meshes[f"{PATTERN}{end}_end_mm"]
+        meshes_at_edge = loaded_meshes.loc[left <= 0.0, "mesh"].to_list()
+        if meshes_at_edge:
+            names = "every mesh" if len(meshes_at_edge) == len(loaded_meshes) else ", ".join(meshes_at_edge)
+            sentences.append(f"the loaded pattern of {names} reaches the {end} end of the face")
         else:
-            said.append(f"{format_number(left.min(), 2)} mm of the face stay free at its {end} end")
+            sentences.append(f"{format_number(left.min(), 2)} mm of the face stay free at its {end} end")
     for tip in ("pinion", "gear"):
-        left = loaded[f"{PATTERN}{tip}_tip_mm"]
+        left = loaded_meshes[f"{PATTERN}{tip}_tip_mm"]
         if left.min() > 0.0:
-            said.append(f"the pattern stays {format_number(left.min(), 2)} mm from the tip of the {tip}")
-    text = "; ".join(said)
+            sentences.append(f"the pattern stays {format_number(left.min(), 2)} mm from the tip of the {tip}")
+    text = "; ".join(sentences)
     return f"{text[0].upper()}{text[1:]}."
 
 
-def _changes(loaded: pd.DataFrame) -> str:
-    """What poses change of the contact at the meshes' own loads, where there is any load."""
+def _changes(loaded_meshes: pd.DataFrame) -> str:
+    """Effect of poses on the contact at the meshes' own loads, where there is any load."""
     parts = [
-        f"the {words} changes by {loaded[column].min():+.1f} to {loaded[column].max():+.1f} %"
-        for column, words in CHANGED.items()
-        if column in loaded and len(loaded)
+        f"the {words} changes by {loaded_meshes[column].min():+.1f} to {loaded_meshes[column].max():+.1f} %"
+        for column, words in CHANGE_COLUMNS.items()
+        if column in loaded_meshes and len(loaded_meshes)
     ]
     return f"{'; '.join(parts)}.".capitalize() if parts else ""
 
 
 def _force(meshes: pd.DataFrame) -> str:
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
-    changed = (after - before).abs().idxmax()
+    row = (after - before).abs().idxmax()
     return (
-        f"The force of {meshes['mesh'][changed]} changes most, from {format_number(before[changed], 4)} N to "
-        f"{format_number(after[changed], 4)} N."
+        f"The force of {meshes['mesh'][row]} changes most, from {format_number(before[row], 4)} N to "
+        f"{format_number(after[row], 4)} N."
     )
 
 
 def _ends(tables: Mapping[str, pd.DataFrame]) -> str:
     """At which loads contacts leave the face, as far as loads were looked at."""
-    leaving, reached = tables["poses_leaving"], 100 * tables["poses_loads"]["load_fraction"].max()
-    if leaving.empty:
-        return f"Up to {reached:.0f} % of the torque no contact leaves the face."
-    said = [
+    leaving_contacts, largest_percent = (
+        tables["poses_leaving"],
+        100 * tables["poses_loads"]["load_fraction"].max(),
+    )
+    if leaving_contacts.empty:
+        return f"Up to {largest_percent:.0f} % of the torque no contact leaves the face."
+    sentences = [
         f"at {100 * row.load_fraction:.0f} % of the torque the contact of {row.mesh} leaves the face at "
         f"{row.face_end_mm:.4g} mm"
-        for row in leaving.itertuples()
+        for row in leaving_contacts.itertuples()
     ]
-    return f"{'; '.join(said).capitalize()} (loads up to {reached:.0f} % were looked at)."
+    return f"{'; '.join(sentences).capitalize()} (loads up to {largest_percent:.0f} % were looked at)."

@@ -6,7 +6,7 @@ from urllib.parse import quote
 
 DECIMALS = 2
 """Of a coordinate (1/72 inch) of a drawing on the page: a hundredth is not seen."""
-KEPT = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
+UNESCAPED_CHARACTERS = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
 """Characters that a data URI between single quotes may hold as they are."""
 GAPS = re.compile(r"\s+")
 NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
@@ -18,19 +18,19 @@ def data_uri(still: str) -> str:
     A drawing keeps its text and colours; its coordinates are rounded to DECIMALS.
     """
     drawing = shortened(still).replace("%", quote("%"))
-    for letter in set(drawing) - KEPT - {"%"}:
+    for letter in set(drawing) - UNESCAPED_CHARACTERS - {"%"}:
         drawing = drawing.replace(letter, quote(letter, safe=""))
     return f"data:image/svg+xml,{drawing}"
 
 
 def shortened(svg: str) -> str:
     """The same drawing without its metadata, with rounded coordinates and without needless gaps."""
-    drawn = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
-    drawn = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _rounded, drawn)
-    return GAPS.sub(" ", re.sub(r">\s+<", "><", drawn)).strip()
+    drawing = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
+    drawing = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _round_numbers, drawing)
+    return GAPS.sub(" ", re.sub(r">\s+<", "><", drawing)).strip()
 
 
-def _rounded(attribute: re.Match[str]) -> str:
+def _round_numbers(attribute: re.Match[str]) -> str:
     parts = NUMBER.split(attribute[2])
-    parts[1::2] = [f"{round(float(written), DECIMALS):g}" for written in parts[1::2]]
+    parts[1::2] = [f"{round(float(number_text), DECIMALS):g}" for number_text in parts[1::2]]
     return f'{attribute[1]}="{GAPS.sub(" ", "".join(parts)).strip()}"'

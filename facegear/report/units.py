@@ -43,12 +43,34 @@ UNNAMED = ("transmission", "tooth_pair", "dynamics", "contact", "load_sharing")
 
 
 def unit_of(name: str) -> str:
-    """The unit in a column's name or a key of the config, as it is written; nothing where it has none."""
+    """Return the unit in a column's name or a key of the config, as it is written.
+
+    Parameters
+    ----------
+    name : str
+        Name of the column, or the key.
+
+    Returns
+    -------
+    str
+        The unit; empty where the name has none.
+    """
     return UNITS.get(ending_of(name), "")
 
 
 def ending_of(name: str) -> str:
-    """The unit in a column's name, a key of UNITS; nothing where it has none."""
+    """Return the unit in a column's name.
+
+    Parameters
+    ----------
+    name : str
+        Name of the column.
+
+    Returns
+    -------
+    str
+        A key of UNITS; empty where the name has no unit.
+    """
     return next((ending for ending in UNITS if f"_{ending} " in f"{name} "), "")
 
 

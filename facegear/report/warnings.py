@@ -1,4 +1,4 @@
-"""What limits the numbers of a report: notes by subject, most serious first."""
+"""Limits of the numbers of a report: notes by subject, most serious first."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import nan
@@ -93,7 +93,22 @@ def _line(words: str) -> str:
 def warnings(
     values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None
 ) -> Iterator[ResultWarning]:
-    """Yield what to keep in mind, from the config and the results, in the order of computation."""
+    """Yield the notes on a report's numbers, from the config and the results, in the order of computation.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of the config.
+    tables : Mapping[str, pd.DataFrame]
+        Tables of the report by name.
+    pair : Mapping[str, Any] | None
+        Record of the tooth geometry, None where it was not computed.
+
+    Yields
+    ------
+    ResultWarning
+        A note.
+    """
     if pair is not None and pair["interference"]:
         yield ResultWarning(
             "Teeth",
@@ -107,9 +122,9 @@ def warnings(
     if transmission is None:
         return
     if pair is not None:
-        own, teeth = transmission["backlash_um"], pair["backlash_um"]["smallest"]
-        if own is not None and abs(own - teeth) > BACKLASH_DIFFERS_UM:
-            dynamics_value = f"The dynamics take a backlash of {own:g} µm"
+        config_backlash, teeth = transmission["backlash_um"], pair["backlash_um"]["smallest"]
+        if config_backlash is not None and abs(config_backlash - teeth) > BACKLASH_DIFFERS_UM:
+            dynamics_value = f"The dynamics take a backlash of {config_backlash:g} µm"
             yield ResultWarning(
                 "Motion", WITHIN_LIMITS, f"{dynamics_value}; the teeth as assembled have {teeth:.1f} µm."
             )
@@ -167,13 +182,13 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[ResultWarnin
     min_open, max_open = gaps.min(), gaps.max()
     if (always := min_open.index[min_open >= 1.0]).size:
         yield ResultWarning("Motion", WRONG, f"Open at every speed: {_mesh_list(always, len(min_open))}.")
-    lost = max_open.index[(max_open > 0.0) & (min_open < 1.0)]
-    if lost.size:
-        time = f"up to {format_number(100 * max_open[lost].max(), 2)} % of the time"
+    open_meshes = max_open.index[(max_open > 0.0) & (min_open < 1.0)]
+    if open_meshes.size:
+        time = f"up to {format_number(100 * max_open[open_meshes].max(), 2)} % of the time"
         yield ResultWarning(
             "Motion",
             WITHIN_LIMITS,
-            f"Contact is lost at some speeds, {time}: {_mesh_list(lost, len(min_open))}.",
+            f"Contact is lost at some speeds, {time}: {_mesh_list(open_meshes, len(min_open))}.",
         )
 
 
@@ -194,26 +209,26 @@ def _contact_warnings(
     if "ltca" in tables:
         columns = ["tip_line_load_n_per_mm", "tip_length_mm"]
         tips = tables["ltca"].groupby("torque_n_m")[columns].max()
-        loaded = tips[tips["tip_length_mm"] > 0.0]
-        if len(loaded):
-            load, length = loaded.max()
+        edges = tips[tips["tip_length_mm"] > 0.0]
+        if len(edges):
+            load, length = edges.max()
             yield ResultWarning(
                 "Contact",
                 WITHIN_LIMITS,
-                f"Edge contact: from {loaded.index[0]:g} N m on tip edges carry up to {load:.0f} N/mm over "
+                f"Edge contact: from {edges.index[0]:g} N m on tip edges carry up to {load:.0f} N/mm over "
                 f"{length:.1f} mm, where pressure has no limit. Tip relief or a chamfer takes the load off "
                 "the pinion's tip, root relief off the gear's.",
             )
     if "by_torque" not in tables:
         return
     by_torque = tables["by_torque"]
-    pressed = by_torque[by_torque["fillet_share"] >= FILLET_CONTACT]
-    if len(pressed):
+    fillets = by_torque[by_torque["fillet_share"] >= FILLET_CONTACT]
+    if len(fillets):
         yield ResultWarning(
             "Contact",
             WITHIN_LIMITS,
-            f"Tips press into fillets {_torques(pressed, by_torque)} and carry up to "
-            f"{100 * pressed['fillet_share'].max():.2g} % of the torque there, which is kept out of pressure "
+            f"Tips press into fillets {_torques(fillets, by_torque)} and carry up to "
+            f"{100 * fillets['fillet_share'].max():.2g} % of the torque there, which is kept out of pressure "
             "and root stress.",
         )
     pressure = by_torque.get("pressure_mpa", pd.Series(nan, by_torque.index))

@@ -1,1 +1,1 @@
-"""What a gearbox answers with: tables, figures and files of one stage each."""
+"""Results of a gearbox: tables, figures and files of one stage each."""

@@ -1,4 +1,4 @@
-"""What all results share: their content, where it came from, and the files they are kept in."""
+"""Base of all results: their content, where it came from, and the files they are kept in."""
 
 from collections.abc import Mapping
 from copy import deepcopy
@@ -17,7 +17,7 @@ Source = Literal["computed", "stored"]
 
 @dataclass(frozen=True, eq=False)
 class StageOutput:
-    """What a stage gave: parts by name, one line, whether it was computed now or stored by the workflow."""
+    """Output of a stage: parts by name, one line, whether it was computed now or stored by the workflow."""
 
     content: Mapping[str, Any]
     summary: str
@@ -48,15 +48,34 @@ class Result:
         object.__setattr__(self, "values", deepcopy(self.values))
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write the files that the workflow writes for this stage, below `folder`; returns their paths."""
+        """Write the files that the workflow writes for this stage, below a folder.
+
+        Parameters
+        ----------
+        folder : str or Path
+            The folder.
+
+        Returns
+        -------
+        list[Path]
+            Paths of the files.
+        """
         stage, folder = STAGES[self.STAGE], file_path(folder, "folder")
         paths = {name: str(folder / file.path) for name, file in stage.files.items()}
         return write_stage(stage, self.content, paths)
 
     def to_excel(self, path: str | Path) -> Path:
-        """Write every table as a sheet of one workbook (.xlsx); returns the path.
+        """Write every table as a sheet of one workbook (.xlsx).
 
-        Raises MissingExtra where openpyxl is not installed.
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+
+        Returns
+        -------
+        Path
+            The path. Raises MissingExtra where openpyxl is not installed.
         """
         from facegear.io.workbook import write
 

@@ -20,12 +20,23 @@ class BranchLociResult(Result):
         """One row a point: locus, kind, parameter and the factor on it, speed_rpm; `corner` at a cusp.
 
         Columns, among others: locus, kind, factor, speed_rpm, corner.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["loci"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """All loci with the operating point, a panel for each parameter."""
+        """All loci with the operating point, a panel for each parameter.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.branches import loci
 
         return loci(self.content["loci"], self.values["dynamics"]["speed_rpm"])

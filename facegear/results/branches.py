@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -29,6 +29,11 @@ class BranchesResult(Result):
         Columns, among others: branch, point, arc, speed_rpm, period, stable, mesh, deflection_ac_rms_um,
         deflection_rms_um, deflection_minimum_um, deflection_maximum_um, peak_force_n, open_fraction,
         drive_fraction, back_fraction.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["branches"].copy()
 
@@ -36,6 +41,11 @@ class BranchesResult(Result):
         """Return branch and image_of: the branches that are mirror images, and the followed ones they map.
 
         Columns, among others: branch, period, points, image_of, tried.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         ends = self.content["ends"]
         rows = ends[ends["image_of"].astype(str) != ""]
@@ -45,6 +55,11 @@ class BranchesResult(Result):
         """One row a fold, period doubling, Neimark-Sacker point, branch point or graze, with its proof.
 
         Columns, among others: branch, period, kind, speed_rpm, arc, meshes, edge, proof.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["special"].copy()
 
@@ -52,6 +67,11 @@ class BranchesResult(Result):
         """How far each stable motion at the nominal speed is from its end, in speed and in torque.
 
         Columns, among others: branch, parameter, margin.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["margins"].copy()
 
@@ -59,6 +79,11 @@ class BranchesResult(Result):
         """Speeds between which several stable motions exist.
 
         Columns, among others: from_rpm, to_rpm, branches.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["ranges"].copy()
 
@@ -66,6 +91,11 @@ class BranchesResult(Result):
         """Fraction of random starts that ends on each motion, with its standard error.
 
         Columns, among others: speed_rpm, fraction, error, branch, motion.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["coexistence"].copy()
 
@@ -73,6 +103,11 @@ class BranchesResult(Result):
         """Each jump of the sweep with the special point that its motion runs into, or why there is none.
 
         Columns, among others: direction, speed_before_rpm, speed_after_rpm, class_before, branch, kind, note.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["jumps"].copy()
 
@@ -80,15 +115,33 @@ class BranchesResult(Result):
         """Each periodic motion of the sweep with the branch it lies on, or why it lies on none.
 
         Columns, among others: direction, period, branch, note.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["swept"].copy()
 
     @fit_for_paper
     def plot(self, what: str = "amplitudes", branch: int = 0) -> "Figure":
-        """`amplitudes` over speed, `fractions` of random starts, or the `multipliers` of one branch."""
+        """Draw `amplitudes` over speed, `fractions` of random starts, or the `multipliers` of one branch.
+
+        Parameters
+        ----------
+        what : str
+            Kind of the figure, one of those above.
+        branch : int
+            Number of the branch, for `multipliers`.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.branches import amplitudes, fractions, multipliers, typical_meshes
 
-        chosen(what, FIGURES, "plot")
+        require_choice(what, FIGURES, "plot")
         if what == "fractions":
             return fractions(self.content["coexistence"])
         if what == "multipliers":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from facegear.pipeline.needs import resolved_needs, shared_sources
 from facegear.pipeline.run import call
-from facegear.pipeline.stage import NONE, Case, From, Wildcards
+from facegear.pipeline.stage import NO_WILDCARDS, Case, From, Wildcards
 from facegear.pipeline.table import STAGES
 from facegear.results.base import Result, StageOutput
 from facegear.results.store import Store
@@ -21,10 +21,11 @@ Kind = TypeVar("Kind", bound=Result)
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """What the workflow's rules do, without files: `values` of a whole config, and the store of results.
+    """Stages of a case, computed without files as the workflow's rules compute them.
 
-    `cases`: all cases of the config by their id, for the stages that set those of its studies side by side. A
-    stage is imported where it runs, so that modes load no mesh and no compiler.
+    `values` are those of a whole config, `store` the store of results. `cases`: all cases of the config by
+    their id, for the stages that set those of its studies side by side. A stage is imported where it runs, so
+    that modes load no mesh and no compiler.
     """
 
     values: Mapping[str, Any]
@@ -37,58 +38,136 @@ class Chain:
         cases = self.cases
         return Case(self.values, cases, lambda stage, case: shared_sources(cases, stage)[case])
 
-    def result(self, kind: type[Kind], **more: Any) -> Kind:
-        """What the stage of a kind of result gives; `more`: arguments that decide no number, as threads."""
-        stored = self.output(kind.STAGE, **more)
-        beside = {name: self.part(*source) for name, source in kind.BESIDE.items()}
-        return kind({**stored.content, **beside}, stored.summary, stored.source, self.values)
+    def result(self, kind: type[Kind], **extra_arguments: Any) -> Kind:
+        """Return the result of the stage of a kind of result.
 
-    def output(self, name: str, **more: Any) -> StageOutput:
-        """All that a stage gives, and where it came from."""
-        return self.store.output(name, self.values, lambda: self.compute(name, **more))
+        Parameters
+        ----------
+        kind : type[Kind]
+            Class of the result.
+        **extra_arguments : Any
+            Arguments that decide no number, as threads.
+
+        Returns
+        -------
+        Kind
+            The result.
+        """
+        output = self.output(kind.STAGE, **extra_arguments)
+        beside = {name: self.part(*source) for name, source in kind.BESIDE.items()}
+        return kind({**output.content, **beside}, output.summary, output.source, self.values)
+
+    def output(self, name: str, **extra_arguments: Any) -> StageOutput:
+        """Return all that a stage gives, and where it came from.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+        **extra_arguments : Any
+            Arguments that decide no number, as threads.
+
+        Returns
+        -------
+        StageOutput
+            Output of the stage.
+        """
+        return self.store.output(name, self.values, lambda: self.compute(name, **extra_arguments))
 
     def arguments(self, name: str) -> dict[str, Any]:
-        """All that a stage is given from the config and from earlier stages."""
+        """Return all arguments of a stage, from the config and from earlier stages.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+
+        Returns
+        -------
+        dict[str, Any]
+            Arguments by name.
+        """
         stage = STAGES[name]
-        return {**self.given(stage.upstream), **resolved_needs(stage.needs, self.case)}
+        return {**self.upstream_arguments(stage.upstream), **resolved_needs(stage.needs, self.case)}
 
-    def given(self, upstream: Mapping[str, From]) -> dict[str, Any]:
-        """Arguments that come from earlier stages."""
-        wanted = {key: source for key, source in upstream.items() if source.wanted(self.case)}
-        return {key: self._given(source) for key, source in wanted.items()}
+    def upstream_arguments(self, upstream: Mapping[str, From]) -> dict[str, Any]:
+        """Return the arguments that come from earlier stages.
 
-    def compute(self, name: str, wildcards: Wildcards = NONE, **more: Any) -> "Outcome":
-        """A stage computed now."""
+        Parameters
+        ----------
+        upstream : Mapping[str, From]
+            Source of each argument by name.
+
+        Returns
+        -------
+        dict[str, Any]
+            Arguments by name.
+        """
+        needed_sources = {key: source for key, source in upstream.items() if source.is_needed(self.case)}
+        return {key: self._read_source(source) for key, source in needed_sources.items()}
+
+    def compute(self, name: str, wildcards: Wildcards = NO_WILDCARDS, **extra_arguments: Any) -> "Outcome":
+        """Compute a stage now.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+        wildcards : Wildcards
+            Text of each wildcard by name.
+        **extra_arguments : Any
+            Arguments that decide no number, as threads.
+
+        Returns
+        -------
+        Outcome
+            What the stage gives.
+        """
         stage = STAGES[name]
-        return call(stage, self.arguments(name), **stage.typed(wildcards), **more)
+        return call(stage, self.arguments(name), **stage.typed_wildcards(wildcards), **extra_arguments)
 
-    def part(self, name: str, file: str, wildcards: Wildcards = NONE) -> Any:
-        """The content of one file of a stage."""
+    def part(self, name: str, file: str, wildcards: Wildcards = NO_WILDCARDS) -> Any:
+        """Return the content of one file of a stage.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+        file : str
+            Name of the file.
+        wildcards : Wildcards
+            Text of each wildcard by name.
+
+        Returns
+        -------
+        Any
+            A table, arrays or a record.
+        """
         if not STAGES[name].wildcards:
             return self.store.output(name, self.values, lambda: self.compute(name)).content[file]
         return self.store.part(
             name, file, wildcards, self.values, lambda: self.compute(name, wildcards).content[file]
         )
 
-    def _given(self, source: From) -> Any:
+    def _read_source(self, source: From) -> Any:
         parts = [
-            self._of(where.get("case")).part(source.stage, source.file, _without_case(where))
-            for where in source.places(self.case)
+            self._of(wildcards.get("case")).part(source.stage, source.file, _without_case(wildcards))
+            for wildcards in source.file_wildcards(self.case)
         ]
-        return parts if source.each else parts[0]
+        return parts if source.each_wildcards else parts[0]
 
     def _of(self, case: str | None) -> "Chain":
         """The chain of another case of the same config; its own without a name."""
-        own = self.values["case"]
-        if case is None or case == own:
+        chain = self.values["case"]
+        if case is None or case == chain:
             return self
         folder = self.store.folder
         if folder is None:
-            return Chain(self.cases[case], replace(self.store, folder=None, others=()))
-        folders = [folder / Path(name).relative_to(own) for name in self.cases if name != case]
-        below = folder / Path(case).relative_to(own)
-        return Chain(self.cases[case], replace(self.store, folder=below, others=tuple(folders)))
+            return Chain(self.cases[case], replace(self.store, folder=None, other_cases=()))
+        folders = [folder / Path(name).relative_to(chain) for name in self.cases if name != case]
+        below = folder / Path(case).relative_to(chain)
+        return Chain(self.cases[case], replace(self.store, folder=below, other_cases=tuple(folders)))
 
 
-def _without_case(where: Wildcards) -> dict[str, str]:
-    return {name: text for name, text in where.items() if name != "case"}
+def _without_case(wildcards: Wildcards) -> dict[str, str]:
+    return {name: text for name, text in wildcards.items() if name != "case"}

@@ -43,21 +43,43 @@ class DisplacedContact:
           its distances from the ends of the face, negative beyond them.
         - pressure_angle_deg: slope of the common normal there; NaN for flanks with modifications or
           deviations and beyond the ends of the face, where the contact is searched.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table.
         """
         return unloaded_table(self.flanks)
 
     def loaded(self, torques: Torques = None) -> pd.DataFrame:
-        """One row a flank and torque: stiffness, transmission error, pressure, path; see `contact()`.
+        """Solve the contact of both flanks under torques; see `contact()`.
 
-        torques: on the pinion, N m, rising; those of the config unless given. Raises what `contact` raises.
+        Parameters
+        ----------
+        torques : Torques
+            Torques on the pinion, N m, rising; None for those of the config.
+
+        Returns
+        -------
+        pd.DataFrame
+            A row for each flank and torque: stiffness, transmission error, pressure, path. Raises what
+            `contact` raises.
         """
         table: pd.DataFrame = self.solve(torques).content["by_torque"]
         return table.copy()
 
     def to_excel(self, path: str | Path) -> Path:
-        """Write `table()` as a sheet of a workbook (.xlsx); returns the path.
+        """Write `table()` as a sheet of a workbook (.xlsx).
 
-        Raises MissingExtra where openpyxl is not installed.
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+
+        Returns
+        -------
+        Path
+            The path. Raises MissingExtra where openpyxl is not installed.
         """
         from facegear.io.workbook import write
 

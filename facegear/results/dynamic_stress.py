@@ -18,5 +18,10 @@ class DynamicStressResult(Result):
         Columns: mesh, mean_force_n, largest_force_n, dynamic_factor, pinion_mean_mpa, pinion_running_mpa,
         pinion_bound_mpa, face_gear_mean_mpa, face_gear_running_mpa, face_gear_bound_mpa, pressure_mean_mpa,
         pressure_bound_mpa, within_torques_solved.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["dynamic_stress"].copy()

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -31,6 +31,11 @@ class FrictionResult(Result):
         scuffing_safety, scuffing_margin_k, mean_flash_k, integral_temperature_c,
         allowed_integral_temperature_c, integral_safety, smallest_film_um, smallest_short_film_um,
         smallest_film_ratio, smallest_micropitting_film_ratio, micropitting_safety.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["by_torque"].copy()
 
@@ -39,6 +44,11 @@ class FrictionResult(Result):
 
         Columns: torque_n_m, position, loss_factor, loss_w, largest_flash_k, smallest_film_um,
         smallest_film_ratio.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["positions"].copy()
 
@@ -46,6 +56,11 @@ class FrictionResult(Result):
         """How much of the loss lies outside each limit of the friction model.
 
         Columns: friction_model, limit, limit_source, torque_n_m, loss_outside_percent.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["limits"].copy()
 
@@ -54,6 +69,11 @@ class FrictionResult(Result):
 
         Columns: torque_n_m, speed_rpm, loss_w, efficiency, largest_flash_k, contact_temperature_c,
         smallest_film_ratio.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["map"].copy()
 
@@ -61,10 +81,20 @@ class FrictionResult(Result):
     def plot(self, what: str = "path") -> "Figure":
         """`path`: sliding and temperature along the path of contact; `flank`: loss and temperature over the
         flank; `efficiency`: over torque and speed.
+
+        Parameters
+        ----------
+        what : str
+            Kind of the figure, one of those above.
+
+        Returns
+        -------
+        Figure
+            The figure.
         """
         from facegear.plots.friction import along_path, efficiency_map, over_flank
 
-        if chosen(what, ("path", "flank", "efficiency"), "plot") == "path":
+        if require_choice(what, ("path", "flank", "efficiency"), "plot") == "path":
             return along_path(self.content["local"])
         if what == "flank":
             return over_flank(self.content["local"], self.content["pressure"])

@@ -23,6 +23,11 @@ class GearBodiesResult(Result):
         stiffening_factor, damping_ratio, hub_axial_sqrt_kg, hub_spin_sqrt_kg_m, hub_sideways_sqrt_kg,
         hub_tilt_sqrt_kg_m, speed_rpm, forward_hz, backward_hz, forward_met_rpm, backward_met_rpm,
         frequency_change.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["modes"].copy()
 
@@ -44,6 +49,11 @@ class GearBodiesResult(Result):
 
         c and B of a mode are diagonals of full matrices over the modes of an order; `bodies/reduced.npz` has
         these.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table.
         """
         modes = self.content["modes"]
         columns = ["gear", "nodal_diameters", "mode", "frequency_hz", "gyroscopic_factor"]
@@ -56,6 +66,11 @@ class GearBodiesResult(Result):
         Columns: gear, mass_kg, inertia_kg_m2, diametral_inertia_kg_m2, elements, coordinates,
         own_compliance_m_per_n, modal_fraction, left_out_between_flanks_m_per_n,
         left_out_between_meshes_m_per_n, frequency_change.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["bodies"].copy()
 
@@ -63,6 +78,11 @@ class GearBodiesResult(Result):
         """One row a speed at which a mesh harmonic meets a wave, with how the meshes' phases add up.
 
         Columns: gear, nodal_diameters, mode, wave, harmonic, speed_rpm, frequency_hz, phase_factor.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["crossings"].copy()
 
@@ -70,6 +90,11 @@ class GearBodiesResult(Result):
         """One row a gear and order: motions below a mesh by unit forces.
 
         Columns: gear, order, axial_m_per_n, round_m_per_n, axial_round_m_per_n.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["compliance"].copy()
 
@@ -77,12 +102,23 @@ class GearBodiesResult(Result):
         """One row for two flanks of a gear: motion of the first against its force, by 1 N on the second.
 
         Columns: gear, first, first_flank, second, second_flank, compliance_m_per_n.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["influence"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """Sections with their first mode shapes."""
+        """Sections with their first mode shapes.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.gear_bodies import body_shapes
 
         return body_shapes(self.content["modes"], self.content["shapes"])

@@ -20,6 +20,11 @@ class GearWavesResult(Result):
         """One row a mode, gear and nodal diameters: frequency, damping, energy, how much travels forward.
 
         Columns, among others: order, frequency_hz, damping_ratio.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["waves"].copy()
 
@@ -27,6 +32,11 @@ class GearWavesResult(Result):
         """One row a speed and mode: frequency, damping, the waves with most of its energy, and its line.
 
         Columns, among others: speed_rpm, line, frequency_hz.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["campbell"].copy()
 
@@ -34,12 +44,23 @@ class GearWavesResult(Result):
         """One row a speed at which a mesh harmonic meets a mode, with how the meshes' phases add up.
 
         Columns, among others: line, speed_rpm, phase_factor.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["campbell_crossings"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """Modes over pinion speed with mesh harmonics."""
+        """Modes over pinion speed with mesh harmonics.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.gear_waves import machine_campbell
 
         campbell = self.content["campbell"]

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -18,7 +18,13 @@ class GeometryResult(Result):
     STAGE: ClassVar = "geometry"
 
     def table(self) -> pd.DataFrame:
-        """Columns quantity and value; the unit stands at the end of a quantity's name."""
+        """Columns quantity and value; the unit stands at the end of a quantity's name.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
+        """
         rows = [
             (f"{section}.{name}" if section else name, value)
             for section, content in _sections(self.content["pair"])
@@ -33,11 +39,22 @@ class GeometryResult(Result):
 
     @fit_for_paper
     def plot(self, what: str = "pair") -> "Figure":
-        """`pair`: both gears in mesh; `sections` of both teeth; `separation` around the contact path."""
+        """`pair`: both gears in mesh; `sections` of both teeth; `separation` around the contact path.
+
+        Parameters
+        ----------
+        what : str
+            Kind of the figure, one of those above.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.tooth_pair import separation, tooth_pair, tooth_sections
 
         record, flanks = self.content["pair"], self.content["flanks"]
-        if chosen(what, ("pair", "sections", "separation"), "plot") == "separation":
+        if require_choice(what, ("pair", "sections", "separation"), "plot") == "separation":
             return separation(record, flanks, self.content["contact"])
         return tooth_pair(record, flanks) if what == "pair" else tooth_sections(record, flanks)
 

@@ -22,6 +22,11 @@ class HuntingResult(Result):
 
         Columns: group, kind, mean, least, largest, k_gamma, group_ratio, undefined_fraction, torque_n_m,
         mesh_cycles, kkt_residual.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["groups"].copy()
 
@@ -30,6 +35,11 @@ class HuntingResult(Result):
 
         Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, group_ratio,
         drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["meshes"].copy()
 
@@ -37,6 +47,11 @@ class HuntingResult(Result):
         """One row a body: force on its bearing (N).
 
         Columns: body, mean_x_n, mean_y_n, mean_z_n, mean_radial_n, largest_radial_n, largest_axial_n.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["bearings"].copy()
 
@@ -44,12 +59,23 @@ class HuntingResult(Result):
         """One row a mesh cycle: share of each mesh in its group's load.
 
         Columns: cycle, and one of each mesh, such as `input 1/upper`, N.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["cycles"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """Share of each mesh in its group's load over the hunting cycle."""
+        """Share of each mesh in its group's load over the hunting cycle.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.hunting import hunting_figure
 
         _require_groups(self)
@@ -65,6 +91,11 @@ class SensitivityResult(Result):
         """One row an error and group, largest first: change of K_gamma per um.
 
         Columns: error, group, per_um.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["sensitivity"].copy()
 
@@ -72,12 +103,23 @@ class SensitivityResult(Result):
         """K_gamma against the bearing stiffness of the pinions of each role.
 
         Columns: kinematics, varied, stiffness_n_per_m, kind, k_gamma.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["scan"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """The errors that matter most."""
+        """The errors that matter most.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.hunting import sensitivity_figure
 
         _require_groups(self)
@@ -94,14 +136,24 @@ class FollowingResult(Result):
 
         Columns: group, kind, speed_rpm, mesh_cycles, mean, torque_n_m, k_gamma, k_v, k_gamma_static,
         k_gamma_static_whole, cut, sampling, lead_cycles, memory.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["groups"].copy()
 
     def meshes(self) -> pd.DataFrame:
         """One row a mesh: loads (N), K_gamma and K_v.
 
-        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, k_v,
-        group_ratio, drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
+        Columns: mesh, group, mean_n, least_n, largest_n, even_share_n, torque_n_m, k_gamma, k_v, group_ratio,
+        drive_fraction, back_fraction, open_fraction, wedged_fraction, first_open_cycle.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["meshes"].copy()
 

@@ -21,6 +21,11 @@ class MachineLossResult(Result):
 
         Columns: bin, hours, speed_rpm, power_in_w, power_through_meshes, loss_w, loss_percent, efficiency,
         energy_lost_kwh, within_torques_solved.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["machine"].copy()
 
@@ -31,6 +36,11 @@ class MachineLossResult(Result):
         loss_percent, loss_in_motion_w, pinion_heat_w, face_gear_heat_w, pinion_bulk_c, face_gear_bulk_c,
         largest_flash_k, contact_temperature_c, scuffing_safety, scuffing_margin_k, smallest_film_ratio,
         smallest_micropitting_film_ratio, micropitting_safety, within_torques_solved.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["meshes"].copy()
 
@@ -38,12 +48,23 @@ class MachineLossResult(Result):
         """A row a bin and body: heat and bulk temperature.
 
         Columns: bin, speed_rpm, body, heat_w, bulk_c.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["bodies"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """Where loss arises and heat goes at the nominal load."""
+        """Where loss arises and heat goes at the nominal load.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.friction import machine_heat
 
         return machine_heat(self.content["meshes"], self.content["bodies"])

@@ -18,9 +18,21 @@ class MeshLawResult(Result):
 
         Columns: gear, flank, deflection_um, torque_n_m, force_n, slope_n_per_m, table_rms_percent,
         table_largest_percent.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["levels"].copy()
 
     def arrays(self) -> dict[str, AnyArray]:
-        """Fourier series of force and slope at every level, as `stiffness/law.npz` holds them."""
+        """Return the Fourier series of force and slope at every level, as `stiffness/law.npz` holds them.
+
+        Returns
+        -------
+        dict[str, AnyArray]
+            Arrays by name, of LAW_ARRAYS: levels (tables, levels) in m, forces and slopes (tables, levels, 2,
+            orders) in N and N/m, table of each flank (2, 2).
+        """
         return {name: values.copy() for name, values in self.content["law"].items()}

@@ -12,11 +12,21 @@ if TYPE_CHECKING:
 
 
 def pressure_dataset(arrays: Arrays) -> "xr.Dataset":
-    """Over torque_n_m, position, pair and plane, from arrays as PRESSURE_ARRAYS.
+    """Return pressures over torque_n_m, position, pair and plane.
 
     `pressure_mpa`, `pressure_error_mpa` and `half_width_mm`: nan unless inside; `line_load_n_per_mm`: zero
     where unloaded; `where`: one of EDGES, empty where unloaded. Coordinates `pinion_radius_mm` (position,
     pair, plane) and `axial_mm` (plane) place the contact lines on the pinion's flank.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as PRESSURE_ARRAYS.
+
+    Returns
+    -------
+    xr.Dataset
+        The arrays with their coordinates.
     """
     import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
@@ -33,15 +43,15 @@ def pressure_dataset(arrays: Arrays) -> "xr.Dataset":
         array[cells] = values
         return ("torque_n_m", "position", "pair", "plane"), array.astype(str) if rest == "" else array
 
-    def known(name: str, scale: float) -> tuple[tuple[str, ...], AnyArray]:
+    def variable(name: str, scale: float) -> tuple[tuple[str, ...], AnyArray]:
         return spread(np.where(inside, scale * arrays[name], np.nan), np.nan)
 
     lines = np.hypot(points[..., 0], points[..., 2]).reshape(*shape[1:])
     return xr.Dataset(
         {
-            "pressure_mpa": known("line_pressure_pa", 1e-6),
-            "pressure_error_mpa": known("line_error_pa", 1e-6),
-            "half_width_mm": known("line_half_width_m", 1e3),
+            "pressure_mpa": variable("line_pressure_pa", 1e-6),
+            "pressure_error_mpa": variable("line_error_pa", 1e-6),
+            "half_width_mm": variable("line_half_width_m", 1e3),
             "line_load_n_per_mm": spread(1e-3 * arrays["line_load_n_per_m"], 0.0),
             "where": spread(np.array(EDGES, dtype=object)[arrays["line_where"]], ""),
         },

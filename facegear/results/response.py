@@ -20,6 +20,11 @@ class ResponseResult(Result):
         """The numbers that a sweep keeps: quantity (unit at its end), body_or_mesh, value, class.
 
         Columns: speed_rpm, quantity, body_or_mesh, value, class, periodic, symmetry_broken.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["summary"].copy()
 
@@ -27,6 +32,11 @@ class ResponseResult(Result):
         """Deflection (um) and elastic force (N) of every mesh over at most 32 mesh periods.
 
         Columns: mesh_cycle, time_s, mesh, deflection_um, elastic_force_n.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["response"].copy()
 
@@ -34,12 +44,23 @@ class ResponseResult(Result):
         """Force of every body on its bearing (N) along x, y, z and radially: at rest, mean, RMS, peak.
 
         Columns: body, direction, static_n, mean_n, rms_n, ac_rms_n, ac_rms_interval_n, peak_n, class.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["bearings"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """Deflections along the line of action against time, and their spectra."""
+        """Deflections along the line of action against time, and their spectra.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.response import deflections
 
         pinions = [pinion["name"] for pinion in self.values["transmission"]["pinions"]]

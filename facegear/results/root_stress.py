@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -24,6 +24,11 @@ class RootStressResult(Result):
 
         Columns: torque_n_m, body, fillet, largest_mpa, largest_error_mpa, passage, radius_mm, tangent_deg,
         at_30_deg_mpa, smallest_mpa.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["summary"].copy()
 
@@ -34,14 +39,30 @@ class RootStressResult(Result):
 
         Columns: gear, flank, torque_n_m, body, fillet, largest_mpa, largest_error_mpa, passage, radius_mm,
         tangent_deg, at_30_deg_mpa, smallest_mpa.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["by_flank"].copy()
 
     def stress(self, body: str = "face_gear") -> "xr.DataArray":
-        """Stress (MPa) of `pinion` or `face_gear` over torque, passage, fillet and the fillet's gauges."""
+        """Return the stress over torque, passage, fillet and the fillet's gauges.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+
+        Returns
+        -------
+        xr.DataArray
+            Stress, MPa, with its coordinates.
+        """
         import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
-        chosen(body, ("pinion", "face_gear"), "body")
+        require_choice(body, ("pinion", "face_gear"), "body")
         arrays = self.content["stress"]
         return xr.DataArray(
             1e-6 * arrays[f"{body}_stress_pa"],
@@ -56,9 +77,20 @@ class RootStressResult(Result):
 
     @fit_for_paper
     def plot(self, what: str = "passage") -> "Figure":
-        """Root stress over a tooth's `passage` through the mesh, or along the `face`."""
+        """Root stress over a tooth's `passage` through the mesh, or along the `face`.
+
+        Parameters
+        ----------
+        what : str
+            Kind of the figure, one of those above.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.strength import along_face_figure, passage_figure
 
-        if chosen(what, ("passage", "face"), "plot") == "passage":
+        if require_choice(what, ("passage", "face"), "plot") == "passage":
             return passage_figure(self.content["passage"])
         return along_face_figure(self.content["along_face"])

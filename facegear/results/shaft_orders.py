@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class ShaftOrdersResult(Result):
-    """What runouts, pitch deviations and single teeth do at the orders of turns, linearised."""
+    """Vibration at the orders of turns, by runouts, pitch deviations and single teeth, linearised."""
 
     STAGE: ClassVar = "shaft_orders"
 
@@ -21,6 +21,11 @@ class ShaftOrdersResult(Result):
         """One row an order of a gear's turns and mesh: frequency, error, force running and turned slowly.
 
         Columns: turning, order, of_mesh, frequency_hz, mesh, error_um, force_n, force_at_rest_n.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["orders"].copy()
 
@@ -28,6 +33,11 @@ class ShaftOrdersResult(Result):
         """One row a speed and one of the largest orders: the mesh with the largest force.
 
         Columns: speed_rpm, turning, order, of_mesh, frequency_hz, mesh, force_n.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["over_speed"].copy()
 
@@ -48,6 +58,11 @@ class ShaftOrdersResult(Result):
         """Forces at all orders at the nominal speed, and the largest orders over speed.
 
         Raises FacegearError for a machine without anything that turns with its gears.
+
+        Returns
+        -------
+        Figure
+            The figure.
         """
         from facegear.plots.shaft_orders import shaft_order_figure
 

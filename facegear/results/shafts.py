@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class ShaftsResult(Result):
-    """What pinions sit on and what torques turn, with the machine at rest under its mean torques."""
+    """Shafts of pinions and the masses that torques turn, with the machine at rest under its mean torques."""
 
     STAGE: ClassVar = "shafts"
 
@@ -22,6 +22,11 @@ class ShaftsResult(Result):
 
         Columns: pinion, stiffness_x_n_per_m, stiffness_y_n_per_m, stiffness_z_n_per_m, x_um, y_um, z_um,
         tilt_x_urad, tilt_y_urad.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["seats"].copy()
 
@@ -29,6 +34,11 @@ class ShaftsResult(Result):
         """Five rows a pinion with a shaft: its stiffness in x, y, z, tilt_x, tilt_y.
 
         Columns: pinion, motion, x, y, z, tilt_x, tilt_y.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["stiffness"].copy()
 
@@ -36,6 +46,11 @@ class ShaftsResult(Result):
         """One row a bearing of a shaft: its forces and moments.
 
         Columns: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["bearings"].copy()
 
@@ -44,6 +59,11 @@ class ShaftsResult(Result):
 
         Columns: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m, twist_deg, windup_deg,
         frequency_hz.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["torsion"].copy()
 
@@ -51,6 +71,11 @@ class ShaftsResult(Result):
         """Rows along each shaft: at_mm from its inner end, displacements x_um and y_um under load.
 
         Columns: pinion, at_mm, x_um, y_um.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["deflections"].copy()
 
@@ -59,6 +84,11 @@ class ShaftsResult(Result):
         """Shafts in side view with the forces on their bearings, over their deflections.
 
         Raises FacegearError where no pinion has a shaft.
+
+        Returns
+        -------
+        Figure
+            The figure.
         """
         from facegear.config.machine_layout import lumped_sections
         from facegear.plots.shafts import figures
@@ -66,7 +96,7 @@ class ShaftsResult(Result):
         pair = self.values["tooth_pair"]
         sections = lumped_sections(self.values["transmission"], pair)
         width = pair["pinion"] and pair["pinion"]["width_mm"]
-        drawn = figures(self.content["bearings"], self.content["deflections"], *sections, width)
-        if not drawn:
+        drawings = figures(self.content["bearings"], self.content["deflections"], *sections, width)
+        if not drawings:
             raise FacegearError(f"{self.values['case']}: no pinion has a shaft, there is nothing to draw")
-        return drawn[0]
+        return drawings[0]

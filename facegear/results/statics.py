@@ -16,6 +16,11 @@ class StaticsResult(Result):
         """One row a mesh: flank, force_n (negative on the back flank), pinion_torque_n_m, power_kw.
 
         Columns: mesh, flank, force_n, pinion_torque_n_m, power_kw.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["meshes"].copy()
 
@@ -23,6 +28,11 @@ class StaticsResult(Result):
         """One row a body: role, torque_n_m, speed_rpm, power_kw (positive: brought in).
 
         Columns: body, role, torque_n_m, speed_rpm, power_kw, share_of_input_percent.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["bodies"].copy()
 
@@ -30,5 +40,10 @@ class StaticsResult(Result):
         """Gear ratio, speeds, mesh frequency, power in and out, and by how much they differ.
 
         Columns: quantity, value.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["ratings"].copy()

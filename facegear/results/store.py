@@ -28,31 +28,46 @@ ROOT = Path(__file__).parents[2]
 class Store:
     """Results by the part of the config that they depend on; `values` are those of a whole config.
 
-    `folder` is that of the case in the workflow's results, None to read nothing; `others` are folders of
+    `folder` is that of the case in the workflow's results, None to read nothing; `other_cases` are folders of
     cases of the same config, with which this case may share files. `partial` keeps what is computed for a
     report, None to keep nothing; `failures` keeps errors, so that no stage fails twice. Changed copies of a
     machine share a store: what a change does not touch is found again.
     """
 
     folder: Path | None = None
-    known: dict[str, Any] = field(default_factory=dict)
-    others: tuple[Path, ...] = ()
+    outputs: dict[str, Any] = field(default_factory=dict)
+    other_cases: tuple[Path, ...] = ()
     partial: "PartialResults | None" = None
     failures: dict[str, FacegearError] | None = None
 
     @property
     def folders(self) -> tuple[Path, ...]:
         """All folders in which a file may lie."""
-        return () if self.folder is None else (self.folder, *self.others)
+        return () if self.folder is None else (self.folder, *self.other_cases)
 
     def output(self, name: str, values: Values, compute: Callable[[], "Outcome"]) -> StageOutput:
-        """All that a stage gives: known already, else stored and current, else computed."""
+        """Return all that a stage gives: known already, else stored and current, else computed.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+        values : Values
+            Plain values of a whole config.
+        compute : Callable[[], 'Outcome']
+            Function that computes the stage.
+
+        Returns
+        -------
+        StageOutput
+            Output of the stage.
+        """
 
         def find() -> StageOutput:
             for folder in self.folders:
-                stored = self._stored(name, values, folder)
-                if stored is not None:
-                    return stored
+                stored_output = self._read_stored(name, values, folder)
+                if stored_output is not None:
+                    return stored_output
             if self.partial is not None:
                 stages, key = stages_before(name, values), self._key(name, (), values)
                 content, summary, is_kept = self.partial.output(stages, key, compute)
@@ -65,43 +80,63 @@ class Store:
     def part(
         self, name: str, file: str, wildcards: Wildcards, values: Values, compute: Callable[[], Any]
     ) -> Any:
-        """As `output`, for one file of a stage that has wildcards."""
+        """Return one file of a stage that has wildcards: known already, else stored and current, else
+        computed.
+
+        Parameters
+        ----------
+        name : str
+            Name of the stage.
+        file : str
+            Name of the file.
+        wildcards : Wildcards
+            Text of each wildcard by name.
+        values : Values
+            Plain values of a whole config.
+        compute : Callable[[], Any]
+            Function that computes the file's content.
+
+        Returns
+        -------
+        Any
+            A table, arrays or a record.
+        """
 
         def find() -> Any:
-            kept = STAGES[name].files[file]
-            for path in (folder / kept.at(wildcards) for folder in self.folders):
+            kept_content = STAGES[name].files[file]
+            for path in (folder / kept_content.at(wildcards) for folder in self.folders):
                 if self._current_manifest(path, values):
-                    stored = _unless_corrupt(partial(kept.read, path))
-                    if stored is not None:
-                        return stored
+                    stored_content = _unless_corrupt(partial(kept_content.read, path))
+                    if stored_content is not None:
+                        return stored_content
             if self.partial is not None:
                 key = self._key(name, (file, *wildcards.values()), values)
-                return self.partial.part(stages_before(name, values), key, kept, compute)
+                return self.partial.part(stages_before(name, values), key, kept_content, compute)
             return compute()
 
         return self._once(name, (file, *wildcards.values()), values, find)
 
     def _once(self, name: str, part: tuple[str, ...], values: Values, find: Callable[[], Value]) -> Value:
-        """What `find` gives, kept under the part of the config that it depends on."""
+        """Return what `find` gives; it is kept under the part of the config that it depends on."""
         key = self._key(name, part, values)
         if self.failures is not None and key in self.failures:
             raise self.failures[key]
-        if key not in self.known:
+        if key not in self.outputs:
             try:
                 with extras_named():
-                    self.known[key] = find()
+                    self.outputs[key] = find()
             except FacegearError as error:
                 if self.failures is not None:
                     self.failures[key] = error
                 raise
-        return self.known[key]
+        return self.outputs[key]
 
     def _key(self, name: str, part: tuple[str, ...], values: Values) -> str:
         """Everything of the config that a part of a stage depends on, as text."""
         needs = [stage_needs(stage, values) for stage in stages_before(name, values)]
         return json.dumps([name, part, needs])
 
-    def _stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
+    def _read_stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
         summary, files = "", STAGES[name].readable
         for file in files.values():
             manifest = self._current_manifest(folder / file.path, values)
@@ -123,15 +158,28 @@ class Store:
 
 
 def case_folder(folders: Iterable[Path], results: str | Path, case: str) -> Path | None:
-    """The case's folder below `results`, which a relative one is looked for in `folders`; None without one
-    that may be entered.
+    """Return the folder of a case below the results.
+
+    Parameters
+    ----------
+    folders : Iterable[Path]
+        Folders in which relative results are looked for.
+    results : str or Path
+        Folder of the results.
+    case : str
+        Name of the case.
+
+    Returns
+    -------
+    Path or None
+        The folder; None where there is none that may be entered.
     """
-    stored = [folder / results / case for folder in folders]
-    return next((folder for folder in stored if os.access(folder, os.R_OK | os.X_OK)), None)
+    case_path = [folder / results / case for folder in folders]
+    return next((folder for folder in case_path if os.access(folder, os.R_OK | os.X_OK)), None)
 
 
 def _unless_corrupt(read: Callable[[], Value]) -> Value | None:
-    """What is stored; None, with a warning, if it is damaged."""
+    """Return the stored content; None, with a warning, if it is damaged."""
     try:
         return read()
     except CorruptFile as error:

@@ -23,12 +23,23 @@ class StressOverSpeedResult(Result):
 
         Columns: motion, class, speed_rpm, mesh, largest_force_n, dynamic_factor, pinion_mpa, face_gear_mpa,
         pressure_mpa, within_torques_solved, worst.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["stress_over_speed"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """Root stress, pressure and dynamic factor over speed."""
+        """Root stress, pressure and dynamic factor over speed.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.stress_over_speed import stress_over_speed
 
         return stress_over_speed(self.content["stress_over_speed"], self.values["dynamics"]["speed_rpm"])

@@ -38,9 +38,20 @@ class Study:
     changes: Changes
 
     def results(self, answer: str, **arguments: Any) -> dict[str, Result]:
-        """What each machine answers, by label; `answer` is a method of a gearbox, `arguments` are its own.
+        """Compute what each machine answers.
 
-        Raises FacegearError for an answer that there is not, and what the answer raises.
+        Parameters
+        ----------
+        answer : str
+            Name of a method of a gearbox.
+        **arguments : Any
+            Arguments of the method.
+
+        Returns
+        -------
+        dict[str, Result]
+            Result by label. Raises FacegearError for an answer that does not exist, and what the answer
+            raises.
         """
         results = {}
         for label, machine in self.machines.items():
@@ -53,7 +64,20 @@ class Study:
         return results
 
     def table(self, answer: str, **arguments: Any) -> pd.DataFrame:
-        """The tables of an answer under each other, with the changed keys as columns in front."""
+        """Join the tables of an answer, with the changed keys as columns in front.
+
+        Parameters
+        ----------
+        answer : str
+            Name of a method of a gearbox.
+        **arguments : Any
+            Arguments of the method.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table.
+        """
         parts = []
         for label, result in self.results(answer, **arguments).items():
             part = result.table()  # type: ignore[attr-defined]
@@ -95,13 +119,26 @@ class Study:
     def plot(self, answer: str, plot: Mapping[str, Any] | None = None, **arguments: Any) -> "Figure":
         """Draw all machines in the same axes, for answers whose plot takes others `beside` it.
 
-        `plot`: further arguments of that plot. Those answers are load_sharing and sweep. The legend names
-        what was changed in words, with units.
+        Those answers are load_sharing and sweep. The legend names what was changed in words, with units.
+
+        Parameters
+        ----------
+        answer : str
+            Name of a method of a gearbox.
+        plot : Mapping[str, Any] | None
+            Further arguments of that plot.
+        **arguments : Any
+            Arguments of the method.
+
+        Returns
+        -------
+        Figure
+            The figure.
         """
-        (label, first), *others = self.results(answer, **arguments).items()
+        (label, first), *other_results = self.results(answer, **arguments).items()
         if answer not in ("load_sharing", "sweep"):
             raise FacegearError(f"answer = {answer!r}: must be one of load_sharing, sweep")
-        results_by_words = {self._words(name): result for name, result in others}
+        results_by_words = {self._words(name): result for name, result in other_results}
         describe = type(first).plot.describe  # type: ignore[attr-defined]
         return describe(first, label=self._words(label), beside=results_by_words, **(plot or {}))
 
@@ -139,9 +176,18 @@ def _answer(method: Any, answer: str, arguments: Mapping[str, Any]) -> Any:
 
 
 def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any]]:
-    """Label -> keys and values, in every combination.
+    """Return keys and values in every combination, by label.
 
-    Raises FacegearError for a key without values, and for a key that holds another.
+    Parameters
+    ----------
+    values : Mapping[str, Iterable[Any]]
+        Values of each dotted config key.
+
+    Returns
+    -------
+    dict[str, dict[str, Any]]
+        Keys and values by label. Raises FacegearError for a key without values, and for a key that holds
+        another.
     """
     if not isinstance(values, Mapping) or not values:
         raise FacegearError(f"study = {values!r}: must be a mapping of config keys to lists of values")

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Never
 
-from facegear.pipeline.reported import REPORTED, asked_for, table_name
+from facegear.pipeline.reported import REPORT_TABLES, asked_for, table_name
 from facegear.pipeline.table import STAGES
 from facegear.report.data_sheet import DATA_SHEET, data_sheet_table
 from facegear.report.first_screen import found_in_words, key_cards
@@ -55,7 +55,7 @@ def summary_text(chain: Chain) -> str:
 
 def _known_tables(chain: Chain) -> "Iterator[tuple[str, pd.DataFrame]]":
     """Yield the tables of the report that were computed in this session or are stored and current."""
-    for name, files in REPORTED.items():
+    for name, files in REPORT_TABLES.items():
         if not asked_for(name, chain.case):
             continue
         try:

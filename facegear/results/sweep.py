@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
-from facegear.errors import FacegearError, chosen
+from facegear.errors import FacegearError, require_choice
 from facegear.results.base import Result, require_answers
 from facegear.results.paper_figure import fit_for_paper
 
@@ -27,6 +27,11 @@ class SweepResult(Result):
 
         Columns: direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
         symmetry_broken.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["sweep"].copy()
 
@@ -55,6 +60,11 @@ class SweepResult(Result):
         deflection_ac_rms_before_um, deflection_ac_rms_after_um, class_before, class_after,
         leading_multiplier_before, resonance, resonance_rpm, energy_fraction, mode, order, periodic_before,
         periodic_after, after_irregular, symmetry_broken.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         jumps = self.content["jumps"]
         return jumps[jumps["kind"] != JumpKind.IRREGULAR].reset_index(drop=True)
@@ -63,6 +73,11 @@ class SweepResult(Result):
         """One row for each abrupt change at which irregular motion begins or ends; columns as of `jumps`.
 
         Where irregular motion ends is a matter of chance: there `error_rpm` is the step of the sweep.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table.
         """
         jumps = self.content["jumps"]
         return jumps[jumps["kind"] == JumpKind.IRREGULAR].reset_index(drop=True)
@@ -72,6 +87,11 @@ class SweepResult(Result):
 
         Columns: direction, speed_rpm, quantity, body_or_mesh, value, class, resonance, resonance_rpm,
         energy_fraction, mode, order, periodic, after_irregular, symmetry_broken.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["resonances"].copy()
 
@@ -86,21 +106,35 @@ class SweepResult(Result):
 
         `beside`: sweeps of other gearboxes with the same meshes by label, drawn in the same axes; of the
         meshes alone.
+
+        Parameters
+        ----------
+        what : str
+            Kind of the figure, one of those above.
+        label : str
+            Name of this result in the legend.
+        beside : 'Mapping[str, SweepResult] | None'
+            Results of other gearboxes by label, drawn in the same axes; None for this one alone.
+
+        Returns
+        -------
+        Figure
+            The figure.
         """
         from facegear.plots.dynamics import SWEEP_FIGURES, drawn_machine
 
-        draw = SWEEP_FIGURES[chosen(what, tuple(SWEEP_FIGURES), "plot")]
+        draw = SWEEP_FIGURES[require_choice(what, tuple(SWEEP_FIGURES), "plot")]
         teeth = self.values["tooth_pair"]["pinion_teeth"]
         machine = drawn_machine(self.values["transmission"], teeth)
         if not beside:
             return draw(self.content, machine)
         from facegear.plots.sweeps_beside import mesh_sweeps_beside
 
-        chosen(what, ("meshes",), "plot beside other sweeps")
+        require_choice(what, ("meshes",), "plot beside other sweeps")
         require_answers(beside, SweepResult)
         sweeps = {name: result.content["sweep"] for name, result in {label: self, **beside}.items()}
-        meshes = [f"{pinion}/{side}" for side in machine.sides for pinion in machine.shown]
-        known = [set(sweep["body_or_mesh"]) for sweep in sweeps.values()]
-        if not all(set(meshes) <= names for names in known):
+        meshes = [f"{pinion}/{side}" for side in machine.sides for pinion in machine.pinions_shown]
+        item_names = [set(sweep["body_or_mesh"]) for sweep in sweeps.values()]
+        if not all(set(meshes) <= names for names in item_names):
             raise FacegearError("beside: must be sweeps of machines with the same meshes")
         return mesh_sweeps_beside(sweeps, meshes)

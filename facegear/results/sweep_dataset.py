@@ -10,13 +10,23 @@ if TYPE_CHECKING:
 
 KEYS = ["direction", "speed_rpm"]
 NO_ITEM = "machine"
-"""What stands for body or mesh in rows that belong to the whole machine."""
+"""Name in place of body or mesh, in rows that belong to the whole machine."""
 
 
 def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
-    """Quantities over direction, speed_rpm and mesh, body or nothing, in the order of the table.
+    """Return quantities over direction, speed_rpm and mesh, body or nothing, in the order of the table.
 
     The names of meshes hold a stroke, `pinion/side`, those of bodies do not.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table of a sweep.
+
+    Returns
+    -------
+    xr.Dataset
+        The quantities with their coordinates.
     """
     import xarray as xr  # a third of a second, and few answers are asked for as a dataset
 
@@ -31,15 +41,17 @@ def sweep_dataset(table: pd.DataFrame) -> "xr.Dataset":
     }
     speeds = table.drop_duplicates(KEYS)
     variables = {
-        "class": _filled(speeds, "class", axes, ""),
-        "periodic": _filled(speeds, "periodic", axes, ""),
-        "after_irregular": _filled(speeds, "after_irregular", axes, ""),
-        "symmetry_broken": _filled(speeds, "symmetry_broken", axes, ""),
+        "class": _fill_array(speeds, "class", axes, ""),
+        "periodic": _fill_array(speeds, "periodic", axes, ""),
+        "after_irregular": _fill_array(speeds, "after_irregular", axes, ""),
+        "symmetry_broken": _fill_array(speeds, "symmetry_broken", axes, ""),
     }
     for quantity, rows in table.groupby("quantity", sort=False):
         kind = _kind(rows["body_or_mesh"].iloc[0])
-        own = {**axes, kind: items[kind]} if kind else axes
-        variables[str(quantity)] = _filled(rows.rename(columns={"body_or_mesh": kind}), "value", own, np.nan)
+        variable_axes = {**axes, kind: items[kind]} if kind else axes
+        variables[str(quantity)] = _fill_array(
+            rows.rename(columns={"body_or_mesh": kind}), "value", variable_axes, np.nan
+        )
     return xr.Dataset(variables)
 
 
@@ -48,11 +60,11 @@ def _kind(name: str) -> str:
     return "" if name == NO_ITEM else "mesh" if "/" in name else "body"
 
 
-def _filled(rows: pd.DataFrame, column: str, axes: dict[str, list], nothing: object) -> "xr.DataArray":
-    """One column over its axes; `nothing` where the table has no row."""
+def _fill_array(rows: pd.DataFrame, column: str, axes: dict[str, list], empty: object) -> "xr.DataArray":
+    """One column over its axes; `empty` where the table has no row."""
     import xarray as xr  # as above
 
-    values = np.full([len(axis) for axis in axes.values()], nothing, dtype=object if nothing == "" else float)
-    places = tuple(pd.Index(axis).get_indexer(rows[name]) for name, axis in axes.items())
-    values[places] = rows[column].to_numpy()
+    values = np.full([len(axis) for axis in axes.values()], empty, dtype=object if empty == "" else float)
+    item_indices = tuple(pd.Index(axis).get_indexer(rows[name]) for name, axis in axes.items())
+    values[item_indices] = rows[column].to_numpy()
     return xr.DataArray(values, coords=axes, dims=list(axes))

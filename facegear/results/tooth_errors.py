@@ -1,4 +1,4 @@
-"""What single teeth that deviate from the others add to the transmission error."""
+"""Contribution of single teeth that deviate from the others to the transmission error."""
 
 from typing import TYPE_CHECKING, ClassVar
 
@@ -20,12 +20,23 @@ class ToothErrorsResult(Result):
         """One row an order of a gear's turns: amplitude (um) of the drive flank's transmission error.
 
         Columns, among others: order, unloaded_um, loaded_um.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["orders"].copy()
 
     @fit_for_paper
     def plot(self) -> "Figure":
-        """What the teeth of either gear add under load, over one of its turns."""
+        """Draw what the teeth of either gear add under load, over one of its turns.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.tooth_errors import tooth_error_figure
 
         return tooth_error_figure(self.content["curves"], self.content["orders"])

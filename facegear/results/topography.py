@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import require_choice
 from facegear.results.base import Result
 from facegear.results.paper_figure import fit_for_paper
 
@@ -21,12 +21,30 @@ class TopographyResult(Result):
         """One row a place: face_mm and profile_mm, deviation (um), nominal point (mm) and normal.
 
         Columns: body, tooth, flank, face_mm, profile_mm, deviation_um, x_mm, y_mm, z_mm, nx, ny, nz.
+
+        Returns
+        -------
+        pd.DataFrame
+            The table, with units in the names of its columns.
         """
         return self.content["points"].copy()
 
     @fit_for_paper
     def plot(self, body: str = "face_gear") -> "Figure":
-        """Chart of both flanks of `pinion` or `face_gear`."""
+        """Draw the chart of both flanks of a body.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+
+        Returns
+        -------
+        Figure
+            The figure.
+        """
         from facegear.plots.topography import topography_figure
 
-        return topography_figure(self.content["points"], chosen(body, ("pinion", "face_gear"), "plot"))
+        return topography_figure(
+            self.content["points"], require_choice(body, ("pinion", "face_gear"), "plot")
+        )

@@ -9,12 +9,12 @@ from typing import Any
 
 from facegear.config.arguments import typed_arguments
 from facegear.config.notes import notes
-from facegear.errors import FacegearError, MissingExtra, chosen, extras_named, file_path
+from facegear.errors import FacegearError, MissingExtra, extras_named, file_path, require_choice
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.pipeline.asked import machine_loads
 from facegear.pipeline.estimated_time import outlook_in_words
 from facegear.pipeline.needs import resolved_needs
-from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair, table_name
+from facegear.pipeline.reported import REPORT_TABLES, asked_for, reported_tables, shown_pair, table_name
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
@@ -48,10 +48,20 @@ class WholeCase:
     failures: dict[str, str] = field(default_factory=dict)
 
     def write_report(self, path: str | Path) -> Path:
-        """Write the report as one page that needs no other file; returns its path.
+        """Write the report as one page that needs no other file.
 
         A stage that fails is named at the head of the page, with the reason. What is computed is kept beside
         the page until it is complete, so that a report that was stopped goes on from there.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write.
+
+        Returns
+        -------
+        Path
+            Its path.
         """
         path = file_path(path)
         if path.suffix != ".html":
@@ -63,7 +73,7 @@ class WholeCase:
         store = replace(self.chain.store, partial=partial, failures={})
         going_on = replace(self, chain=replace(self.chain, store=store))
         with extras_named(), TemporaryDirectory() as folder:
-            stages = [stage for stage in self._asked() if _is_reported(stage)]
+            stages = [stage for stage in self._stages_made() if _is_reported(stage)]
             text = going_on._page(Path(folder), going_on._computable(stages))
         text = with_omissions(text, [f"{titles}: {reason}" for titles, reason in self.omissions()])
         with atomic_path(path) as temporary:
@@ -93,27 +103,38 @@ class WholeCase:
         str
             Number of stages, and their processor time in s or min.
         """
-        return outlook_in_words(self.chain.case, [stage for stage in self._asked() if _is_reported(stage)])
+        return outlook_in_words(
+            self.chain.case, [stage for stage in self._stages_made() if _is_reported(stage)]
+        )
 
     def write(self, folder: str | Path) -> Path:
-        """Write the files of every stage, its figures and the report below `folder`.
+        """Write the files of every stage, its figures and the report below a folder.
 
         They have the names and contents that the workflow gives them, without records of what made them.
-        Returns the path of the report.
+
+        Parameters
+        ----------
+        folder : str or Path
+            The folder.
+
+        Returns
+        -------
+        Path
+            Path of the report.
         """
         folder = file_path(folder, "folder")
         require_writable(folder)
-        for stage in self._asked():
+        for stage in self._stages_made():
             content = self._output(stage).content
             paths = {
-                name: [str(folder / file.at({"each": text})) for text in file.each(self.chain.case)]
-                if file.each
+                name: [str(folder / file.at({"each": text})) for text in file.each_text(self.chain.case)]
+                if file.each_text
                 else str(folder / file.path)
                 for name, file in stage.files.items()
             }
             write_stage(stage, content, paths)
         with extras_named():
-            text = self._page(folder / "figures", self._asked())
+            text = self._page(folder / "figures", self._stages_made())
         with atomic_path(folder / "report.html") as temporary:
             temporary.write_text(text, encoding="utf-8")
         return folder / "report.html"
@@ -143,26 +164,30 @@ class WholeCase:
             If the case has no figure of such a name.
         """
         folder, names = file_path(folder, "folder"), [names] if isinstance(names, str) else names
-        chosen(suffix, PICTURE_ENDINGS, "suffix")
+        require_choice(suffix, PICTURE_ENDINGS, "suffix")
         if not isinstance(names, Sequence):
             raise FacegearError(f"names = {names!r}: must be a list of names of figures")
-        known = {name: stage for stage in self._asked() for name in self._figure_names(stage)}
+        known_names = {name: stage for stage in self._stages_made() for name in self._figure_names(stage)}
         for name in names:
-            if name not in known:
-                raise FacegearError(f"figure {name!r}: must be one of this case: {', '.join(known)}")
-        wanted = names or known
+            if name not in known_names:
+                raise FacegearError(f"figure {name!r}: must be one of this case: {', '.join(known_names)}")
+        requested_names = names or known_names
         paths = []
         with extras_named():
-            for stage in (stage for stage in self._asked() if set(self._figure_names(stage)) & set(wanted)):
+            for stage in (
+                stage
+                for stage in self._stages_made()
+                if set(self._figure_names(stage)) & set(requested_names)
+            ):
                 self._output(stage)
                 for name, figure in self._figures(stage):
-                    if name in wanted:
+                    if name in requested_names:
                         path = folder / f"{name}{suffix}"
                         save(figure, path)
                         paths.append(path)
         return paths
 
-    def _asked(self) -> list[Stage]:
+    def _stages_made(self) -> list[Stage]:
         return [stage for name, stage in STAGES.items() if asked_for(name, self.chain.case)]
 
     def _computable(self, stages: list[Stage]) -> list[Stage]:
@@ -184,7 +209,7 @@ class WholeCase:
         self.on_stage(name, f"{NOT_COMPUTED}: {'for the same reason' if is_known else reason}")
 
     def _output(self, stage: Stage) -> StageOutput:
-        """What a stage gives; recorded the first time."""
+        """Return the output of a stage; it is recorded the first time."""
         start = time.perf_counter()
         output = self.chain.output(stage.name)
         if stage.name not in [record["rule"] for record in self.records]:
@@ -199,14 +224,15 @@ class WholeCase:
 
         for stage in stages:
             self._output(stage)
-        wanted = reported_tables(self.chain.case)
+        table_files = reported_tables(self.chain.case)
         if machine_loads(self.chain.case):
-            wanted.append(("duty_loads", "duty_loads"))
-        wanted = [(name, file) for name, file in wanted if name not in self.failures]
+            table_files.append(("duty_loads", "duty_loads"))
+        table_files = [(name, file) for name, file in table_files if name not in self.failures]
         tables = {
-            table_name(STAGES[name].files[file].path): self.chain.part(name, file) for name, file in wanted
+            table_name(STAGES[name].files[file].path): self.chain.part(name, file)
+            for name, file in table_files
         }
-        pictures = {name: path for stage in stages for name, path in self._drawn(stage, folder)}
+        pictures = {name: path for stage in stages for name, path in self._draw_stage(stage, folder)}
         values = {**self.chain.values, "reproduction": False}
         return case_report(
             values,
@@ -222,7 +248,7 @@ class WholeCase:
 
     def _figure_names(self, stage: Stage) -> Sequence[str]:
         """Names of all figures of a stage."""
-        return stage.figures.named(self.chain.case) if stage.figures else ()
+        return stage.figures.figure_names(self.chain.case) if stage.figures else ()
 
     def _figures(self, stage: Stage) -> Iterator[tuple[str, Any]]:
         """Draw the figures of a stage; yield each with its name."""
@@ -230,10 +256,12 @@ class WholeCase:
         if stage.figures is None or not names:
             return
         draw, needs = load(stage.figures.draw), resolved_needs(stage.figures.needs, self.chain.case)
-        figures = draw(**self.chain.given(stage.figures.upstream), **typed_arguments(draw, needs))
+        figures = draw(
+            **self.chain.upstream_arguments(stage.figures.upstream), **typed_arguments(draw, needs)
+        )
         yield from zip(names, figures, strict=True)
 
-    def _drawn(self, stage: Stage, folder: Path) -> Iterator[tuple[str, Path]]:
+    def _draw_stage(self, stage: Stage, folder: Path) -> Iterator[tuple[str, Path]]:
         """Write the figures of a stage, as svg and interactive; yield the name and svg of each."""
         try:
             for name, figure in self._figures(stage):
@@ -263,4 +291,4 @@ class WholeCase:
 
 
 def _is_reported(stage: Stage) -> bool:
-    return stage.name in REPORTED or (stage.figures is not None and stage.name not in NOT_REPORTED)
+    return stage.name in REPORT_TABLES or (stage.figures is not None and stage.name not in NOT_REPORTED)

@@ -2,7 +2,7 @@
 
 from facegear.config.branches import Branches, branch_plan
 from facegear.dynamics.branches.machine import random_starts
-from facegear.dynamics.branches.stored import to_arrays
+from facegear.dynamics.branches.motion_arrays import to_arrays
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
@@ -15,7 +15,29 @@ def branches_starts(
     branches: Branches | None,
     speed_rpm: float,
 ) -> Outcome:
-    """`motions` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
+    """Find the motions that random starts end on, at one of the speeds of the config.
+
+    Parameters
+    ----------
+    number : int
+        Index of the speed, from 0.
+    machine : Machine
+        The machine.
+    branches : Branches or None
+        Section `branches` of the config, None if it has none.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Arrays `motions`.
+
+    Raises
+    ------
+    NotConverged
+        Naming the speed.
+    """
     model = build_model(machine)
     plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]

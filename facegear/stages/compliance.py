@@ -11,12 +11,31 @@ from facegear.stages.outcome import Outcome
 
 
 def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> Outcome:
-    """`arrays` of the flank of `body`, pinion or face_gear, whatever loads it.
+    """Compute the compliance of the flank of one body, whatever loads it.
 
-    Raises ConfigError for a sector with more teeth than the gear and a mesh turned inside out.
+    Parameters
+    ----------
+    body : str
+        `pinion` or `face_gear`.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    mesh : Mesh
+        Section `mesh` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    Outcome
+        `arrays` of the flank.
+
+    Raises
+    ------
+    ConfigError
+        For a sector with more teeth than the gear, and for a mesh turned inside out.
     """
     setup = contact_setup(tooth_pair, mesh, contact)
     flank = gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
-    teeth = count_noun(len(flank.compliance.others), "tooth", "teeth")
-    summary = f"{count_noun(len(flank.compliance.own), 'flank node')}, {teeth} coupled"
+    teeth = count_noun(len(flank.compliance.neighbour_blocks), "tooth", "teeth")
+    summary = f"{count_noun(len(flank.compliance.loaded_tooth), 'flank node')}, {teeth} coupled"
     return Outcome({"arrays": to_arrays(flank)}, summary)

@@ -21,11 +21,31 @@ def contact(
     tooth_pair: ToothPair,
     contact: Contact,
 ) -> Outcome:
-    """`ltca`, `by_torque`, `by_flank` (tables), `pressure`, `loads` (arrays), of stage compliance's flanks.
+    """Solve the loaded tooth contact at every position and torque.
 
-    All but `by_flank` and `loads` are those of the upper gear's drive flank. The others are solved where
-    assembly errors part them from it, on the same compliances. Raises NotConverged naming position and
-    torque.
+    All parts but `by_flank` and `loads` belong to the drive flank of the upper gear. The other flanks are
+    solved where assembly errors make them differ from it, on the same compliances.
+
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`.
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
     """
     teeth, plan = pair(tooth_pair), contact_plan(contact)
     flanks = from_arrays(pinion), from_arrays(face_gear)
@@ -34,7 +54,18 @@ def contact(
 
 
 def contents(analysis: ContactAnalysis) -> dict[str, Any]:
-    """The parts of stage contact."""
+    """Return the parts of stage contact.
+
+    Parameters
+    ----------
+    analysis : ContactAnalysis
+        Solved contact of all flanks that differ.
+
+    Returns
+    -------
+    dict[str, Any]
+        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`.
+    """
     return {
         "ltca": analysis.ltca[0],
         "by_torque": analysis.by_torque[0],
@@ -45,7 +76,7 @@ def contents(analysis: ContactAnalysis) -> dict[str, Any]:
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:
-    """The mean, or why there is none, and what fillets carry from FILLET_CONTACT on."""
+    """Mean stiffness, or why there is none, and the share of the fillets from FILLET_CONTACT on."""
     mean, row = table["k_average_n_per_m"].mean(skipna=False), table.loc[table["fillet_share"].idxmax()]
     text = f"mean stiffness {format_number(1e-6 * mean)} N/um"
     if np.isnan(mean):
@@ -53,5 +84,5 @@ def _mean_stiffness(table: pd.DataFrame) -> str:
         text = f"no mean stiffness as the teeth interfere, by {depth:.3g} um along the line of action"
     if row["fillet_share"] < FILLET_CONTACT:
         return text
-    carried = f"{100 * row['fillet_share']:.2g} % of the torque at {row['torque_n_m']:g} N m"
-    return f"{text}, fillets carry up to {carried}, kept out of pressure and root stress"
+    fillet_text = f"{100 * row['fillet_share']:.2g} % of the torque at {row['torque_n_m']:g} N m"
+    return f"{text}, fillets carry up to {fillet_text}, kept out of pressure and root stress"

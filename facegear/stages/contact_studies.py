@@ -18,12 +18,27 @@ def contact_studies(
     by_torque: Sequence[pd.DataFrame],
     pressure: Sequence[Arrays],
 ) -> Outcome:
-    """`table`, a row a case and torque.
+    """Collect the contact of the studies' cases side by side.
 
-    `points`: study, point and label of each case, the machine itself first; of each case the record of stage
-    geometry and what stage contact gives.
+    Parameters
+    ----------
+    points : Sequence[Sequence[str]]
+        Study, point and label of each case, the machine itself first.
+    pair : Sequence[Mapping[str, Any]]
+        Record `pair` of stage geometry of each case.
+    ltca : Sequence[pd.DataFrame]
+        Table of stage contact of each case.
+    by_torque : Sequence[pd.DataFrame]
+        Table of stage contact of each case.
+    pressure : Sequence[Arrays]
+        Arrays of stage contact of each case.
+
+    Returns
+    -------
+    Outcome
+        `table`, a row for each case and torque.
     """
-    cases = StudiedContact.several(points, pair, ltca, by_torque, pressure)
+    cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
     table = study_table(cases)
     shift = table.loc[table["path_shift_mm"].abs().idxmax()]
     largest = f"{shift['path_shift_mm']:.2f} mm ({shift['label']})"

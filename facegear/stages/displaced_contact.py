@@ -1,4 +1,4 @@
-"""Contact of a pair whose two bodies stand displaced, without load and under torques."""
+"""Contact of a pair with both bodies displaced, without load and under torques."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -13,9 +13,9 @@ from facegear.config.tooth_pair import ToothPair, pair, pair_design
 from facegear.config.transmission import Transmission
 from facegear.contact.gear_flank import from_arrays
 from facegear.contact.posed import met_contacts
-from facegear.errors import ConfigError, chosen
+from facegear.errors import ConfigError, require_choice
 from facegear.number_format import count_noun
-from facegear.poses.displaced import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
+from facegear.poses.displaced_flanks import DisplacedFlank, Displacement, MeshPlace, displaced_flanks
 from facegear.stages.outcome import Outcome
 
 SHIFTS, TURNS = ("x_um", "y_um", "z_um"), ("tilt_x_deg", "tilt_y_deg", "theta_deg")
@@ -31,33 +31,76 @@ def displaced_contact(
     face_gear: Mapping[str, float],
     position: float,
 ) -> dict[str, DisplacedFlank]:
-    """Return the unloaded contact of both flanks of a mesh by their names.
+    """Compute the unloaded contact of both flanks of a mesh.
 
-    Raises ConfigError for a pair without bodies, for displacements that are no numbers within bounds, and for
-    a mesh that the machine does not have, NotConverged where flanks do not face each other.
+    Parameters
+    ----------
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    transmission : Transmission or None
+        Section `transmission` of the config, None if it has none.
+    mesh : str or None
+        Name of the mesh, None for the first one; None without a transmission.
+    pinion : Mapping[str, float]
+        Displacement of the pinion by the keys SHIFTS (um) and TURNS (deg); missing keys are 0.
+    face_gear : Mapping[str, float]
+        Displacement of the face gear, by the same keys (um, deg).
+    position : float
+        Place within a pitch, fraction from 0 to 1.
+
+    Returns
+    -------
+    dict[str, DisplacedFlank]
+        The contact by name of the flank.
+
+    Raises
+    ------
+    ConfigError
+        For a pair without bodies, a displacement that is not a number within bounds, and a mesh that the
+        machine does not have.
+    NotConverged
+        Where flanks do not face each other.
     """
     if not (isinstance(position, int | float) and 0.0 <= position <= 1.0):
         raise ConfigError("position", position, "from 0 to 1, a place of a pitch")
-    moved = displacement("pinion", pinion), displacement("face_gear", face_gear)
+    displacements = displacement("pinion", pinion), displacement("face_gear", face_gear)
     return displaced_flanks(
-        pair_design(tooth_pair), _place(tooth_pair, transmission, mesh), *moved, float(position)
+        pair_design(tooth_pair), _mesh_place(tooth_pair, transmission, mesh), *displacements, float(position)
     )
 
 
-def displacement(body: str, given: Mapping[str, float]) -> Displacement:
-    """Return the displacement of a body from its keys SHIFTS and TURNS. Raises ConfigError."""
-    for key, value in given.items():
-        chosen(key, (*SHIFTS, *TURNS), f"key of the displacement {body}")
+def displacement(body: str, values: Mapping[str, float]) -> Displacement:
+    """Return the displacement of a body.
+
+    Parameters
+    ----------
+    body : str
+        `pinion` or `face_gear`, for the messages.
+    values : Mapping[str, float]
+        Values by the keys SHIFTS (um) and TURNS (deg); missing keys are 0.
+
+    Returns
+    -------
+    Displacement
+        The displacement, in m and rad.
+
+    Raises
+    ------
+    ConfigError
+        For another key and for a value that is not a number within bounds.
+    """
+    for key, value in values.items():
+        require_choice(key, (*SHIFTS, *TURNS), f"key of the displacement {body}")
         largest = LARGEST_SHIFT if key in SHIFTS else LARGEST_TURN
         number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
         if not number or abs(value) > largest:
             raise ConfigError(f"{body}.{key}", value, f"a number from -{largest:g} to {largest:g}")
-    x, y, z = (1e-6 * given.get(key, 0.0) for key in SHIFTS)
-    first, second, third = (radians(given.get(key, 0.0)) for key in TURNS)
+    x, y, z = (1e-6 * values.get(key, 0.0) for key in SHIFTS)
+    first, second, third = (radians(values.get(key, 0.0)) for key in TURNS)
     return Displacement((x, y, z), (first, second, third))
 
 
-def _place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: str | None) -> MeshPlace:
+def _mesh_place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: str | None) -> MeshPlace:
     """Return the place of a named mesh, or of the first one.
 
     A pair without a machine counts as that of an upper gear and a pinion at azimuth 0.
@@ -69,12 +112,23 @@ def _place(tooth_pair: ToothPair, transmission: Transmission | None, mesh: str |
         return MeshPlace("upper", 0.0, pitch_radius)
     machine = layout(transmission, ToothNumbers.of_config(tooth_pair.model_dump()))
     names = machine.mesh_names
-    i, g = machine.meshes[names.index(chosen(mesh, names, "mesh")) if mesh is not None else 0]
+    i, g = machine.meshes[names.index(require_choice(mesh, names, "mesh")) if mesh is not None else 0]
     return MeshPlace(machine.gears[g].side.value, float(machine.angles[i]) % tau, machine.tilt_distance(g))
 
 
 def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
-    """One row a flank; columns in `DisplacedContactResult.table`."""
+    """Tabulate the unloaded contact.
+
+    Parameters
+    ----------
+    flanks : Mapping[str, DisplacedFlank]
+        Contact by name of the flank.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each flank; `DisplacedContactResult.table` describes the columns.
+    """
     return pd.DataFrame(
         [
             {
@@ -85,7 +139,7 @@ def unloaded_table(flanks: Mapping[str, DisplacedFlank]) -> pd.DataFrame:
                 "outward_um": 1e6 * flank.outward,
                 "approach_um": 1e6 * flank.approach,
                 "deflection_um": 1e6 * flank.deflection,
-                "closing_um": 1e6 * flank.closing,
+                "closing_um": 1e6 * flank.closure,
                 "backlash_um": 1e6 * flank.backlash,
                 "unloaded_path_mm": 1e3 * flank.path,
                 "to_inner_end_mm": 1e3 * flank.to_inner_end,
@@ -104,17 +158,41 @@ def loaded_displaced_contact(
     bodies: tuple[Arrays, Arrays],
     torques: Sequence[float],
 ) -> Outcome:
-    """`by_torque` and `ltca` (tables) of both flanks under torques on the pinion, N m, rising.
+    """Solve the contact of both flanks under torques.
 
-    bodies: arrays of stage compliance, of the pinion and the face gear. Raises NotConverged.
+    Parameters
+    ----------
+    flanks : Mapping[str, DisplacedFlank]
+        Unloaded contact by name of the flank.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    contact : Contact
+        Section `contact` of the config.
+    bodies : tuple[Arrays, Arrays]
+        Arrays of stage compliance, of the pinion and of the face gear.
+    torques : Sequence[float]
+        Torques on the pinion, N m, rising.
+
+    Returns
+    -------
+    Outcome
+        Tables `by_torque` and `ltca`.
+
+    Raises
+    ------
+    NotConverged
+        Where contact does not converge.
     """
     plan = replace(contact_plan(contact), root_stress=False)
-    met = [(flank.design, tuple(torques)) for flank in flanks.values()]
-    own, compliances = pair(tooth_pair), (from_arrays(bodies[0]), from_arrays(bodies[1]))
-    solved = list(met_contacts(own.design, own.materials, compliances, plan, met))
+    requests = [(flank.design, tuple(torques)) for flank in flanks.values()]
+    teeth, compliances = pair(tooth_pair), (from_arrays(bodies[0]), from_arrays(bodies[1]))
+    solutions = list(met_contacts(teeth.design, teeth.materials, compliances, plan, requests))
     tables = {
         name: pd.concat(
-            [getattr(each, name).assign(flank=flank) for flank, each in zip(flanks, solved, strict=True)],
+            [
+                getattr(solution, name).assign(flank=flank)
+                for flank, solution in zip(flanks, solutions, strict=True)
+            ],
             ignore_index=True,
         )
         for name in ("by_torque", "ltca")

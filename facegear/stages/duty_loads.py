@@ -18,18 +18,39 @@ def duty_loads(
     accuracy: Accuracy,
     strength: Strength | None,
 ) -> Outcome:
-    """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
+    """Compute the mesh forces of the running machine in every bin of its duty cycle.
 
     K_gamma is the largest mean of a mesh cycle over the mesh's nominal even share of the bin's load, K_v the
-    largest force over that mean. Raises ConfigError without section strength, NotConverged naming the speed.
+    largest force over that mean.
+
+    Parameters
+    ----------
+    inputs : MachineInputs
+        What the machine is built from.
+    accuracy : Accuracy
+        Section `dynamics.accuracy` of the config.
+    strength : Strength or None
+        Section `strength` of the config, None if it has none.
+
+    Returns
+    -------
+    Outcome
+        Tables `duty_loads` and `duty_spectrum`.
+
+    Raises
+    ------
+    ConfigError
+        Without section strength.
+    NotConverged
+        Naming the speed.
     """
     if strength is None:
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
-    known = settings(accuracy)
+    integration = settings(accuracy)
     progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
     for number, load in enumerate(strength.duty, start=1):
         machine = inputs.at_torque(load.torque_n_m).build()
-        history = history_of(machine, load.speed_rpm, known)
+        history = history_of(machine, load.speed_rpm, integration)
         key = (number, load.torque_n_m, load.speed_rpm)
         loads += [(*key, *row) for row in load_rows(history)]
         spectrum += [(number, *row) for row in spectrum_rows(history)]
@@ -43,8 +64,8 @@ def duty_loads(
 
 def _summary(table: pd.DataFrame) -> str:
     worst = first_largest_row(table, "largest_force_n")
-    where = f"{worst['mesh']} in bin {worst['bin']} of {worst['torque_n_m']:g} N m"
+    position = f"{worst['mesh']} in bin {worst['bin']} of {worst['torque_n_m']:g} N m"
     factors = f"K_gamma {worst['mesh_load_factor']:.3f}, K_v {worst['dynamic_factor']:.3f}"
-    text = f"largest force {worst['largest_force_n']:.0f} N, {where}: {factors}"
+    text = f"largest force {worst['largest_force_n']:.0f} N, {position}: {factors}"
     loose = ", ".join(str(number) for number in table.loc[~table["settled"], "bin"].unique())
     return f"{text}; bins without a settled motion: {loose}" if loose else text

@@ -25,19 +25,40 @@ def duty_poses(
     inputs: MachineInputs,
     strength: Strength | None,
 ) -> Outcome:
-    """`duty_poses` (table), a row a bin, mesh and flank, COLUMNS.
+    """Compute the contact pose of every mesh under the load of every bin of the duty cycle.
 
-    Raises ConfigError without section strength, InvalidInput for a pose outside the surface, NotConverged.
+    Parameters
+    ----------
+    surface : Arrays
+        Arrays of stage pose_surface.
+    inputs : MachineInputs
+        What the machine is built from.
+    strength : Strength or None
+        Section `strength` of the config, None if it has none.
+
+    Returns
+    -------
+    Outcome
+        `duty_poses`, a row for each bin, mesh and flank, with COLUMNS.
+
+    Raises
+    ------
+    ConfigError
+        Without section strength.
+    InvalidInput
+        For a pose outside the surface.
+    NotConverged
+        Where an equilibrium does not converge.
     """
     if strength is None:
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
-    known, rows = PoseSurface.of_arrays(surface), []
+    pose_surface, rows = PoseSurface.of_arrays(surface), []
     for number, load in enumerate(strength.duty, start=1):
         machine = inputs.at_torque(load.torque_n_m).build()
-        result = operating_pose(machine, known)
+        result = operating_pose(machine, pose_surface)
         for mesh, name in enumerate(machine.layout.mesh_names):
             for back, flank in enumerate(FLANKS):
-                contact = contact_at(known.pair, result.poses.errors(mesh, bool(back)))
+                contact = contact_at(pose_surface.pair, result.poses.errors(mesh, bool(back)))
                 carries = bool(back) == (result.forces[mesh] < 0.0)
                 rows.append(
                     (

@@ -21,9 +21,26 @@ def dynamics_response(
     accuracy: Accuracy,
     speed_rpm: float,
 ) -> Outcome:
-    """`response`, `spectrum`, `summary`, `multipliers` and `bearings` (tables).
+    """Compute the response at one speed.
 
-    Raises NotConverged naming the speed.
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    accuracy : Accuracy
+        Section `dynamics.accuracy` of the config.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `response`, `spectrum`, `summary`, `multipliers` and `bearings`.
+
+    Raises
+    ------
+    NotConverged
+        Naming the speed.
     """
     model = build_model(machine)
     response = simulate(model, speed_rpm, replace(settings(accuracy), second_looks=SECOND_LOOKS))

@@ -8,7 +8,7 @@ from facegear.arrays import AnyArray, Arrays
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.steady_state.spectra import ORDERS
-from facegear.dynamics.sweeps.stored import from_arrays
+from facegear.dynamics.sweeps.chunk_arrays import from_arrays
 from facegear.dynamics.sweeps.summary import sweep_summary
 from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, seam_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import Direction, whole_sweep
@@ -23,14 +23,28 @@ def dynamics_sweep(
     sweep: Sweep,
     threads: int = 1,
 ) -> Outcome:
-    """`sweep`, `jumps`, `resonances`, `seams` (tables) and `waterfall` (arrays).
+    """Join the chunks of a sweep.
 
-    `chunks`: the arrays of all chunks, direction by direction in the order of the config.
+    Parameters
+    ----------
+    chunks : Iterable[Arrays]
+        Arrays of all chunks, direction by direction in the order of the config.
+    machine : Machine
+        The machine.
+    sweep : Sweep
+        Section `sweep` of the config.
+    threads : int
+        Number of threads.
+
+    Returns
+    -------
+    Outcome
+        Tables `sweep`, `jumps`, `resonances` and `seams`, arrays `waterfall`.
     """
     model = build_model(machine)
     plan, layout = sweep_plan(sweep), model.machine.layout
-    stored = iter(chunks)
-    pieces = {name: [from_arrays(next(stored)) for _ in range(plan.chunks)] for name in plan.directions}
+    chunk_arrays = iter(chunks)
+    pieces = {name: [from_arrays(next(chunk_arrays)) for _ in range(plan.chunks)] for name in plan.directions}
     directions = whole_sweep(model, plan, pieces, threads)
     modes = loaded_modes(model.machine)
     content = {

@@ -2,7 +2,7 @@
 
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.stored import to_arrays
+from facegear.dynamics.sweeps.chunk_arrays import to_arrays
 from facegear.dynamics.sweeps.sweep import run_chunk
 from facegear.number_format import count_noun
 from facegear.progress import Progress
@@ -16,11 +16,33 @@ def dynamics_sweep_chunk(
     machine: Machine,
     sweep: Sweep,
 ) -> Outcome:
-    """`chunk` (arrays). Raises NotConverged naming the speed."""
+    """Compute one chunk of a sweep.
+
+    Parameters
+    ----------
+    direction : str
+        Direction of the sweep, `up` or `down`.
+    number : int
+        Number of the chunk.
+    machine : Machine
+        The machine.
+    sweep : Sweep
+        Section `sweep` of the config.
+
+    Returns
+    -------
+    Outcome
+        Arrays `chunk`.
+
+    Raises
+    ------
+    NotConverged
+        Naming the speed.
+    """
     plan = sweep_plan(sweep)
     total = sum(map(len, plan.chunk(direction, number)))
     progress = Progress(f"sweep {direction}, chunk {number}", total)
     model = build_model(machine)
-    before, own = run_chunk(model, plan, direction, number, progress.step)
-    summary = f"{count_noun(len(own.speeds), 'speed')} {direction}, {len(before.speeds)} for overlap"
-    return Outcome({"chunk": to_arrays(before, own)}, summary)
+    before, piece = run_chunk(model, plan, direction, number, progress.step)
+    summary = f"{count_noun(len(piece.speeds), 'speed')} {direction}, {len(before.speeds)} for overlap"
+    return Outcome({"chunk": to_arrays(before, piece)}, summary)

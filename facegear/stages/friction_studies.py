@@ -12,10 +12,21 @@ from facegear.stages.outcome import Outcome
 def friction_studies(
     points: Sequence[Sequence[str]], meshes: Sequence[pd.DataFrame], machine: Sequence[pd.DataFrame]
 ) -> Outcome:
-    """`table`, a row a case at its nominal load: loss of the machine, and its hottest mesh.
+    """Collect loss, temperature and film of the studies' cases side by side.
 
-    `points`: study, point and label of each case, the machine itself first; of each case the tables of stage
-    machine_loss.
+    Parameters
+    ----------
+    points : Sequence[Sequence[str]]
+        Study, point and label of each case, the machine itself first.
+    meshes : Sequence[pd.DataFrame]
+        Table `meshes` of stage machine_loss of each case.
+    machine : Sequence[pd.DataFrame]
+        Table `machine` of stage machine_loss of each case.
+
+    Returns
+    -------
+    Outcome
+        `table`, a row for each case at its nominal load: loss of the machine, and its hottest mesh.
     """
     rows = []
     for point, by_mesh, whole in zip(points, meshes, machine, strict=True):
@@ -24,8 +35,8 @@ def friction_studies(
         hottest = at_rest.loc[at_rest["contact_temperature_c"].idxmax()]
         of_machine = [nominal[key] for key in ("speed_rpm", "power_in_w", "loss_w", "loss_percent")]
         of_mesh = [hottest[key] for key in ("mesh", "contact_temperature_c", "scuffing_safety")]
-        solved = bool(at_rest["within_torques_solved"].all())
-        rows.append((*point, *of_machine, *of_mesh, at_rest["smallest_film_ratio"].min(), solved))
+        is_within_torques = bool(at_rest["within_torques_solved"].all())
+        rows.append((*point, *of_machine, *of_mesh, at_rest["smallest_film_ratio"].min(), is_within_torques))
     table = pd.DataFrame(rows, columns=list(FRICTION_STUDY_COLUMNS))
     min_loss, max_loss = table["loss_percent"].min(), table["loss_percent"].max()
     return Outcome(

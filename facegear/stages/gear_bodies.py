@@ -15,7 +15,7 @@ from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.gear_body import tables
 from facegear.gear_body.body import SolvedBody, solve_body
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.number_format import count_noun
 from facegear.stages.outcome import Outcome
@@ -25,49 +25,69 @@ from facegear.transmission.layout import Layout
 def gear_bodies(
     transmission: Transmission, tooth_pair: ToothPair, speed_rpm: float, last_rpm: float
 ) -> Outcome:
-    """`bodies`, `modes`, `crossings`, `compliance`, `influence` (tables), `reduced` and `shapes` (arrays) of
-    the gears that bend.
+    """Compute modes and compliance of the face gears that bend, with their hubs held.
 
-    Raises ConfigError where all face gears are rigid, NotConverged.
+    Parameters
+    ----------
+    transmission : Transmission
+        Section `transmission` of the config.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+    last_rpm : float
+        Largest pinion speed for crossings, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `bodies`, `modes`, `crossings`, `compliance` and `influence`, arrays `reduced`, `shapes`.
+
+    Raises
+    ------
+    ConfigError
+        Where all face gears are rigid.
+    NotConverged
+        Where the modes do not converge.
     """
     sections = elastic_gears(transmission)
     if not sections:
         raise ConfigError("transmission.face_gear.body", None, "given: all face gears are rigid")
     machine = layout(transmission, ToothNumbers.of_config(tooth_pair.model_dump()))
-    solved = _solved(sections, tooth_pair)
+    bodies = _solve_bodies(sections, tooth_pair)
     parts = [
-        _parts(gear, solved[gear], sections[gear], tooth_pair, machine, (speed_rpm, last_rpm))
+        _parts(gear, bodies[gear], sections[gear], tooth_pair, machine, (speed_rpm, last_rpm))
         for gear in sections
     ]
     names = ("bodies", "modes", "crossings", "compliance", "influence")
     content: dict[str, Any] = {
         name: pd.concat([part[name] for part in parts], ignore_index=True) for name in names
     }
-    shapes = [item for gear in sections for item in tables.shape_arrays(gear, solved[gear]).items()]
-    reduced = [
+    shapes = [item for gear in sections for item in tables.shape_arrays(gear, bodies[gear]).items()]
+    reduced_arrays = [
         item
         for gear, section in sections.items()
-        for item in _reduced(solved[gear], section, tooth_pair).arrays(gear).items()
+        for item in _reduce_body(bodies[gear], section, tooth_pair).arrays(gear).items()
     ]
-    content |= {"reduced": dict(reduced), "shapes": dict(shapes)}
+    content |= {"reduced": dict(reduced_arrays), "shapes": dict(shapes)}
     gives = _gives_way(content["bodies"], transmission, machine)
-    said = _summary(content["bodies"], content["modes"]) + _fitted(sections, solved) + gives
-    return Outcome(content, said)
+    summary = _summary(content["bodies"], content["modes"]) + _fitted_layers(sections, bodies) + gives
+    return Outcome(content, summary)
 
 
-def _fitted(sections: Mapping[str, BodySection], solved: Mapping[str, SolvedBody]) -> str:
-    """Layers of teeth that were fitted."""
+def _fitted_layers(sections: Mapping[str, BodySection], bodies: Mapping[str, SolvedBody]) -> str:
+    """Describe the tooth layers whose stiffness was fitted."""
     parts = []
     for gear, section in sections.items():
-        if section.teeth == "fitted" and (layer := solved[gear].section.layer) is not None:
+        if section.teeth == "fitted" and (layer := bodies[gear].section.layer) is not None:
             fractions = f"{layer.density:.4f} of the ring, {layer.hoop:.4f} of E and {layer.shear:.4f} of G"
             parts.append(f"; {gear}: teeth fitted, {fractions} round the axis")
     return "".join(parts)
 
 
 def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout) -> str:
-    """What a reader should know where a body gives more than the backlash takes up: contacts that the config
-    did not mean then open or close.
+    """Warn where a body deflects by more than the backlash: contacts then open or close that the config did
+    not intend.
 
     The load is that of the pinion with the largest torque, shared evenly by its meshes.
     """
@@ -80,22 +100,22 @@ def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout
     return f"; at {force:.4g} N a mesh gives {gives:.4g} um, more than its backlash of {backlash:.4g} um"
 
 
-def _reduced(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
+def _reduce_body(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
     return reduced_body(body, contact_patch(section, tooth_pair), *section.damping)
 
 
-def _solved(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
-    """Every gear's body; those that are alike are solved once."""
-    done: dict[BodySection, SolvedBody] = {}
+def _solve_bodies(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
+    """Solve every gear's body; equal bodies are solved once."""
+    bodies: dict[BodySection, SolvedBody] = {}
     for section in sections.values():
-        if section not in done:
-            done[section] = solve_body(
+        if section not in bodies:
+            bodies[section] = solve_body(
                 fitted_shape(section, tooth_pair),
                 section.max_frequency_hz,
                 section.nodal_diameters,
                 tooth_pair.face_gear_teeth,
             )
-    return {gear: done[section] for gear, section in sections.items()}
+    return {gear: bodies[section] for gear, section in sections.items()}
 
 
 def _parts(
@@ -127,10 +147,10 @@ def _parts(
 def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
     parts = []
     for row in bodies.itertuples():
-        own = modes[modes["gear"] == row.gear]
-        first = f"from {own['frequency_hz'].min():.1f} Hz" if len(own) else "none"
+        gear_modes = modes[modes["gear"] == row.gear]
+        first = f"from {gear_modes['frequency_hz'].min():.1f} Hz" if len(gear_modes) else "none"
         parts.append(
-            f"{row.gear}: {row.mass_kg:.4g} kg, {count_noun(len(own), 'mode')} {first} "
+            f"{row.gear}: {row.mass_kg:.4g} kg, {count_noun(len(gear_modes), 'mode')} {first} "
             f"(+-{100 * row.frequency_change:.2g} %), {1e9 * row.own_compliance_m_per_n:.4g} nm/N at a mesh, "
             f"of which the modes hold {100 * row.modal_fraction:.1f} %"
         )

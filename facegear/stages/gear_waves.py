@@ -20,10 +20,30 @@ def gear_waves(
     speed_rpm: float,
     last_rpm: float,
 ) -> Outcome:
-    """`waves`, `campbell` and `campbell_crossings` (tables) of the machine about its static load, meshes at
-    their mean stiffness: at the nominal speed, and from rest to `last_rpm`.
+    """Compute the modes of the machine about its static load, with meshes at their mean stiffness.
 
-    Raises ConfigError where all face gears are rigid, NotConverged.
+    The modes are those at the nominal speed; the Campbell diagram goes from rest to `last_rpm`.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+    last_rpm : float
+        Last speed of the Campbell diagram, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `waves`, `campbell` and `campbell_crossings`.
+
+    Raises
+    ------
+    ConfigError
+        Where all face gears are rigid.
+    NotConverged
+        Where the static load does not converge.
     """
     if machine.bodies is None:
         raise ConfigError("transmission.face_gear.body", None, "given: all face gears are rigid")
@@ -33,8 +53,8 @@ def gear_waves(
     growing = modes.frequencies[modes.damping_ratios < -GROWS]
     summary = f"{count_noun(modes.frequencies.size, 'mode')} at {speed_rpm:g} rpm"
     if growing.size:
-        named = ", ".join(f"{frequency:.1f}" for frequency in growing)
-        summary = f"{summary}; the damping that turns with the gears makes those grow at {named} Hz"
+        frequencies = ", ".join(f"{frequency:.1f}" for frequency in growing)
+        summary = f"{summary}; the damping that turns with the gears makes those grow at {frequencies} Hz"
     summary += _left_out(machine)
     layout, linear = machine.layout, machine.linear
     campbell = campbell_table(layout, linear, speeds, all_modes)
@@ -50,8 +70,10 @@ def gear_waves(
 
 def _left_out(machine: Machine) -> str:
     """Return what motion leaves out between flanks, as a force at rest and a change of frequencies."""
-    moving, whole = (mean_equilibrium(each).forces[0] for each in (machine, at_rest(machine)))
-    off, largest = float(np.abs(moving - whole).max()), float(np.abs(whole).max())
+    reduced_forces, full_forces = (
+        mean_equilibrium(variant).forces[0] for variant in (machine, at_rest(machine))
+    )
+    off, largest = float(np.abs(reduced_forces - full_forces).max()), float(np.abs(full_forces).max())
     return (
         f"; the compliance between meshes that they leave out moves mesh forces at rest by up to {off:.3g} N "
         f"of {largest:.5g} N"

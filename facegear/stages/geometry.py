@@ -13,8 +13,24 @@ EASE_OFF_GRID = (37, 29)
 
 
 def geometry(tooth_pair: ToothPair) -> Outcome:
-    """`pair` (record), `flanks` and `contact` (arrays). Raises ConfigError for a pair without bodies,
-    FacegearError for bodies that jam.
+    """Compute limits, contact path, backlash and smallest gaps of the tooth pair.
+
+    Parameters
+    ----------
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    Outcome
+        Record `pair`, arrays `flanks` and `contact`.
+
+    Raises
+    ------
+    ConfigError
+        For a pair without bodies.
+    FacegearError
+        For bodies that jam.
     """
     design = pair(tooth_pair).design
     analysis = analyse(design)

@@ -14,7 +14,25 @@ def hunting(
     machine: Machine,
     positions: int,
 ) -> Outcome:
-    """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
+    """Compute the quasi-static load sharing over the hunting cycle.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    positions : int
+        Number of positions in a mesh cycle.
+
+    Returns
+    -------
+    Outcome
+        Tables `meshes`, `groups`, `bearings`, `cycles`, `scan` and `sensitivity`.
+
+    Raises
+    ------
+    NotConverged
+        Where an equilibrium does not converge.
+    """
     machine_at_rest = at_rest(machine)
     cycle = hunting_cycle(machine_at_rest, positions)
     content = {
@@ -25,11 +43,11 @@ def hunting(
         "scan": bearing_scan(machine_at_rest),
         "sensitivity": sensitivities(cycle),
     }
-    known = groups.dropna(subset="k_gamma")
-    if known.empty:
+    groups_with_factor = groups.dropna(subset="k_gamma")
+    if groups_with_factor.empty:
         return Outcome(content, "no path shares a load")
     past = float(past_law(machine_at_rest, cycle.cycles, cycle.flank_forces).max())
     beyond = f"; past the mesh law's last level at up to {100.0 * past:.2g} % of positions" if past else ""
-    worst = first_largest_row(known, "k_gamma")
+    worst = first_largest_row(groups_with_factor, "k_gamma")
     summary = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) at {worst['torque_n_m']:g} N m"
     return Outcome(content, f"{summary} over {worst['mesh_cycles']:.0f} mesh cycles{beyond}")

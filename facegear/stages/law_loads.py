@@ -1,4 +1,4 @@
-"""Where the forces of the meshes lie in the table of their load-dependent law, and what lies beyond."""
+"""Mesh forces beside the levels of their load-dependent law, and what lies beyond the last level."""
 
 import pandas as pd
 
@@ -9,12 +9,29 @@ from facegear.stages.outcome import Outcome
 def law_loads(
     levels: pd.DataFrame, response: pd.DataFrame, summary: pd.DataFrame, sweep: pd.DataFrame
 ) -> Outcome:
-    """`loads` (table), a row a mesh."""
+    """Compare the mesh forces with the levels of the mesh law.
+
+    Parameters
+    ----------
+    levels : pd.DataFrame
+        Table of stage mesh_law.
+    response : pd.DataFrame
+        Table of stage dynamics_response.
+    summary : pd.DataFrame
+        Table of stage dynamics_response.
+    sweep : pd.DataFrame
+        Table of stage dynamics_sweep.
+
+    Returns
+    -------
+    Outcome
+        Table `loads`, a row for each mesh.
+    """
     table = law_loads_table(levels, response, summary, sweep)
-    used = (table["largest_n"] / table["last_level_n"]).max()
+    ratio = (table["largest_n"] / table["last_level_n"]).max()
     past = table["sweep_past_fraction"].max()
     text = (
-        f"at most {100.0 * used:.0f} % of the last level's force at the nominal speed; in the sweep past it "
+        f"at most {100.0 * ratio:.0f} % of the last level's force at the nominal speed; in the sweep past it "
         f"for up to {100.0 * past:.2g} % of the time"
     )
     return Outcome({"loads": table}, text)

@@ -9,7 +9,18 @@ from facegear.stiffness.tables import load_dependence as table_of
 
 
 def load_dependence(ltca: pd.DataFrame) -> Outcome:
-    """`table` from the table of stage contact."""
+    """Compute mean and variation of the mesh stiffness at every torque.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+
+    Returns
+    -------
+    Outcome
+        `table`.
+    """
     table = table_of(load_table(ltca))
     means = table.loc[table["definition"] == "average", "mean_n_per_m"]
     least, largest = (format_number(1e-6 * mean) for mean in (means.min(), means.max()))

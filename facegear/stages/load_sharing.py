@@ -2,7 +2,7 @@
 
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.load_sharing.run import load_sharing as shared
+from facegear.load_sharing.run import load_sharing as solve_load_sharing
 from facegear.load_sharing.study_forces import force_table
 from facegear.load_sharing.tables import curve_table, summary_table
 from facegear.stages.outcome import Outcome
@@ -15,8 +15,30 @@ def load_sharing(
     speed_rpm: float,
     options: LoadSharing,
 ) -> Outcome:
-    """`curve`, `summary` and `forces` (tables). Raises NotConverged naming the speed."""
-    sharing = shared(
+    """Compute the load sharing at one speed.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    accuracy : Accuracy
+        Section `dynamics.accuracy` of the config.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+    options : LoadSharing
+        Section `load_sharing` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `curve`, `summary` and `forces`.
+
+    Raises
+    ------
+    NotConverged
+        Naming the speed.
+    """
+    sharing = solve_load_sharing(
         machine,
         speed_rpm,
         settings(accuracy),

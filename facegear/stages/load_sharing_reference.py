@@ -16,10 +16,32 @@ def load_sharing_reference(
     range_accuracy: Accuracy,
     options: LoadSharing,
 ) -> Outcome:
-    """`reference` and `speeds` (tables). Raises NotConverged naming the speed."""
-    wanted = sharing_options(options)
-    reference = reference_table(machine, settings(accuracy), wanted)
-    speeds = speed_range_table(machine, settings(range_accuracy), wanted)
+    """Compute the load sharing at rest, running slowly, and over a range of speeds.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    accuracy : Accuracy
+        Section `dynamics.accuracy` of the config.
+    range_accuracy : Accuracy
+        Section `dynamics.sweep.accuracy` of the config, for the range of speeds.
+    options : LoadSharing
+        Section `load_sharing` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `reference` and `speeds`.
+
+    Raises
+    ------
+    NotConverged
+        Naming the speed.
+    """
+    sharing = sharing_options(options)
+    reference = reference_table(machine, settings(accuracy), sharing)
+    speeds = speed_range_table(machine, settings(range_accuracy), sharing)
     return Outcome({"reference": reference, "speeds": speeds}, _summary(speeds))
 
 

@@ -28,24 +28,47 @@ def lubrication(
     lubrication: LubricationSection | None,
     speed_rpm: float,
 ) -> Outcome:
-    """`by_torque`, `positions`, `limits`, `map`, `excitation` (tables) and `local` (arrays) from stored
-    contact.
+    """Compute sliding, loss, heat, film and scuffing from stored contact.
 
-    ltca, pressure: of stage contact. Raises ConfigError without section lubrication, TooHot where a body
-    passes the oil's flash point, NotConverged where bulk temperatures do not settle.
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    lubrication : LubricationSection or None
+        Section `lubrication` of the config, None if it has none.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `by_torque`, `positions`, `limits`, `map` and `excitation`, arrays `local`.
+
+    Raises
+    ------
+    ConfigError
+        Without section lubrication.
+    TooHot
+        Where a body passes the oil's flash point.
+    NotConverged
+        Where bulk temperatures do not settle.
     """
     section = lubrication_section(lubrication)
-    loaded = loaded_pair(ltca, pressure, section, tooth_pair)
+    pair_under_load = loaded_pair(ltca, pressure, section, tooth_pair)
     limits, speed = limits_of(section), speed_rpm * pi / 30
-    states = loaded.states(speed)
-    table = by_torque_table(loaded, states, speed, limits)
+    states = pair_under_load.states(speed)
+    table = by_torque_table(pair_under_load, states, speed, limits)
     content = {
         "by_torque": table,
-        "positions": position_table(loaded, states),
-        "limits": limit_table(loaded, states),
-        "map": map_table(loaded, map_speeds(section, speed_rpm)),
-        "local": local_arrays(loaded, states, speed),
-        "excitation": excitation_table(loaded, states, pair(tooth_pair).design),
+        "positions": position_table(pair_under_load, states),
+        "limits": limit_table(pair_under_load, states),
+        "map": map_table(pair_under_load, map_speeds(section, speed_rpm)),
+        "local": local_arrays(pair_under_load, states, speed),
+        "excitation": excitation_table(pair_under_load, states, pair(tooth_pair).design),
     }
     last = table.iloc[-1]
     summary = (
@@ -56,7 +79,23 @@ def lubrication(
 
 
 def lubrication_section(section: LubricationSection | None) -> LubricationSection:
-    """Section lubrication. Raises ConfigError without it."""
+    """Return section `lubrication`, or refuse a config without it.
+
+    Parameters
+    ----------
+    section : LubricationSection or None
+        The section, None if the config has none.
+
+    Returns
+    -------
+    LubricationSection
+        The section.
+
+    Raises
+    ------
+    ConfigError
+        Without section lubrication.
+    """
     if section is None:
         raise ConfigError("lubrication", None, "given, for friction and heat")
     return section
@@ -68,5 +107,22 @@ def loaded_pair(
     section: LubricationSection,
     tooth_pair: ToothPair,
 ) -> LoadedPair:
-    """The stored contact of the pair with its sliding, by torque."""
+    """Return the stored contact of the pair with its sliding, by torque.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+    section : LubricationSection
+        Section `lubrication` of the config.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    LoadedPair
+        The loaded and lubricated pair.
+    """
     return LoadedPair(contacts_of(ltca, pressure, tooth_pair), lubrication_of(section, tooth_pair))

@@ -24,7 +24,7 @@ from facegear.lubrication.machine_tables import (
 from facegear.stages.lubrication import loaded_pair, lubrication_section
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
-from facegear.transmission.ratings import mesh_table, rated
+from facegear.transmission.ratings import compute_ratings, mesh_table
 
 
 def machine_loss(
@@ -39,25 +39,57 @@ def machine_loss(
     strength: Strength | None,
     speed_rpm: float,
 ) -> Outcome:
-    """`meshes`, `bodies`, `machine` (tables): at the nominal load at rest and in every bin of a duty cycle.
+    """Compute loss and heat at the nominal load at rest and in every bin of the duty cycle.
 
-    ltca, pressure: of stage contact; duty_loads: table of that stage, where the loads of the duty cycle are
-    the machine's; response: table of stage dynamics_response, where friction acts on the motion. Raises
-    ConfigError without section lubrication, TooHot where a body passes the oil's flash point, NotConverged
-    where bulk temperatures do not settle.
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+    inputs : MachineInputs
+        What the machine is built from.
+    duty_loads : pd.DataFrame or None
+        Table of stage duty_loads, where the loads of the duty cycle are the machine's.
+    response : pd.DataFrame or None
+        Table of stage dynamics_response, where friction acts on the motion.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    lubrication : LubricationSection or None
+        Section `lubrication` of the config, None if it has none.
+    strength : Strength or None
+        Section `strength` of the config, None if it has none.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `meshes`, `bodies` and `machine`.
+
+    Raises
+    ------
+    ConfigError
+        Without section lubrication.
+    TooHot
+        Where a body passes the oil's flash point.
+    NotConverged
+        Where bulk temperatures do not settle.
     """
     section = lubrication_section(lubrication)
-    loaded = loaded_pair(ltca, pressure, section, tooth_pair)
-    states = list(_states(loaded, replace(inputs, friction=None), duty_loads, strength, speed_rpm))
+    pair_under_load = loaded_pair(ltca, pressure, section, tooth_pair)
+    states = list(_states(pair_under_load, replace(inputs, friction=None), duty_loads, strength, speed_rpm))
     content = {
-        "meshes": mesh_loss_table(states, loaded.lubrication, limits_of(section)),
-        "bodies": body_heat_table(states, loaded.lubrication),
+        "meshes": mesh_loss_table(states, pair_under_load.lubrication, limits_of(section)),
+        "bodies": body_heat_table(states, pair_under_load.lubrication),
         "machine": machine_loss_table(states),
     }
     if inputs.friction is not None and response is not None:
         rest = content["meshes"]["bin"] == 0
-        moving = losses_in_motion(inputs.build(), response, speed_rpm)
-        content["meshes"].loc[rest, "loss_in_motion_w"] = content["meshes"].loc[rest, "mesh"].map(moving)
+        losses_by_mesh = losses_in_motion(inputs.build(), response, speed_rpm)
+        content["meshes"].loc[rest, "loss_in_motion_w"] = (
+            content["meshes"].loc[rest, "mesh"].map(losses_by_mesh)
+        )
     whole, hottest = content["machine"].iloc[0], content["meshes"]["contact_temperature_c"].max()
     beyond = content["meshes"].loc[~content["meshes"]["within_torques_solved"], "bin"].unique()
     summary = (
@@ -71,7 +103,7 @@ def machine_loss(
 
 
 def _states(
-    loaded: LoadedPair,
+    pair_under_load: LoadedPair,
     inputs: MachineInputs,
     duty_loads: pd.DataFrame | None,
     strength: Strength | None,
@@ -83,7 +115,7 @@ def _states(
     table = table[table["flank"] != "open"]
     torque = table["pinion_torque_n_m"].abs().to_numpy()
     names = table["mesh"].tolist(), table["flank"].tolist()
-    yield _state(loaded, machine, (0, np.nan, speed_rpm), names, torque, torque)
+    yield _state(pair_under_load, machine, (0, np.nan, speed_rpm), names, torque, torque)
     if duty_loads is None or strength is None:
         return
     for number, load in enumerate(strength.duty, start=1):
@@ -93,11 +125,11 @@ def _states(
         mean = arm * rows["mean_force_n"].to_numpy()
         peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()
         names = rows["mesh"].tolist(), rows["flank"].tolist()
-        yield _state(loaded, machine, (number, load.hours, load.speed_rpm), names, mean, peak)
+        yield _state(pair_under_load, machine, (number, load.hours, load.speed_rpm), names, mean, peak)
 
 
 def _state(
-    loaded: LoadedPair,
+    pair_under_load: LoadedPair,
     machine: Machine,
     key: tuple[int, float, float],
     names: tuple[list[str], list[str]],
@@ -119,10 +151,10 @@ def _state(
         bin=number,
         hours=hours,
         speed_rpm=speed_rpm,
-        power_in=rated(machine, speed_rpm).power_in,
+        power_in=compute_ratings(machine, speed_rpm).power_in,
         meshes=names[0],
         flanks=names[1],
         bodies=layout.body_names,
         loads=loads,
-        losses=losses.machine_loss(loaded, loads, speed_rpm * pi / 30),
+        losses=losses.machine_loss(pair_under_load, loads, speed_rpm * pi / 30),
     )

@@ -17,7 +17,20 @@ KINDS = ("msh", "vtu", "inp")
 
 
 def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
-    """`<body>_<kind>` (bytes of a mesh file) for both bodies and KINDS, and `quality` (table)."""
+    """Write the finite element meshes of both bodies.
+
+    Parameters
+    ----------
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    mesh : Mesh
+        Section `mesh` of the config.
+
+    Returns
+    -------
+    Outcome
+        `<body>_<kind>` (bytes of a mesh file) for both bodies and KINDS, and table `quality`.
+    """
     content: dict[str, Any] = {}
     quality = []
     with TemporaryDirectory() as folder:
@@ -33,7 +46,20 @@ def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
 
 
 def meshes(tooth_pair: ToothPair, mesh: Mesh) -> dict[str, SectorMesh]:
-    """Sectors of `pinion` and `face_gear` with the teeth that the config exports."""
+    """Build sectors of both bodies with the teeth that the config exports.
+
+    Parameters
+    ----------
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    mesh : Mesh
+        Section `mesh` of the config.
+
+    Returns
+    -------
+    dict[str, SectorMesh]
+        Sectors of `pinion` and `face_gear`.
+    """
     design = pair(tooth_pair).design
     sizes = mesh_sizes(mesh, design.module)
     teeth = {"pinion": pinion_tooth(design, sizes), "face_gear": gear_tooth(design, sizes)}

@@ -37,10 +37,34 @@ def mesh_law(
     contact: Contact,
     mesh_stiffness: MeshStiffness,
 ) -> Outcome:
-    """`law` (arrays) and `levels` (table) of every flank that errors part from the others.
+    """Compute the load-dependent mesh law of every flank that errors make differ from the others.
 
-    ltca: table of stage contact, which says what source fem_scaled scales by. Raises NotConverged naming
-    position and torque, FacegearError where teeth interfere.
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    ltca : pd.DataFrame
+        Table of stage contact, which decides by how much source fem_scaled scales.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    contact : Contact
+        Section `contact` of the config.
+    mesh_stiffness : MeshStiffness
+        Section `mesh_stiffness` of the config.
+
+    Returns
+    -------
+    Outcome
+        Arrays `law` and table `levels`.
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
+    FacegearError
+        Where teeth interfere.
     """
     plan = contact_plan(contact)
     request = stiffness_request(mesh_stiffness)
@@ -49,9 +73,11 @@ def mesh_law(
     different, numbers = distinct_pairs(design)
     scale = _scale(ltca, request)
     largest = plan.torques[-1] / scale
-    solved = [flank_contacts(model.of(other), plan.positions, largest, plan.options) for other in different]
-    tables, errors = fitted_tables(solved, request.kept)
-    tables = [table.scaled(scale) for table in tables]
+    contacts = [
+        flank_contacts(model.of(variant), plan.positions, largest, plan.options) for variant in different
+    ]
+    tables, errors = fitted_tables(contacts, request.order)
+    tables = [table.scale(scale) for table in tables]
     levels = level_table(tables, errors, numbers, design.pinion_base_radius)
     rms, largest = (100.0 * max(getattr(error, name) for error in errors) for name in ("rms", "largest"))
     summary = (
@@ -65,9 +91,30 @@ def mesh_law(
 def flank_contacts(
     model: ContactModel, positions: int, largest: float, options: ContactOptions = DEFAULT
 ) -> FlankContacts:
-    """Contact of a flank at so many even positions of a pitch, for a law up to the largest torque (N m).
+    """Solve the contact of a flank over a pitch, for a law up to the largest torque.
 
-    Raises NotConverged naming position and torque, FacegearError where teeth interfere.
+    Parameters
+    ----------
+    model : ContactModel
+        Contact model of the flank.
+    positions : int
+        Number of even positions of a pitch.
+    largest : float
+        Largest torque of the law, N m.
+    options : ContactOptions
+        Options of the contact solver.
+
+    Returns
+    -------
+    FlankContacts
+        Forces (torques,) in N, approach in m and local stiffness in N/m (torques, positions).
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
+    FacegearError
+        Where teeth interfere.
     """
     torques = law_torques(largest)
     contacts = loaded_contact(model, even_positions(positions), torques, options)
@@ -78,7 +125,7 @@ def flank_contacts(
         return np.array(values).reshape(positions, len(torques)).T
 
     def approach(contact: LoadedPosition) -> float:
-        return contact.ste - contact.unloaded
+        return contact.ste - contact.unloaded_error
 
     return FlankContacts(
         np.array(torques) / model.design.pinion_base_radius,
@@ -88,7 +135,7 @@ def flank_contacts(
 
 
 def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
-    """What source fem_scaled multiplies forces and slopes by: as stage stiffness multiplies k."""
+    """Factor of source fem_scaled on forces and slopes, equal to the factor of stage stiffness on k."""
     if request.source != "fem_scaled":
         return 1.0
     assert request.mean is not None

@@ -21,11 +21,32 @@ def modal(
     source: str,
     definition: str,
 ) -> Outcome:
-    """`frequencies`, `shapes` and `contacts` (tables) of the machine with the mean mesh stiffness (N/m).
+    """Compute natural frequencies and mode shapes with the mean mesh stiffness.
 
-    With the stiffness stage's `harmonics` it is the mean of the `definition` asked for, local or average, at
-    the operating load; without, the config's own mean. With the arrays `law` of stage mesh_law every mesh has
-    its local stiffness under its own load instead. Raises ConfigError without any.
+    With the stiffness stage's `harmonics` it is the mean of `definition` at the operating load, without them
+    the config's own mean. With the arrays `law` of stage mesh_law every mesh has its local stiffness under
+    its own load instead.
+
+    Parameters
+    ----------
+    inputs : MachineInputs
+        What the machine is built from.
+    mean_stiffness : float or None
+        Mean mesh stiffness of the config, N/m; None if it gives none.
+    source : str
+        Source of the mesh stiffness in the config.
+    definition : str
+        `local` or `average`.
+
+    Returns
+    -------
+    Outcome
+        Tables `frequencies`, `shapes` and `contacts`.
+
+    Raises
+    ------
+    ConfigError
+        Without any mean stiffness.
     """
     if isinstance(inputs.harmonics, pd.DataFrame):
         mean: float | None = float(inputs.harmonics[f"mean_{definition}_n_per_m"].iloc[0])
@@ -35,8 +56,8 @@ def modal(
         source_text = f"{definition}, given" if source == "fem_scaled" else "given"
     if mean is None:
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
-    constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
-    machine = replace(inputs, harmonics=constant, unloaded_error=none).build()
+    constant, no_error = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
+    machine = replace(inputs, harmonics=constant, unloaded_error=no_error).build()
     vibration = vibrating_machine(machine)
     modes, contacts = vibration.modes, contact_table(machine, vibration, source_text)
     rigid = int((modes.frequencies == 0.0).sum())
@@ -46,22 +67,24 @@ def modal(
         "shapes": shape_table(machine.linear.labels, modes),
         "contacts": contacts,
     }
-    closed = contacts.loc[contacts["state"].isin(["drive", "back", "wedged"]), "stiffness_n_per_m"]
-    sizes = [mean] if inputs.law is None else [closed.min(), closed.max()]
+    stiffness_of_closed = contacts.loc[
+        contacts["state"].isin(["drive", "back", "wedged"]), "stiffness_n_per_m"
+    ]
+    sizes = [mean] if inputs.law is None else [stiffness_of_closed.min(), stiffness_of_closed.max()]
     size = " to ".join(format_number(1e-6 * stiffness) for stiffness in sizes)
     summary = (
         f"{count_noun(rigid, 'rigid body mode')}, {elastic.size} elastic from {elastic[0]:.1f} to "
         f"{elastic[-1]:.1f} Hz, with a mesh stiffness of {size} N/um ({source_text})"
     )
-    return Outcome(content, summary + _remarks(contacts, vibration.decided))
+    return Outcome(content, summary + _remarks(contacts, vibration.is_decided))
 
 
-def _remarks(contacts: pd.DataFrame, decided: np.ndarray) -> str:
-    """What a reader should know of contacts that are not simply closed."""
+def _remarks(contacts: pd.DataFrame, is_decided: np.ndarray) -> str:
+    """Remarks on contacts that are not simply closed."""
     parts = []
     for state in ("open", "wedged", "undecided"):
-        if named := contacts.loc[contacts["state"] == state, "contact"].to_list():
-            parts.append(f"; {state}: {', '.join(named)}")
-    if not decided.all():
-        parts.append(f"; {int((~decided).sum())} frequencies hang on contacts that are undecided")
+        if names := contacts.loc[contacts["state"] == state, "contact"].to_list():
+            parts.append(f"; {state}: {', '.join(names)}")
+    if not is_decided.all():
+        parts.append(f"; {int((~is_decided).sum())} frequencies hang on contacts that are undecided")
     return "".join(parts)

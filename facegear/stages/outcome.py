@@ -1,4 +1,4 @@
-"""What a stage hands back."""
+"""Result of a stage: the content of its files and one line about it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

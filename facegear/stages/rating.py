@@ -33,13 +33,44 @@ def rating(
     strength: Strength | None,
     gears: Sequence[str],
 ) -> Outcome:
-    """`safety`, `rating`, `damage` and `curves` (tables) from the root stress of stage root_stress.
+    """Compute safety, damage and life from the root stress.
 
-    `by_flank`: table of stage contact; every flank is judged by the contacts that it has with the `gears` of
-    the machine. `duty_spectrum`: table of stage duty_loads, where the loads are the machine's; `mesh_losses`:
-    table `meshes` of stage machine_loss, where its flanks are lubricated. posed, posed_by_torque: parts of
-    stage posed_stress, poses: arrays of stage pose_surface, duty_poses: table of that stage, where the
-    machine's own forces put the teeth. Raises ConfigError without section strength.
+    Every flank is judged by the contacts that it has with the `gears` of the machine.
+
+    Parameters
+    ----------
+    stress : Arrays
+        Arrays of stage root_stress.
+    by_flank : pd.DataFrame
+        Table `by_flank` of stage contact.
+    duty_spectrum : pd.DataFrame or None
+        Table of stage duty_loads, where the loads are the machine's.
+    mesh_losses : pd.DataFrame or None
+        Table `meshes` of stage machine_loss, where its flanks are lubricated.
+    posed : Arrays or None
+        Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
+    posed_by_torque : pd.DataFrame or None
+        Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
+    poses : Arrays or None
+        Arrays of stage pose_surface, None unless the machine's forces pose the teeth.
+    duty_poses : pd.DataFrame or None
+        Table of stage duty_poses, None unless the machine's forces pose the teeth.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    strength : Strength or None
+        Section `strength` of the config, None if it has none.
+    gears : Sequence[str]
+        Face gears of the machine, `upper` alone or `upper` and `lower`.
+
+    Returns
+    -------
+    Outcome
+        Tables `safety`, `rating`, `damage` and `curves`.
+
+    Raises
+    ------
+    ConfigError
+        Without section strength.
     """
     if strength is None:
         raise ConfigError("strength", None, "given for safety and life")
@@ -53,11 +84,14 @@ def rating(
     for duty in request.duty:
         of_loads = None
         if at_pose is None or stands is None:
-            met = [contacts[flank] for flank in met_by(duty, gears)]
+            flank_contacts_met = [contacts[flank] for flank in met_by(duty, gears)]
         else:
-            met = [at_pose.contacts[mesh][flank] for mesh, flank in at_pose.met_by(duty)]
+            flank_contacts_met = [at_pose.contacts[mesh][flank] for mesh, flank in at_pose.met_by(duty)]
             of_loads = at_pose.stresses(duty, stands)
-        roots, pressure = {duty.gear: worst_root(duty, met)}, worst_pressure(met)
+        roots, pressure = (
+            {duty.gear: worst_root(duty, flank_contacts_met)},
+            worst_pressure(flank_contacts_met),
+        )
         alone = replace(request, duty=(duty,))
         ways = rate(design, section_contact_ratio(design), roots, pressure, alone, of_loads)
         ratings += ways
@@ -71,9 +105,9 @@ def rating(
     content = {name: pd.concat(parts, ignore_index=True) for name, parts in tables.items()}
     if duty_spectrum is not None and mesh_losses is not None:
         content["safety"] = with_scuffing(content["safety"], duty_spectrum, mesh_losses)
-    worst = min(ratings, key=lambda rated: rated.safety / rated.required_safety)
-    where = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
-    text = f"{where}, {worst.failure} ({worst.method})"
+    worst = min(ratings, key=lambda flank_rating: flank_rating.safety / flank_rating.required_safety)
+    flank_name = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
+    text = f"{flank_name}, {worst.failure} ({worst.method})"
     return Outcome(
         content,
         f"nearest to its limit: {text}, safety {worst.safety:.2f} "

@@ -2,15 +2,33 @@
 
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
-from facegear.transmission.ratings import body_table, mesh_table, number_table, rated
+from facegear.transmission.ratings import body_table, compute_ratings, mesh_table, number_table
 
 
 def ratings(
     machine: Machine,
     speed_rpm: float,
 ) -> Outcome:
-    """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
-    rating = rated(machine, speed_rpm)
+    """Compute ratio, speeds, torques and powers.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `ratings`, `bodies` and `meshes`.
+
+    Raises
+    ------
+    NotConverged
+        Where the equilibrium does not converge.
+    """
+    rating = compute_ratings(machine, speed_rpm)
     content = {
         "ratings": number_table(rating),
         "bodies": body_table(machine, speed_rpm),

@@ -30,12 +30,36 @@ def root_stress(
     mesh: Mesh,
     contact: Contact,
 ) -> Outcome:
-    """`summary`, `passage`, `along_face`, `by_flank` (tables) and `stress` (arrays).
+    """Compute the root stress of both gears on their way through the mesh.
 
-    pinion, face_gear: arrays of stage compliance; loads: arrays of stage contact. The first three tables
-    are those of the upper gear's drive flank. The error of the planes along the face is measured with twice
-    their distance, and not known where such a mesh cannot be made or its contact not be solved. Raises
-    ConfigError where the fillets carry no gauges.
+    Tables `summary`, `passage` and `along_face` belong to the drive flank of the upper gear. The error of the
+    planes along the face is measured with twice their distance; it is not known where such a mesh cannot be
+    made or its contact not be solved.
+
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    loads : Arrays
+        Arrays `loads` of stage contact.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    mesh : Mesh
+        Section `mesh` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `summary`, `passage`, `along_face` and `by_flank`, arrays `stress`.
+
+    Raises
+    ------
+    ConfigError
+        Where the fillets carry no gauges.
     """
     flanks: dict[Body, GearFlank] = {"pinion": from_arrays(pinion), "face_gear": from_arrays(face_gear)}
     roots = {body: passing(body, flank, loads) for body, flank in flanks.items()}
@@ -47,7 +71,22 @@ def root_stress(
 def root_contents(
     flanks: Mapping[Body, GearFlank], loads: Arrays, face_errors: Mapping[Body, float]
 ) -> dict[str, Any]:
-    """The parts of the stage, with relative errors of each body by its planes along the face."""
+    """Return the parts of the stage.
+
+    Parameters
+    ----------
+    flanks : Mapping[Body, GearFlank]
+        Compliance of both bodies.
+    loads : Arrays
+        Arrays `loads` of stage contact.
+    face_errors : Mapping[Body, float]
+        Error of each body by its planes along the face, relative.
+
+    Returns
+    -------
+    dict[str, Any]
+        Tables `summary`, `passage`, `along_face` and `by_flank`, arrays `stress`.
+    """
     numbers = loads["flank_variant"]
     variants: list[dict[str, RootStress]] = [
         {body: _passing(body, flank, loads, variant, face_errors[body]) for body, flank in flanks.items()}

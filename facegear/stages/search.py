@@ -1,4 +1,4 @@
-"""The front of all islands of a search, how far it may be trusted, and its winners at full accuracy."""
+"""Front of all islands of a search, its reliability, and its winners at full accuracy."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,68 +14,95 @@ from facegear.variants.designs import SearchedMachine, assessor, task
 from facegear.variants.machines import WHOLE
 
 
-def search(islands: Sequence[pd.DataFrame], **given: Any) -> Outcome:
-    """`designs`, `front`, `hypervolume`, `winners` (tables) from the designs of each island.
+def search(islands: Sequence[pd.DataFrame], **machine_fields: Any) -> Outcome:
+    """Join the designs of all islands and compute winners of their front at full accuracy.
 
-    `islands`: in the order of the config's seeds; `given`: fields of SearchedMachine.
+    Parameters
+    ----------
+    islands : Sequence[pd.DataFrame]
+        Designs of each island, in the order of the config's seeds.
+    **machine_fields : Any
+        Fields of SearchedMachine.
+
+    Returns
+    -------
+    Outcome
+        Tables `designs`, `front`, `hypervolume` and `winners`.
     """
-    machine = SearchedMachine.of_stage(**given)
-    asked, by_seed = task(machine.section), dict(zip(machine.section.seeds, islands, strict=True))
+    machine = SearchedMachine.of_stage(**machine_fields)
+    search_task, by_seed = task(machine.section), dict(zip(machine.section.seeds, islands, strict=True))
     every = pd.concat([rows.assign(seed=seed) for seed, rows in by_seed.items()], ignore_index=True)
-    best = front(every, asked)
-    covered = hypervolumes(by_seed, asked)
+    best = front(every, search_task)
+    volumes = hypervolumes(by_seed, search_task)
     return Outcome(
         {
             "designs": every,
             "front": best,
-            "hypervolume": covered,
-            "winners": _winners(best, asked, machine),
+            "hypervolume": volumes,
+            "winners": _winners(best, search_task, machine),
         },
-        f"front of {count_noun(len(best), 'design')} out of {len(every)}; {_spread(covered)}",
+        f"front of {count_noun(len(best), 'design')} out of {len(every)}; {_spread(volumes)}",
     )
 
 
-def _spread(covered: pd.DataFrame) -> str:
-    if covered.empty:
+def _spread(volumes: pd.DataFrame) -> str:
+    if volumes.empty:
         return "none of them holds every limit"
-    last = covered.groupby("seed")["hypervolume"].last()
+    last = volumes.groupby("seed")["hypervolume"].last()
     percent = 100.0 * (last.max() - last.min()) / last.mean()
     return f"hypervolume of {count_noun(len(last), 'seed')} within {percent:.2g} %"
 
 
-def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine) -> pd.DataFrame:
-    """The nominal design and those of the front that win: goals as searched, and all at full accuracy."""
-    coarse = assessor(given, given.section.hunting_cycles, given.section.samples)
-    full = assessor(given, WHOLE, given.section.winner_samples)
-    names = [variable.name for variable in asked.variables]
+def _winners(best: pd.DataFrame, search_task: Task, machine: SearchedMachine) -> pd.DataFrame:
+    """Nominal design and winners of the front: goals as searched, and all quantities at full accuracy."""
+    coarse = assessor(machine, machine.section.hunting_cycles, machine.section.samples)
+    full = assessor(machine, WHOLE, machine.section.winner_samples)
+    names = [variable.name for variable in search_task.variables]
     rows = []
-    for label, design in {"nominal": None, **chosen(best, asked)}.items():
-        searched, (goals, quantities) = coarse(design)[0], full(design)
-        values = dict(zip(names, design if design is not None else _nominal(given), strict=True))
-        compared = {f"{goal}_searched": searched[goal] for goal in asked.goals}
-        others = {name: value for name, value in quantities.items() if name not in goals}
-        rows.append({"design": label, **values, **goals, **compared, **others})
+    for label, design in {"nominal": None, **choose_winners(best, search_task)}.items():
+        coarse_goals, (goals, quantities) = coarse(design)[0], full(design)
+        values = dict(zip(names, design if design is not None else _nominal(machine), strict=True))
+        searched_goals = {f"{goal}_searched": coarse_goals[goal] for goal in search_task.goals}
+        other_quantities = {name: value for name, value in quantities.items() if name not in goals}
+        rows.append({"design": label, **values, **goals, **searched_goals, **other_quantities})
     columns = ["design", *names, *(key for key in rows[0] if key not in ("design", *names))]
     return pd.DataFrame(rows, columns=columns)
 
 
-def _nominal(given: SearchedMachine) -> list[float]:
+def _nominal(machine: SearchedMachine) -> list[float]:
     """Values of the variables in the config; nan where the keys of one differ."""
-    free = [variable.sets for variable in given.section.variables]
-    start = movable(given.values, [key for keys in free for key in keys])
+    free = [variable.sets for variable in machine.section.variables]
+    start = movable(machine.values, [key for keys in free for key in keys])
     return [nominal(start, keys) for keys in free]
 
 
-def chosen(best: pd.DataFrame, asked: Task) -> dict[str, tuple[float, ...]]:
-    """Designs of a front: the best in each objective, and of several objectives the nearest to all bests."""
+def choose_winners(best: pd.DataFrame, search_task: Task) -> dict[str, tuple[float, ...]]:
+    """Choose designs of a front: the best in each objective, and of several objectives the nearest to all
+    bests.
+
+    Parameters
+    ----------
+    best : pd.DataFrame
+        Designs of the front, a row each.
+    search_task : Task
+        Variables and objectives of the search.
+
+    Returns
+    -------
+    dict[str, tuple[float, ...]]
+        Values of the variables of each design, each in its own unit, by the name of what it is best in; empty
+        for an empty front.
+    """
     if best.empty:
         return {}
-    goals = asked.costs(best)
-    extreme = {name: "most" if name in asked.large else "least" for name in asked.objectives}
-    places = {f"{extreme[name]} {name}": int(goals[:, i].argmin()) for i, name in enumerate(asked.objectives)}
+    goals = search_task.costs(best)
+    extreme = {name: "most" if name in search_task.large else "least" for name in search_task.objectives}
+    row_by_label = {
+        f"{extreme[name]} {name}": int(goals[:, i].argmin()) for i, name in enumerate(search_task.objectives)
+    }
     span = np.ptp(goals, axis=0)
-    if len(asked.objectives) > 1:
+    if len(search_task.objectives) > 1:
         parts = (goals - goals.min(axis=0)) / np.where(span > 0.0, span, 1.0)
-        places["compromise"] = int(np.linalg.norm(parts, axis=1).argmin())
-    names = [variable.name for variable in asked.variables]
-    return {label: tuple(map(float, best.loc[row, names])) for label, row in places.items()}
+        row_by_label["compromise"] = int(np.linalg.norm(parts, axis=1).argmin())
+    names = [variable.name for variable in search_task.variables]
+    return {label: tuple(map(float, best.loc[row, names])) for label, row in row_by_label.items()}

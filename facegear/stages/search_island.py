@@ -11,23 +11,40 @@ from facegear.stages.outcome import Outcome
 from facegear.variants.designs import SearchedMachine, assessor, task
 
 
-def search_island(seed: int, partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:
-    """`designs` (table): every design tried, its generation, its goals, the error where it has none.
+def search_island(
+    seed: int, partial: str | Path | None = None, code: str = "", **machine_fields: Any
+) -> Outcome:
+    """Evolve designs from one seed.
 
-    `partial` is a file that keeps finished designs, so that a killed island goes on after its last one; it
-    counts only for the same config and `code`. `given`: fields of SearchedMachine.
+    Parameters
+    ----------
+    seed : int
+        Seed of the random numbers.
+    partial : str or Path or None
+        File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
+    code : str
+        Identity of the code; rows in `partial` count only for the same config and code.
+    **machine_fields : Any
+        Fields of SearchedMachine.
+
+    Returns
+    -------
+    Outcome
+        Table `designs`: every design tried, its generation, its goals, the error where it has none.
     """
-    machine = SearchedMachine.of_stage(**given)
+    machine = SearchedMachine.of_stage(**machine_fields)
     section = machine.section
     assess = assessor(machine, section.hunting_cycles, section.samples)
     effort = Effort(section.population, section.generations, seed)
     progress = Progress(f"search from seed {seed}", effort.population * effort.generations)
-    same = machine.identity(seed, code)
+    identity = machine.identity(seed, code)
     with TemporaryDirectory() as folder:
-        kept = Path(folder) / "partial" if partial is None else partial
-        designs = evolve(task(section), lambda design: assess(design)[0], effort, kept, same, progress.step)
-    failed = int((designs["error"] != "").sum())
+        partial_file = Path(folder) / "partial" if partial is None else partial
+        designs = evolve(
+            task(section), lambda design: assess(design)[0], effort, partial_file, identity, progress.step
+        )
+    failure_count = int((designs["error"] != "").sum())
     return Outcome(
         {"designs": designs},
-        f"{count_noun(len(designs), 'design')}, {failed} of them cannot be built or computed",
+        f"{count_noun(len(designs), 'design')}, {failure_count} of them cannot be built or computed",
     )

@@ -17,9 +17,9 @@ from facegear.transmission.shaft_orders import (
 )
 
 SPEEDS = 61
-"""At which the largest orders are followed over speed."""
-FOLLOWED = 4
-"""Orders of each gear with the largest errors, and as many about the mesh frequency."""
+"""Number of speeds at which the largest orders are followed."""
+ORDERS_PER_GEAR = 4
+"""Number of orders of each gear with the largest errors, and as many about the mesh frequency."""
 COLUMNS = (
     *("turning", "order", "of_mesh", "frequency_hz", "mesh"),
     *("error_um", "force_n", "force_at_rest_n"),
@@ -37,31 +37,59 @@ def shaft_orders(
     first_rpm: float,
     last_rpm: float,
 ) -> Outcome:
-    """`orders` (table at the nominal speed), `over_speed` (table, the mesh with the largest force of each of
-    the largest orders), `excited` (table: amplitudes of mesh forces and of torques of springs under each
-    periodic torque, at the nominal speed and over speed). Raises NotConverged.
+    """Compute the vibration of the machine at the orders of its gears' turns.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+    first_rpm : float
+        First speed of `over_speed` and `excited`, rpm.
+    last_rpm : float
+        Last speed of `over_speed` and `excited`, rpm.
+
+    Returns
+    -------
+    Outcome
+        Table `orders` at the nominal speed. Table `over_speed`: the mesh with the largest force of each of
+        the largest orders. Table `excited`: amplitudes of mesh forces and of torques of springs under each
+        periodic torque, at the nominal speed and over speed.
+
+    Raises
+    ------
+    NotConverged
+        Where the static load does not converge.
     """
     layout, names = machine.layout, machine.layout.mesh_names
-    orders, loaded = turn_orders(machine), loaded_machine(machine)
+    orders, machine_under_load = turn_orders(machine), loaded_machine(machine)
 
-    def amplitudes(some: TurnOrders, speed: float) -> np.ndarray:
-        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.closed)
+    def amplitudes(selection: TurnOrders, speed: float) -> np.ndarray:
+        return mesh_amplitudes(
+            machine_under_load.forces(selection, speed, layout.pinion_teeth), machine_under_load.contact_mask
+        )
 
-    running, still = amplitudes(orders, speed_rpm), mesh_amplitudes(loaded.at_rest(orders), loaded.closed)
-    error = 1e6 * mesh_amplitudes(orders.error, loaded.closed)
+    running, still = (
+        amplitudes(orders, speed_rpm),
+        mesh_amplitudes(machine_under_load.at_rest(orders), machine_under_load.contact_mask),
+    )
+    error = 1e6 * mesh_amplitudes(orders.error, machine_under_load.contact_mask)
     nominal = mesh_frequency(layout, speed_rpm)
     rows = [
         (*_key(orders, row, nominal), name, error[row, mesh], running[row, mesh], still[row, mesh])
         for row in range(orders.order.size)
         for mesh, name in enumerate(names)
     ]
-    largest, over_speed = orders.kept(_largest(orders)), []
+    largest, over_speed = orders.select(_largest(orders)), []
     for speed in np.linspace(first_rpm, last_rpm, SPEEDS).tolist():
         for row, forces in enumerate(amplitudes(largest, speed)):
             key = _key(largest, row, mesh_frequency(layout, speed))
             over_speed.append((speed, *key, names[first_largest(forces)], float(forces.max())))
     table = pd.DataFrame(rows, columns=list(COLUMNS))
-    excited = _excited(machine, loaded, [speed_rpm, *np.linspace(first_rpm, last_rpm, SPEEDS).tolist()])
+    excited = _excited(
+        machine, machine_under_load, [speed_rpm, *np.linspace(first_rpm, last_rpm, SPEEDS).tolist()]
+    )
     content = {
         "orders": table,
         "over_speed": pd.DataFrame(over_speed, columns=list(OVER_SPEED)),
@@ -81,7 +109,7 @@ def _excited(machine: Machine, model: LoadedMachine, speeds: Sequence[float]) ->
             name = layout.body_names[excitation.body]
             key = (speed, name, excitation.order, excitation.of_mesh, frequency)
             motion = model.excited_motion(machine, excitation, speed)
-            forces = mesh_amplitudes(model.flank_forces(motion), model.closed)
+            forces = mesh_amplitudes(model.flank_forces(motion), model.contact_mask)
             rows += [(*key, *row, np.nan) for row in zip(layout.mesh_names, forces.tolist(), strict=True)]
             for spring in springs:
                 twist = motion[spring.second] - motion[spring.first]
@@ -97,16 +125,14 @@ def _key(orders: TurnOrders, row: int, frequency: float) -> tuple[str, int, floa
 
 
 def _largest(orders: TurnOrders) -> list[int]:
-    """Rows of the FOLLOWED largest errors of each gear: those of few turns, and those about the mesh's own
-    frequency.
-    """
+    """Rows of each gear's largest errors: low orders of its turn, and orders about the mesh frequency."""
     size, rows = np.abs(orders.error).max(axis=1), []
     about = np.abs(orders.of_mesh - 1.0) < 0.5
     for gear in dict.fromkeys(orders.turning):
-        own = np.array([name == gear for name in orders.turning])
-        for part in (own & ~about, own & about):
-            there = np.flatnonzero(part)
-            rows += sorted(there[np.argsort(-size[there], kind="stable")][:FOLLOWED].tolist())
+        is_of_gear = np.array([name == gear for name in orders.turning])
+        for part in (is_of_gear & ~about, is_of_gear & about):
+            part_rows = np.flatnonzero(part)
+            rows += sorted(part_rows[np.argsort(-size[part_rows], kind="stable")][:ORDERS_PER_GEAR].tolist())
     return rows
 
 

@@ -22,22 +22,37 @@ from facegear.transmission.statics import mean_equilibrium
 def shafts(
     inputs: MachineInputs,
 ) -> Outcome:
-    """`seats`, `stiffness`, `bearings`, `deflections`, `torsion` (tables).
+    """Compute shafts and torsional springs with the machine at rest under its torques.
 
-    Raises ConfigError without shafts and torsion, NotConverged.
+    Parameters
+    ----------
+    inputs : MachineInputs
+        What the machine is built from.
+
+    Returns
+    -------
+    Outcome
+        Tables `seats`, `stiffness`, `bearings`, `deflections` and `torsion`.
+
+    Raises
+    ------
+    ConfigError
+        Without shafts and torsion.
+    NotConverged
+        Where the equilibrium does not converge.
     """
     machine = inputs.build()
     if (line := machine.drive_line) is None:
         raise ConfigError("transmission.shafts", {}, "given, or transmission.torsion")
-    resting, section = at_rest(machine), inputs.transmission
-    equilibrium = mean_equilibrium(resting)
+    machine_at_rest, section = at_rest(machine), inputs.transmission
+    equilibrium = mean_equilibrium(machine_at_rest)
     shaft_sections = {i: section.shaft_of(pinion) for i, pinion in enumerate(section.pinions)}
     stepped = {i: stepped_shaft(shaft) for i, shaft in shaft_sections.items() if shaft is not None}
     content = {
-        "seats": seat_table(resting, line, equilibrium),
+        "seats": seat_table(machine_at_rest, line, equilibrium),
         "stiffness": stiffness_table(line),
-        "bearings": load_table(resting, line, equilibrium),
-        "deflections": deflection_table(resting, line, equilibrium, stepped),
+        "bearings": load_table(machine_at_rest, line, equilibrium),
+        "deflections": deflection_table(machine_at_rest, line, equilibrium, stepped),
         "torsion": torsion_table(machine, line),
     }
     return Outcome(content, _summary(content))

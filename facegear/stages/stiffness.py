@@ -8,9 +8,24 @@ from facegear.stiffness.source import stiffness_from_contact, stiffness_given
 
 
 def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -> Outcome:
-    """`tvms`, `harmonics` and `spectrum` (tables), from the contact table or from the config's harmonics.
+    """Compute the mesh stiffness over a pitch, from the contact table or from the config's harmonics.
 
-    Raises ConfigError for a load outside those solved and for a k(t) that is not positive throughout.
+    Parameters
+    ----------
+    mesh_stiffness : MeshStiffness
+        Section `mesh_stiffness` of the config.
+    ltca : pd.DataFrame or None
+        Table `ltca` of stage contact, None for the harmonics of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `tvms`, `harmonics` and `spectrum`.
+
+    Raises
+    ------
+    ConfigError
+        For a load outside those solved and for a k(t) that is not positive throughout.
     """
     request = stiffness_request(mesh_stiffness)
     result = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request)

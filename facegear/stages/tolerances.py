@@ -1,4 +1,4 @@
-"""What the samples of a machine with its tolerances say."""
+"""Statistics of the samples of a machine with its tolerances."""
 
 from collections.abc import Sequence
 
@@ -8,12 +8,12 @@ from facegear.config.tolerances import Tolerances
 from facegear.load_sharing.quantity_names import (
     BETTER_LARGE,
     CONTACT_TEMPERATURE,
+    CYCLE_SELECTION_ERRORS,
     LOSS,
-    MISSED,
-    OPEN,
+    OPEN_FRACTION,
     PAST_LAW,
-    REVERSED,
-    SIMPLIFIED,
+    REVERSED_FRACTION,
+    SIMPLIFICATION_ERRORS,
     UNSOLVED,
 )
 from facegear.number_format import count_noun
@@ -28,31 +28,45 @@ from facegear.scenarios.summary import (
 from facegear.stages.outcome import Outcome
 
 EVENTS = {
-    OPEN: "some mesh that shares a load opens",
-    REVERSED: "some mesh is loaded on the flank that it does not work on",
+    OPEN_FRACTION: "some mesh that shares a load opens",
+    REVERSED_FRACTION: "some mesh is loaded on the flank that it does not work on",
     PAST_LAW: "some mesh is past the last level of its load-dependent law",
     UNSOLVED: "some mesh loses under a torque outside those of the contact analysis",
 }
 CHECKS = {
-    **MISSED,
-    **{f"{name}, of few places of the contact": column for name, column in SIMPLIFIED.items()},
+    **CYCLE_SELECTION_ERRORS,
+    **{f"{name}, of few places of the contact": column for name, column in SIMPLIFICATION_ERRORS.items()},
 }
-"""Quantity -> column that says of some samples what they miss."""
+"""Quantity -> column that holds, for some samples, what their value misses."""
 
 
 def tolerances(
     samples: Sequence[pd.DataFrame], indices: Sequence[pd.DataFrame], tolerances: Tolerances
 ) -> Outcome:
-    """`samples`, `percentiles`, `fractions`, `importance`, `indices`, `sampling` (tables) from both designs.
+    """Compute percentiles, fractions and importance from both designs of samples.
 
-    `sampling`: what the mesh cycles taken from the hunting cycle miss, in the samples that were computed over
-    the whole of it, and what friction misses that is taken at few places of the contact.
+    `sampling` tells what the mesh cycles taken from the hunting cycle miss, in the samples that were computed
+    over the whole of it, and what friction misses that is taken at few places of the contact.
+
+    Parameters
+    ----------
+    samples : Sequence[pd.DataFrame]
+        Chunks of random samples.
+    indices : Sequence[pd.DataFrame]
+        Chunks of samples for sensitivity indices, empty if there are none.
+    tolerances : Tolerances
+        Section `tolerances` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `samples`, `percentiles`, `fractions`, `importance`, `indices` and `sampling`.
     """
     causes = [cause.name for cause in tolerances.causes]
     every = pd.concat(samples, ignore_index=True)
     values = every.drop(columns=list(CHECKS.values()), errors="ignore")
-    drawn = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
-    design = drawn.drop(columns=list(CHECKS.values()), errors="ignore")
+    index_samples = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
+    design = index_samples.drop(columns=list(CHECKS.values()), errors="ignore")
     percentiles = percentile_table(values, causes, tolerances.confidence, BETTER_LARGE)
     fractions = fraction_table(every, EVENTS, tolerances.confidence)
     top = percentiles[(percentiles["percentile"] == 99.0) & percentiles["quantity"].str.startswith("k_gamma")]
@@ -64,8 +78,8 @@ def tolerances(
     summary = "; ".join(
         [summary or "no path shares a load", *_hot_in_words(percentiles), *_missed_in_words(sampling)]
     )
-    failed = int((every[ERROR] != "").sum())
-    if failed == len(every):
+    failure_count = int((every[ERROR] != "").sum())
+    if failure_count == len(every):
         summary = f"the first by: {every[ERROR].iloc[0]}"
     return Outcome(
         {
@@ -76,7 +90,7 @@ def tolerances(
             "indices": index_table(design, causes, tolerances.confidence),
             "sampling": sampling,
         },
-        f"{count_noun(len(every), 'sample')}, {failed} failed; {summary}",
+        f"{count_noun(len(every), 'sample')}, {failure_count} failed; {summary}",
     )
 
 
@@ -90,13 +104,15 @@ def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
     max_samples = sampling["samples"].max()
-    cycles = [part for part in parts if part.partition(" ")[0] in MISSED]
-    places = sampling.loc[~sampling["quantity"].isin(list(MISSED)), "largest_missed"]
-    missed = (
+    cycles = [part for part in parts if part.partition(" ")[0] in CYCLE_SELECTION_ERRORS]
+    misses_by_place = sampling.loc[~sampling["quantity"].isin(list(CYCLE_SELECTION_ERRORS)), "largest_missed"]
+    cycle_texts = (
         [f"the mesh cycles taken miss at most {', '.join(cycles)} ({count_noun(max_samples, 'sample')})"]
         if cycles
         else []
     )
-    return missed + (
-        [f"the places that friction is taken at miss at most {places.max():.1e}"] if len(places) else []
+    return cycle_texts + (
+        [f"the places that friction is taken at miss at most {misses_by_place.max():.1e}"]
+        if len(misses_by_place)
+        else []
     )

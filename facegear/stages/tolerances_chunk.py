@@ -16,17 +16,35 @@ def tolerances_chunk(
     last: int,
     partial: str | Path | None = None,
     code: str = "",
-    **given: Any,
+    **machine_fields: Any,
 ) -> Outcome:
-    """`chunk` (table): samples `first` to `last`, the values of their causes, what was found, the error.
+    """Compute samples `first` to `last` of a machine with its tolerances.
 
-    A sample that cannot be built or computed is a row with its error. `partial` is a file that keeps finished
-    samples, so that a killed chunk goes on after its last one; it counts only for the same config and `code`.
-    The columns MISSED hold, for the first CHECKED_SAMPLES samples, what the mesh cycles taken miss, and
-    SIMPLIFIED what the few points miss that friction is taken at; they are empty else.
-    `given`: fields of SampledMachine.
+    A sample that cannot be built or computed is a row with its error. The columns MISSED hold, for the first
+    CHECKED_SAMPLES samples, what the mesh cycles taken miss; SIMPLIFIED what is missed by the few points of
+    the contact that friction is taken at. They are empty in other rows.
+
+    Parameters
+    ----------
+    design : Design
+        `samples`, or `indices` for those of the sensitivity indices.
+    first : int
+        Number of the first sample.
+    last : int
+        Number of the last sample.
+    partial : str or Path or None
+        File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
+    code : str
+        Identity of the code; rows in `partial` count only for the same config and code.
+    **machine_fields : Any
+        Fields of SampledMachine.
+
+    Returns
+    -------
+    Outcome
+        Table `chunk`: values of the causes of each sample, the computed quantities, the error.
     """
-    return chunk_of(SampledMachine.of_stage(**given), design, first, last, partial, code)
+    return chunk_of(SampledMachine.of_stage(**machine_fields), design, first, last, partial, code)
 
 
 def chunk_of(
@@ -37,7 +55,28 @@ def chunk_of(
     partial: str | Path | None = None,
     code: str = "",
 ) -> Outcome:
-    """`tolerances_chunk` of a machine in memory."""
+    """Compute `tolerances_chunk` of a machine in memory.
+
+    Parameters
+    ----------
+    machine : SampledMachine
+        Machine with its tolerances.
+    design : Design
+        `samples`, or `indices` for those of the sensitivity indices.
+    first : int
+        Number of the first sample.
+    last : int
+        Number of the last sample.
+    partial : str or Path or None
+        File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
+    code : str
+        Identity of the code; rows in `partial` count only for the same config and code.
+
+    Returns
+    -------
+    Outcome
+        Table `chunk`: values of the causes of each sample, the computed quantities, the error.
+    """
     draw = samples if design == "samples" else index_samples
     values = draw(machine.causes, first, last - first + 1)
 
@@ -50,7 +89,8 @@ def chunk_of(
     frame = machine.run(evaluate, range(first, last + 1), label, partial, design, code)
     for column, name in enumerate(machine.causes.names):
         frame.insert(1 + column, name, values[:, column])
-    failed = int((frame["error"] != "").sum())
+    failure_count = int((frame["error"] != "").sum())
     return Outcome(
-        {"chunk": frame}, f"{count_noun(len(frame), 'sample')}, {failed} of them cannot be built or computed"
+        {"chunk": frame},
+        f"{count_noun(len(frame), 'sample')}, {failure_count} of them cannot be built or computed",
     )

@@ -23,20 +23,33 @@ COLUMNS = (
 )
 
 
-def tolerances_map(partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:
-    """`load_map` (table): percentiles of every quantity at every torque and speed, COLUMNS; `load_fractions`
-    (table): fraction of the machines that fail, open or change their flank there; `load_sampling` (table):
-    what the mesh cycles taken miss there, from CHECKED_SAMPLES samples at all loads together or one at each.
+def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_fields: Any) -> Outcome:
+    """Compute percentiles of every quantity at every torque and speed of a load map.
 
-    The same machines at every load, so that differences between loads are no accident of the samples. The
-    mesh stiffness stays that of mesh_stiffness.torque_n_m. `partial`, `code` and `given` as of
-    `tolerances_chunk`.
+    The same machines are used at every load, so that differences between loads are no accident of the
+    samples. The mesh stiffness stays that of mesh_stiffness.torque_n_m.
+
+    Parameters
+    ----------
+    partial : str or Path or None
+        File that keeps finished rows, so that a killed run resumes after its last one; None keeps none.
+    code : str
+        Identity of the code; rows in `partial` count only for the same config and code.
+    **machine_fields : Any
+        Fields of SampledMachine.
+
+    Returns
+    -------
+    Outcome
+        Table `load_map`: percentiles at every load, with COLUMNS. Table `load_fractions`: fraction of the
+        machines that fail, open or change their flank there. Table `load_sampling`: what the mesh cycles
+        taken miss there, from CHECKED_SAMPLES samples at all loads together or one at each.
     """
-    machine = SampledMachine.of_stage(**given)
+    machine = SampledMachine.of_stage(**machine_fields)
     section = machine.section
-    asked = section.load_map or LoadMap()
-    values, loads = samples(machine.causes, 0, asked.samples), asked.loads(machine.speed_rpm)
-    count, checked = asked.samples * len(loads), max(CHECKED_SAMPLES // len(loads), 1)
+    load_map = section.load_map or LoadMap()
+    values, loads = samples(machine.causes, 0, load_map.samples), load_map.loads(machine.speed_rpm)
+    count, checks_per_load = load_map.samples * len(loads), max(CHECKED_SAMPLES // len(loads), 1)
 
     def at_load(values: Mapping[str, Any], factor: float, speed: float) -> dict[str, Any]:
         off = values["dynamics"]["speed_rpm"] - machine.speed_rpm  # what a cause adds to it
@@ -46,36 +59,36 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
     judges = [machine.judge_near(at_load(machine.start, *load)) for load in loads]
 
     def evaluate(number: int) -> dict[str, float]:
-        load, row = divmod(number, asked.samples)
-        loaded = at_load(machine.sample(values[row]), *loads[load])
-        return machine.judge_sample(loaded, row < checked, judges[load])
+        load, row = divmod(number, load_map.samples)
+        sample = at_load(machine.sample(values[row]), *loads[load])
+        return machine.judge_sample(sample, row < checks_per_load, judges[load])
 
     frame = machine.run(evaluate, range(count), "tolerances over torque and speed", partial, code)
     tables: list[pd.DataFrame] = []
     fractions: list[pd.DataFrame] = []
     sampling: list[pd.DataFrame] = []
     for index, (factor, speed) in enumerate(loads):
-        own = frame.iloc[index * asked.samples : (index + 1) * asked.samples]
+        results_at_load = frame.iloc[index * load_map.samples : (index + 1) * load_map.samples]
         load = {"torque_factor": factor, "speed_rpm": speed}
-        results = own.drop(columns=list(machine.checks))
+        results = results_at_load.drop(columns=list(machine.checks))
         percentiles = percentile_table(results, (), section.confidence, BETTER_LARGE)
-        failed = int((own[ERROR] != "").sum())
-        tables.append(percentiles.assign(**load, failed=failed))
-        fractions.append(_at_load(load, fraction_table(own, EVENTS, section.confidence)))
-        sampling.append(_at_load(load, sampling_table(own, CHECKS)))
+        failure_count = int((results_at_load[ERROR] != "").sum())
+        tables.append(percentiles.assign(**load, failed=failure_count))
+        fractions.append(_at_load(load, fraction_table(results_at_load, EVENTS, section.confidence)))
+        sampling.append(_at_load(load, sampling_table(results_at_load, CHECKS)))
     table = pd.concat(tables, ignore_index=True)[list(COLUMNS)]
-    failed = int((frame[ERROR] != "").sum())
+    failure_count = int((frame[ERROR] != "").sum())
     return Outcome(
         {
             "load_map": table,
             "load_fractions": pd.concat(fractions, ignore_index=True),
             "load_sampling": pd.concat(sampling, ignore_index=True),
         },
-        f"{count_noun(len(loads), 'load')} of {count_noun(asked.samples, 'sample')} each, "
-        f"{count_noun(failed, 'machine')} failed",
+        f"{count_noun(len(loads), 'load')} of {count_noun(load_map.samples, 'sample')} each, "
+        f"{count_noun(failure_count, 'machine')} failed",
     )
 
 
 def _at_load(load: dict[str, float], table: pd.DataFrame) -> pd.DataFrame:
-    """A table with its load in front."""
+    """Return a table with its load in front."""
     return table.assign(**load)[[*load, *table.columns]]

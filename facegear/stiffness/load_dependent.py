@@ -19,6 +19,7 @@ from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.load_dependent import load_dependent_law
 
 GEARS, FLANKS = ("upper", "lower"), ("drive", "back")
+"""Names of gears and flanks, in the order of the rows and columns of `flank_variant`."""
 LAW_ARRAYS = {
     "level_m": (None, None),
     "force_n": (None, None, 2, None),
@@ -29,12 +30,15 @@ LAW_ARRAYS = {
 each gear's (upper, lower) flank (drive, back) has.
 """
 LEVEL_COLUMNS = ("deflection_um", "torque_n_m", "force_n", "slope_n_per_m", "table_rms_percent")
+"""Columns of level_table() after gear and flank."""
 LIGHTEST = 1.0 / 32.0
 """Smallest torque solved, over the largest."""
 EXPONENT = 1.3
-"""Of the force over the deflection, roughly: with it levels lie evenly in the root of the deflection."""
-SOLVED = 13
-"""Torques that are solved: every second one gives the table, those between show its error."""
+"""Approximate exponent of the force over the deflection: with it levels lie evenly in the root of the
+deflection.
+"""
+TORQUE_COUNT = 13
+"""Number of torques that are solved: every second one gives the table, those between show its error."""
 PIECES = (1, 2, 3, 4, 5)
 """Numbers of cubics between the first level and the last, the fewest first: a motion stops at every level
 that it passes.
@@ -48,7 +52,7 @@ REACH = 1.2
 BELOW = (0.5, 0.25, 0.125)
 """Further levels, as parts of the first."""
 RMS, LARGEST = 1e-3, 4e-3
-"""What is aimed at: the table's error over the largest mean force."""
+"""Aims for the rms and the largest error of a table, over the largest mean force."""
 ROUNDING = 1e-6
 """Part of the steepest slope by which a force may fall, as the Fourier series are cut."""
 
@@ -64,9 +68,20 @@ class FlankContacts:
     slopes: Array
 
     def at(self, rows: Sequence[int]) -> "FlankContacts":
-        """Some of the forces."""
-        chosen = list(rows)
-        return FlankContacts(self.forces[chosen], self.deflections[chosen], self.slopes[chosen])
+        """Return the solutions at some of the forces.
+
+        Parameters
+        ----------
+        rows : Sequence of int
+            Indices of the forces.
+
+        Returns
+        -------
+        FlankContacts
+            N, m and N/m.
+        """
+        indices = list(rows)
+        return FlankContacts(self.forces[indices], self.deflections[indices], self.slopes[indices])
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,25 +106,50 @@ class TableError:
 
 
 def law_torques(largest: float) -> list[float]:
-    """Torques (N m) at which contact is solved for a law that reaches the largest at every phase, rising."""
+    """Return the torques at which contact is solved for a law that reaches the largest at every phase.
+
+    Parameters
+    ----------
+    largest : float
+        Largest torque of the law, N m.
+
+    Returns
+    -------
+    list of float
+        N m, rising.
+    """
     power, largest = 2.0 * EXPONENT, REACH * largest
-    parts = np.linspace(LIGHTEST ** (1.0 / power), 1.0, SOLVED)
+    parts = np.linspace(LIGHTEST ** (1.0 / power), 1.0, TORQUE_COUNT)
     return [float(largest * part**power) for part in parts[:-1]] + [float(largest)]
 
 
 def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[ForceTable], list[TableError]]:
-    """Tables of flanks with the fewest and evenest levels that meet the aim, else with the smallest error of
-    all, and their errors.
+    """Fit the tables of flanks with the fewest and evenest levels that meet the aim, else with the smallest
+    error of all.
 
-    orders: harmonics kept, at most as many as the positions give. Raises FacegearError where the force falls
-    while the deflection grows.
+    Parameters
+    ----------
+    flanks : Sequence of FlankContacts
+        Contact solutions of the flanks.
+    orders : int
+        Number of harmonics kept, at most as many as the positions give.
+
+    Returns
+    -------
+    pair of list of ForceTable and list of TableError
+        Table of each flank, N and N/m, and its relative error.
+
+    Raises
+    ------
+    FacegearError
+        If the force falls while the deflection grows.
     """
-    given = [flank.at(range(0, SOLVED, 2)) for flank in flanks]
-    between = [flank.at(range(1, SOLVED, 2)) for flank in flanks]
+    fit_contacts = [flank.at(range(0, TORQUE_COUNT, 2)) for flank in flanks]
+    between = [flank.at(range(1, TORQUE_COUNT, 2)) for flank in flanks]
     best, smallest = None, np.inf
     for pieces, crowding in product(PIECES, CROWDING):
-        tables = [force_table(flank, pieces, crowding, orders) for flank in given]
-        errors = [table_error(*both) for both in zip(tables, between, strict=True)]
+        tables = [force_table(flank, pieces, crowding, orders) for flank in fit_contacts]
+        errors = [table_error(*pair) for pair in zip(tables, between, strict=True)]
         excess = max(error.excess for error in errors)
         if any(map(falls, tables)) or excess >= smallest:
             continue
@@ -126,20 +166,51 @@ def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[Fo
 
 
 def falls(table: ForceTable) -> bool:
-    """Whether the force falls somewhere while the deflection grows, by more than cutting the series does."""
+    """Whether the force falls somewhere while the deflection grows, by more than cutting the series does.
+
+    Parameters
+    ----------
+    table : ForceTable
+        The table.
+
+    Returns
+    -------
+    bool
+        True if its smallest slope is below -ROUNDING of the steepest.
+    """
     return table.min_slope < -ROUNDING * table.steepest
 
 
 def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: int) -> ForceTable:
-    """The table whose cubics come nearest to the contacts' forces and slopes at every position, by least
-    squares. Its first level has the largest deflection of the lightest contact, the last the smallest of the
-    heaviest; there are `pieces` cubics between them.
+    """Fit the table whose cubics come nearest to the contacts' forces and slopes at every position, by least
+    squares.
 
-    Raises FacegearError where the levels overlap.
+    Its first level has the largest deflection of the lightest contact, the last the smallest of the heaviest.
+
+    Parameters
+    ----------
+    contacts : FlankContacts
+        Contact solutions of a flank.
+    pieces : int
+        Number of cubics between these levels.
+    crowding : float
+        Exponent with which levels crowd towards the first, dimensionless.
+    orders : int
+        Number of harmonics kept, at most as many as the positions give.
+
+    Returns
+    -------
+    ForceTable
+        N and N/m.
+
+    Raises
+    ------
+    FacegearError
+        If the levels overlap.
     """
-    kept = min(orders, (contacts.deflections.shape[1] - 1) // 2)
-    reached = contacts.deflections
-    first, last = reached[0].max(), reached[-1].min()
+    order = min(orders, (contacts.deflections.shape[1] - 1) // 2)
+    deflections = contacts.deflections
+    first, last = deflections[0].max(), deflections[-1].min()
     if first >= last:
         raise FacegearError(
             "mesh law: over a pitch the deflections under the smallest of contact.torques_n_m reach "
@@ -151,27 +222,53 @@ def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: i
     parts = np.sort(BELOW)[:, None]
     lower = forces[0] * parts**exponent
     lower_slopes = exponent * lower / (parts * first)
-    nothing = np.zeros((1, reached.shape[1]))
+    zeros = np.zeros((1, deflections.shape[1]))
     return ForceTable(
         np.concatenate([[0.0], parts[:, 0] * first, levels]),
-        _series(np.concatenate([nothing, lower, forces]), kept),
-        _series(np.concatenate([nothing, lower_slopes, slopes]), kept),
+        _series(np.concatenate([zeros, lower, forces]), order),
+        _series(np.concatenate([zeros, lower_slopes, slopes]), order),
     )
 
 
 def table_error(table: ForceTable, contacts: FlankContacts) -> TableError:
-    """The table against contact solutions up to its last level."""
+    """Compare a table with contact solutions up to its last level.
+
+    Parameters
+    ----------
+    table : ForceTable
+        The table.
+    contacts : FlankContacts
+        Contact solutions.
+
+    Returns
+    -------
+    TableError
+        Errors relative to the mean force at the last level, N.
+    """
     positions = np.arange(contacts.deflections.shape[1]) / contacts.deflections.shape[1]
     law = load_dependent_law([table])
-    given = law.force(positions, contacts.deflections[..., None])[..., 0]
+    table_forces = law.force(positions, contacts.deflections[..., None])[..., 0]
     within = contacts.deflections <= table.levels[-1]
     force = float(table.forces[-1, 1, 0])
-    missed = (given - contacts.forces[:, None])[within] / force
-    return TableError(float(np.sqrt((missed**2).mean())), float(np.abs(missed).max()), force)
+    differences = (table_forces - contacts.forces[:, None])[within] / force
+    return TableError(float(np.sqrt((differences**2).mean())), float(np.abs(differences).max()), force)
 
 
 def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, AnyArray]:
-    """Arrays as LAW_ARRAYS; numbers (gears, flanks): the table that each flank has."""
+    """Return the arrays LAW_ARRAYS.
+
+    Parameters
+    ----------
+    tables : Sequence of ForceTable
+        Tables with as many levels and harmonics.
+    numbers : (gears, flanks) array of int
+        Index of the table that each flank has.
+
+    Returns
+    -------
+    dict of str to array
+        m, N and N/m, shapes as in LAW_ARRAYS (tables, levels, ...).
+    """
     return {
         "level_m": np.array([table.levels for table in tables]),
         "force_n": np.array([table.forces for table in tables]),
@@ -181,7 +278,24 @@ def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, Any
 
 
 def forces_over_pitch(law: Arrays, row: int, phases: Array, amounts: Array) -> Array:
-    """Forces (amounts, phases) in N of the table in a row of LAW_ARRAYS; amounts in m."""
+    """Return the forces of a table of LAW_ARRAYS.
+
+    Parameters
+    ----------
+    law : Arrays
+        Arrays as LAW_ARRAYS.
+    row : int
+        Index of the table.
+    phases : (phases,) array
+        Mesh periods.
+    amounts : (amounts,) array
+        Compression, m.
+
+    Returns
+    -------
+    (amounts, phases) array
+        N.
+    """
     table = ForceTable(law["level_m"][row], law["force_n"][row], law["slope_n_per_m"][row])
     beyond = np.broadcast_to(amounts[:, None, None], (amounts.size, phases.size, 1))
     return load_dependent_law([table]).force(phases, beyond)[..., 0]
@@ -190,7 +304,25 @@ def forces_over_pitch(law: Arrays, row: int, phases: Array, amounts: Array) -> A
 def level_table(
     tables: Sequence[ForceTable], errors: Sequence[TableError], numbers: Integers, base_radius: float
 ) -> pd.DataFrame:
-    """Mean force and slope of every gear's flanks at every level, with the error of the table beside them."""
+    """Return mean force and slope of every gear's flanks at every level, with the error of the table beside
+    them.
+
+    Parameters
+    ----------
+    tables : Sequence of ForceTable
+        The tables.
+    errors : Sequence of TableError
+        Error of each table.
+    numbers : (gears, flanks) array of int
+        Index of the table that each flank has.
+    base_radius : float
+        Base radius of the pinion, m.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns gear, flank, LEVEL_COLUMNS and table_largest_percent.
+    """
     rows = [
         (gear, flank, 1e6 * level, base_radius * force, force, slope, *error.percent)
         for gear, row in zip(GEARS, numbers, strict=True)
@@ -204,31 +336,34 @@ def level_table(
 
 
 def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
-    """Forces and slopes (levels, p) of the cubics that come nearest to the contacts of each position.
+    """Return forces and slopes (levels, p) of the cubics that come nearest to the contacts of each position.
 
     At the first level they are those of the cubic between the two lightest contacts, as the force below it
     follows from them. Unknown slopes are counted in units of the mean slope of a cubic with unit force at its
     end, so that all columns of the least squares are of one size.
     """
     count = levels.size
-    fitted = np.empty((2 * count, contacts.deflections.shape[1]))
-    given, sought = np.array([0, count]), np.delete(np.arange(2 * count), [0, count])
+    coefficients = np.empty((2 * count, contacts.deflections.shape[1]))
+    known_columns, unknown_columns = np.array([0, count]), np.delete(np.arange(2 * count), [0, count])
     units = np.repeat([1.0, count / levels[-1]], count)
-    for p, (reached, stiffness) in enumerate(zip(contacts.deflections.T, contacts.slopes.T, strict=True)):
+    for p, (deflections, stiffness) in enumerate(zip(contacts.deflections.T, contacts.slopes.T, strict=True)):
         lightest = np.concatenate([contacts.forces[:2], stiffness[:2]])
-        fitted[given, p] = np.concatenate(_cubics(reached[:2], levels[:1])) @ lightest
-        weight = SLOPE_WEIGHT * np.gradient(reached)
-        values, slopes = _cubics(levels, reached)
+        coefficients[known_columns, p] = np.concatenate(_cubics(deflections[:2], levels[:1])) @ lightest
+        weight = SLOPE_WEIGHT * np.gradient(deflections)
+        values, slopes = _cubics(levels, deflections)
         rows = np.concatenate([values, weight[:, None] * slopes])
-        wanted = np.concatenate([contacts.forces, weight * stiffness]) - rows[:, given] @ fitted[given, p]
-        solved = np.linalg.lstsq((rows * units)[:, sought], wanted)[0]
-        fitted[sought, p] = units[sought] * solved
-    return fitted[:count], fitted[count:]
+        right_side = (
+            np.concatenate([contacts.forces, weight * stiffness])
+            - rows[:, known_columns] @ coefficients[known_columns, p]
+        )
+        solution = np.linalg.lstsq((rows * units)[:, unknown_columns], right_side)[0]
+        coefficients[unknown_columns, p] = units[unknown_columns] * solution
+    return coefficients[:count], coefficients[count:]
 
 
 def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:
-    """Values and slopes (amounts, 2 levels) of the Hermite cubics at amounts: of those with unit force at one
-    level, then of those with unit slope. Beyond the levels the outer cubics go on.
+    """Return values and slopes (amounts, 2 levels) of the Hermite cubics at amounts: with unit force at one
+    level, then with unit slope. Beyond the levels the outer cubics go on.
     """
     at = np.clip(np.searchsorted(levels, amounts, side="right") - 1, 0, levels.size - 2)
     width = levels[at + 1] - levels[at]
@@ -245,7 +380,7 @@ def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:
 
 
 def _series(values: Array, orders: int) -> Array:
-    """Fourier series (rows, 2, orders + 1) of samples (rows, p)."""
+    """Return the Fourier series (rows, 2, orders + 1) of samples (rows, p)."""
     terms = np.fft.rfft(values, axis=1)[:, : orders + 1] / values.shape[1]
     terms[:, 1:] *= 2.0
     return np.stack([-terms.imag, terms.real], axis=1)

@@ -1,4 +1,4 @@
-"""What is asked of the stiffness stage; light to import, so that configs can be read without it."""
+"""Request for the stiffness stage; light to import, so that configs can be read without it."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,16 +10,30 @@ Definition = Literal["average", "local"]
 
 @dataclass(frozen=True, eq=False)
 class StiffnessRequest:
-    """Source of k(t); `mean` N/m where it is given, `torque` N m on the pinion per mesh, orders `kept`,
-    factor `variation` on k(t) about its mean.
+    """Source and load of the mesh stiffness.
 
-    `given` is the series of the config; zero for the other sources.
+    Attributes
+    ----------
+    source : str
+        fem, fem_scaled or harmonics.
+    mean : float or None
+        Mean stiffness where it is given, N/m.
+    torque : float or None
+        Torque on the pinion per mesh, N m.
+    definition : str
+        average or local.
+    order : int
+        Number of orders kept.
+    variation : float
+        Factor on k(t) about its mean.
+    given_series : Harmonics
+        Series of the config, N/m; zero for the other sources.
     """
 
     source: Literal["fem", "fem_scaled", "harmonics"]
     mean: float | None
     torque: float | None
     definition: Definition
-    kept: int
+    order: int
     variation: float
-    given: Harmonics
+    given_series: Harmonics

@@ -13,15 +13,27 @@ from facegear.number_format import format_number
 from facegear.stiffness.curve import LoadTable, load_table
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.tables import curve_table, harmonics_table, with_unloaded_error
-from facegear.stiffness.unloaded import peak_to_peak, unloaded_series
+from facegear.stiffness.unloaded_error import peak_to_peak, unloaded_series
 
-DRAWN = 256
-"""Points a pitch of a curve that comes from given harmonics."""
+CURVE_POINTS = 256
+"""Number of points in a pitch of a curve that comes from given harmonics."""
 
 
 @dataclass(frozen=True, eq=False)
 class Stiffness:
-    """`harmonics`: the orders kept; `spectrum`: all orders; `curve` over a pitch."""
+    """Tables of a mesh stiffness.
+
+    Attributes
+    ----------
+    curve : DataFrame
+        Stiffness over a pitch.
+    harmonics : DataFrame
+        Orders that are kept.
+    spectrum : DataFrame
+        All orders.
+    summary : str
+        One line for the log.
+    """
 
     curve: pd.DataFrame
     harmonics: pd.DataFrame
@@ -58,10 +70,26 @@ class ContactCurve:
 
 
 def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> ContactCurve:
-    """Curve at the requested load and its series.
+    """Compute the stiffness curve at the requested load and its series.
 
-    Source fem_scaled multiplies the curve so that its mean is the requested one. Raises InvalidInput for a
-    load outside those solved and for a variation with which k(t) is not positive throughout.
+    Source fem_scaled multiplies the curve so that its mean is the requested one.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table of the contact analysis.
+    request : StiffnessRequest
+        Source, load and orders.
+
+    Returns
+    -------
+    ContactCurve
+        N/m and m.
+
+    Raises
+    ------
+    InvalidInput
+        For a load outside those solved, and for a variation with which k(t) is not positive throughout.
     """
     assert request.torque is not None
     table = load_table(ltca)
@@ -71,21 +99,37 @@ def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Contact
     if request.source == "fem_scaled":
         assert request.mean is not None
         scale = request.mean / fit.series.mean
-    whole = fit.series.scaled(scale).varied(request.variation)
-    series = whole.kept(request.kept)
+    whole = fit.series.scale(scale).scale_variation(request.variation)
+    series = whole.truncate(request.order)
     if series.minimum <= 0.0:
-        allowed = (
-            f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
-        )
-        raise InvalidInput("variation of the mesh stiffness", request.variation, allowed)
+        largest = _largest_variation(fit.series.truncate(request.order))
+        requirement = f"at most {largest:.4g}, so that k(t) stays positive"
+        raise InvalidInput("variation of the mesh stiffness", request.variation, requirement)
     error, cut = unloaded_series(ltca, series.order)
     return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
 
 
 def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
-    """`curve_from_contact` as tables. Raises what that raises.
+    """Return `curve_from_contact` as tables.
 
     Beside the harmonics stand the means of both definitions at that load, scaled alike.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table of the contact analysis.
+    request : StiffnessRequest
+        Source, load and orders.
+
+    Returns
+    -------
+    Stiffness
+        N/m and um.
+
+    Raises
+    ------
+    InvalidInput
+        As `curve_from_contact`.
     """
     curve = curve_from_contact(ltca, request)
     assert request.torque is not None
@@ -102,7 +146,7 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
         mean_local_n_per_m=scale * table.at(torque, "local").mean(),
     )
     return Stiffness(
-        curve_table(table.positions, _varied(scale * curve.samples, request.variation), curve.series),
+        curve_table(table.positions, _vary_samples(scale * curve.samples, request.variation), curve.series),
         harmonics,
         harmonics_table(curve.whole, fit, scale * request.variation),
         summary,
@@ -110,10 +154,21 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
 
 
 def stiffness_given(request: StiffnessRequest) -> Stiffness:
-    """Curve of the series that the config gives."""
-    whole = request.given.varied(request.variation)
-    series = whole.kept(request.kept)
-    positions = np.arange(DRAWN) / DRAWN
+    """Return the curve of the series that the config gives.
+
+    Parameters
+    ----------
+    request : StiffnessRequest
+        The series and the orders kept.
+
+    Returns
+    -------
+    Stiffness
+        N/m.
+    """
+    whole = request.given_series.scale_variation(request.variation)
+    series = whole.truncate(request.order)
+    positions = np.arange(CURVE_POINTS) / CURVE_POINTS
     return Stiffness(
         curve_table(positions, whole(positions), series),
         harmonics_table(series, None),
@@ -122,10 +177,10 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
     )
 
 
-def _varied(samples: Array, factor: float) -> Array:
+def _vary_samples(samples: Array, factor: float) -> Array:
     return samples + (factor - 1.0) * (samples - samples.mean())
 
 
 def _largest_variation(series: Harmonics) -> float:
-    """Factor on the variation at which the smallest value is zero."""
+    """Return the factor on the variation at which the smallest value is zero."""
     return series.mean / (series.mean - series.minimum)

@@ -7,14 +7,28 @@ from facegear.arrays import Array
 from facegear.harmonics.fit import LEVELS, Fit, fit_harmonics
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.curve import LoadTable
-from facegear.stiffness.unloaded import peak_to_peak
+from facegear.stiffness.unloaded_error import peak_to_peak
 
 HARMONICS_COLUMNS = ("order", "sin_n_per_m", "cos_n_per_m", "amplitude_n_per_m")
+"""First columns of harmonics_table()."""
 
 
 def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> pd.DataFrame:
-    """Orders of a series with the errors of the fit it comes from, times `scale`; zero errors if it was
-    given.
+    """Return the orders of a series with the errors of the fit it comes from.
+
+    Parameters
+    ----------
+    series : Harmonics
+        The series, N/m.
+    fit : Fit or None
+        Its fit, None if the series was given.
+    scale : float
+        Factor on the errors, dimensionless.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row an order, N/m; zero errors without a fit.
     """
     orders = np.arange(series.order + 1)
     zeros = np.zeros(orders.size)
@@ -33,7 +47,22 @@ def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> p
 
 
 def with_unloaded_error(table: pd.DataFrame, series: Harmonics, truncation: float) -> pd.DataFrame:
-    """A harmonics table with the pair's unloaded transmission error (m) beside k, order by order."""
+    """Add the pair's unloaded transmission error to a harmonics table, order by order.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table of harmonics_table().
+    series : Harmonics
+        Unloaded transmission error, m.
+    truncation : float
+        Error of its cut, m.
+
+    Returns
+    -------
+    pd.DataFrame
+        The table with columns e_sin_um, e_cos_um, e_peak_to_peak_um and e_truncation_error_um.
+    """
     orders = table["order"].to_numpy()
     return table.assign(
         e_sin_um=1e6 * series.sine[orders],
@@ -44,31 +73,77 @@ def with_unloaded_error(table: pd.DataFrame, series: Harmonics, truncation: floa
 
 
 def unloaded_error(table: pd.DataFrame) -> Harmonics | None:
-    """The unloaded transmission error (m) of a harmonics table; None where k was given without contact."""
+    """Return the unloaded transmission error of a harmonics table.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table with the columns of with_unloaded_error().
+
+    Returns
+    -------
+    Harmonics or None
+        m; None where k was given without contact.
+    """
     if "e_sin_um" not in table:
         return None
-    renamed = table[["order", "e_sin_um", "e_cos_um"]].set_axis(
+    error_table = table[["order", "e_sin_um", "e_cos_um"]].set_axis(
         ["order", "sin_n_per_m", "cos_n_per_m"], axis=1
     )
-    return series_of(renamed).scaled(1e-6)
+    return series_of(error_table).scale(1e-6)
 
 
 def curve_table(positions: Array, samples: Array, series: Harmonics) -> pd.DataFrame:
-    """The curve over a pitch and its cut series, N/m."""
+    """Return the curve over a pitch and its cut series.
+
+    Parameters
+    ----------
+    positions : (p,) array
+        Positions, periods.
+    samples : (p,) array
+        Stiffness at the positions, N/m.
+    series : Harmonics
+        The cut series, N/m.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns position, k_n_per_m, k_series_n_per_m.
+    """
     return pd.DataFrame({"position": positions, "k_n_per_m": samples, "k_series_n_per_m": series(positions)})
 
 
 def load_dependence(table: LoadTable) -> pd.DataFrame:
-    """Mean, extremes and first harmonics of both stiffnesses at each torque solved."""
+    """Return mean, extremes and first harmonics of both stiffnesses at each torque solved.
+
+    Parameters
+    ----------
+    table : LoadTable
+        Stiffness over position and torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a definition and torque, N/m.
+    """
     rows = []
     for definition in ("average", "local"):
         for torque in table.torques:
             samples = table.at(torque, definition)
             fit = fit_harmonics(samples)
             first, second = (*fit.series.amplitudes[1:3], np.nan)[:2]
-            needed = [fit.orders_within(level) for level in LEVELS]
+            needed_orders = [fit.orders_within(level) for level in LEVELS]
             rows.append(
-                (definition, torque, samples.mean(), samples.min(), samples.max(), first, second, *needed)
+                (
+                    definition,
+                    torque,
+                    samples.mean(),
+                    samples.min(),
+                    samples.max(),
+                    first,
+                    second,
+                    *needed_orders,
+                )
             )
     names = [f"orders_for_{100 * level:g}_percent" for level in LEVELS]
     columns = ["definition", "torque_n_m", "mean_n_per_m", "min_n_per_m", "max_n_per_m"]
@@ -77,9 +152,22 @@ def load_dependence(table: LoadTable) -> pd.DataFrame:
 
 
 def series_of(table: pd.DataFrame) -> Harmonics:
-    """The series of a table with the columns order, sin_n_per_m, cos_n_per_m; orders left out are zero.
+    """Return the series of a table; orders left out are zero.
 
-    Raises ValueError for orders that are not whole numbers from zero, or stand twice.
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Columns order, sin_n_per_m, cos_n_per_m.
+
+    Returns
+    -------
+    Harmonics
+        N/m.
+
+    Raises
+    ------
+    ValueError
+        For orders that are not whole numbers from zero, or repeated.
     """
     orders = table["order"].to_numpy()
     if (orders != np.round(orders)).any() or (orders < 0).any() or np.unique(orders).size != orders.size:

@@ -9,7 +9,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.between_samples import located_by_cycle
-from facegear.dynamics.following import FORGOTTEN, follow
+from facegear.dynamics.following import MEMORY_LIMIT, follow
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.geometry.flank_errors import FLANKS
@@ -83,7 +83,7 @@ def history_of(machine: Machine, speed_rpm: float, settings: Settings) -> Histor
     layout, flanks = machine.layout, 2 * len(machine.layout.meshes)
     if layout.kinematics.flanks_apart and cycles > 1:
         run = follow(model, speed_rpm, 0, cycles, POSITIONS, settings)
-        is_independent = run.memory <= FORGOTTEN
+        is_independent = run.memory <= MEMORY_LIMIT
         forces = run.flank_forces.reshape(-1, POSITIONS, flanks)
         motion = "followed" if is_independent else "depends on its past"
         return History(layout, even, forces, located_by_cycle(forces, False), True, motion, is_independent)

@@ -23,27 +23,42 @@ from facegear.tooth_layer.sector import energies, tooth_energies
 ORDER = 4
 """Nodal diameters of the waves; three to six give the same numbers to 1 %."""
 ELEMENTS = (6, 4, 4)
-"""Of the layer's energies: along the radius, through the rim and through the layer."""
-REACHED = 1e-8
+"""Number of elements for the layer's energies: along the radius, through the rim and through the layer."""
+FIT_TOLERANCE = 1e-8
 
 
 def fitted_teeth(section: Section, design: PairDesign) -> Section:
-    """The section whose layer has the stiffness of the teeth of `design`; without a layer, as it is.
+    """Return the section whose layer has the stiffness of the teeth; without a layer, as it is.
 
-    Raises NotConverged.
+    Parameters
+    ----------
+    section : Section
+        Section of the face gear.
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    Section
+        Section with fitted hoop and shear stiffness.
+
+    Raises
+    ------
+    NotConverged
+        Where no stiffness gives the energies of the teeth.
     """
     layer = section.layer
     if layer is None:
         return section
     rim = rim_below(section)
-    wanted = tooth_energies(design, section.material, rim, ORDER)
+    target_energies = tooth_energies(design, section.material, rim, ORDER)
 
-    def missing(logarithms: Array) -> Array:
+    def ratios(logarithms: Array) -> Array:
         hoop, shear = np.exp(logarithms)
-        return np.log(layer_energies(replace(layer, hoop=hoop, shear=shear), section, rim) / wanted)
+        return np.log(layer_energies(replace(layer, hoop=hoop, shear=shear), section, rim) / target_energies)
 
-    solution = root(missing, np.log([layer.hoop, layer.shear]), tol=REACHED)
-    if np.abs(solution.fun).max() > 1e2 * REACHED:
+    solution = root(ratios, np.log([layer.hoop, layer.shear]), tol=FIT_TOLERANCE)
+    if np.abs(solution.fun).max() > 1e2 * FIT_TOLERANCE:
         off = f"energies of layer and teeth differ by {100 * np.abs(solution.fun).max():.2g} %"
         raise NotConverged("layer of teeth", f"rim {1e3 * rim:g} mm", off)
     hoop, shear = np.exp(solution.x).tolist()
@@ -51,21 +66,49 @@ def fitted_teeth(section: Section, design: PairDesign) -> Section:
 
 
 def layer_energies(layer: Layer, section: Section, rim: float) -> Array:
-    """Twice the energy (2,), J, of a layer on a rim `rim` (m) thick in the waves of `tooth_energies`."""
+    """Compute twice the energy of a layer on a rim in the waves of `tooth_energies`.
+
+    Parameters
+    ----------
+    layer : Layer
+        Layer of teeth.
+    section : Section
+        Section of the face gear.
+    rim : float
+        Thickness of the rim, m.
+
+    Returns
+    -------
+    (2,) array
+        J.
+    """
     mesh = strip(layer, rim)
     corners = rectangle(layer.inner_radius, layer.outer_radius, layer.back - rim, layer.back)
-    whole = replace(section, corners=corners, held=(False,) * 4, layer=layer)
+    whole = replace(section, corners=corners, is_edge_held=(False,) * 4, layer=layer)
     elements = elements_of(mesh)
     stiffness = elastic_stiffness(whole, mesh, elements).at(ORDER)
-    r, height = elements.places
+    r, height = elements.shape_points
     back = np.flatnonzero(np.isclose(height, layer.back - rim, rtol=0.0, atol=1e-9))
     middle = 0.5 * (layer.inner_radius + layer.outer_radius)
-    rising = np.stack([np.ones(back.size), r[back] - middle], axis=1)
-    return energies(stiffness, 3 * back + 2, rising)
+    is_rising = np.stack([np.ones(back.size), r[back] - middle], axis=1)
+    return energies(stiffness, 3 * back + 2, is_rising)
 
 
 def strip(layer: Layer, rim: float) -> BodyMesh:
-    """Layer and rim as rows of rectangles."""
+    """Return layer and rim as rows of rectangles.
+
+    Parameters
+    ----------
+    layer : Layer
+        Layer of teeth.
+    rim : float
+        Thickness of the rim, m.
+
+    Returns
+    -------
+    BodyMesh
+        Mesh, m.
+    """
     across, below, above = ELEMENTS
     r = np.linspace(layer.inner_radius, layer.outer_radius, across + 1)
     heights = np.concatenate(

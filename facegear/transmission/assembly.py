@@ -14,29 +14,29 @@ from facegear.by_content import kept_by_content
 from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
 
-ROUNDED = 1e-3
+ANGLE_ROUNDING = 1e-3
 """Misfit in pitches that counts as an angle given with few digits (three decimals of a degree)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """What each pinion leaves over where it bridges both gears, all (pinions,).
+    """Misfit of each pinion where it bridges both gears, all (pinions,).
 
     Attributes
     ----------
     misfit
         m along the line of action, how far the teeth of its lower mesh stand ahead of the gear's, with the
         upper mesh in place and the lower gear where most pinions fit; positive closes the drive flank.
-    room
+    clearance
         m, what its backlashes take up to either side.
     fits
         Whether it mounts together with the others.
     below, above
-        The nearest angles that leave nothing over, in pitches.
+        The nearest angles without misfit, in pitches.
     """
 
     misfit: Array
-    room: Array
+    clearance: Array
     fits: Mask
     below: Array
     above: Array
@@ -48,51 +48,80 @@ def assembly(
     clocking: Array | None = None,
     errors: Imperfections | None = None,
 ) -> Assembly:
-    """Check all pinions; half_backlash (meshes,) in m, clocking (pinions,) of the lower rims in pitches.
+    """Check whether all pinions can be assembled.
 
-    With `errors` their constant ones count as misfit, and clearance of the bearings as room. With one face
-    gear nothing has to fit.
+    With one face gear nothing has to fit.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    half_backlash : (meshes,) array
+        Half the backlash of each mesh, m.
+    clocking : (pinions,) array or None
+        Lower rim ahead of the upper, pitches; 0 if None.
+    errors : Imperfections or None
+        Imperfections whose constant errors count as misfit, and whose bearing clearance counts as clearance.
+
+    Returns
+    -------
+    Assembly
+        One entry for each pinion, m and pitches.
     """
-    turned = np.zeros(len(layout.pinions)) if clocking is None else clocking
+    rim_clocking = np.zeros(len(layout.pinions)) if clocking is None else clocking
     if errors is None:
-        return _without_errors(layout, half_backlash, turned)
-    return _assembly(layout, half_backlash, turned, errors)
+        return _without_errors(layout, half_backlash, rim_clocking)
+    return _assembly(layout, half_backlash, rim_clocking, errors)
 
 
 @kept_by_content(4)
-def _without_errors(layout: Layout, half_backlash: Array, turned: Array) -> Assembly:
-    return _assembly(layout, half_backlash, turned, None)
+def _without_errors(layout: Layout, half_backlash: Array, clocking: Array) -> Assembly:
+    return _assembly(layout, half_backlash, clocking, None)
 
 
-def _assembly(layout: Layout, half_backlash: Array, turned: Array, errors: Imperfections | None) -> Assembly:
+def _assembly(
+    layout: Layout, half_backlash: Array, clocking: Array, errors: Imperfections | None
+) -> Assembly:
     count = len(layout.pinions)
     pitches = np.array([pinion.pitches for pinion in layout.pinions])
     if len(layout.gears) < 2:
-        nothing = np.zeros(count)
-        return Assembly(nothing, np.full(count, np.inf), np.ones(count, bool), pitches, pitches)
-    room = half_backlash.reshape(len(layout.gears), count).sum(axis=0)
-    ahead = turned - 2.0 * pitches
+        zeros = np.zeros(count)
+        return Assembly(zeros, np.full(count, np.inf), np.ones(count, bool), pitches, pitches)
+    clearance = half_backlash.reshape(len(layout.gears), count).sum(axis=0)
+    ahead = clocking - 2.0 * pitches
     if errors is not None:
         lower, upper = np.split(errors.error, 2)
         cosine = np.cos(layout.pressure_angle)
         ahead = ahead + (upper - lower - 2.0 * cosine * errors.position[:, 0]) / layout.base_pitch
-        room = room + 2.0 * cosine * errors.bearing_clearance
-    reach = room / layout.base_pitch + 0.5 * ROUNDED
-    together = np.abs(_wrapped(ahead[:, None] - ahead)) <= reach[:, None] + reach
+        clearance = clearance + 2.0 * cosine * errors.bearing_clearance
+    reach = clearance / layout.base_pitch + 0.5 * ANGLE_ROUNDING
+    together = np.abs(_wrap_pitches(ahead[:, None] - ahead)) <= reach[:, None] + reach
     hardest = int(np.argmax(together.sum(axis=1)))
-    left = _wrapped(ahead - ahead[hardest])
+    left = _wrap_pitches(ahead - ahead[hardest])
     low, high = left[together[hardest]].min(), left[together[hardest]].max()
     fits = _all_together(left, reach, together[hardest])
     middle = 0.5 * (low + high)
-    near = np.floor(2.0 * (pitches - 0.5 * (turned - ahead[hardest])))
-    steps = 0.5 * (turned - ahead[hardest] + near)
-    return Assembly((left - middle) * layout.base_pitch, room, fits, steps, steps + 0.5)
+    near = np.floor(2.0 * (pitches - 0.5 * (clocking - ahead[hardest])))
+    steps = 0.5 * (clocking - ahead[hardest] + near)
+    return Assembly((left - middle) * layout.base_pitch, clearance, fits, steps, steps + 0.5)
 
 
-def squeezed(layout: Layout, half_backlash: Array, errors: Imperfections) -> Array:
-    """How much deeper a pinion stands in each mesh than backlash and clearance allow, shape (meshes,), m.
+def interference_depths(layout: Layout, half_backlash: Array, errors: Imperfections) -> Array:
+    """Return how much deeper a pinion stands in each mesh than backlash and clearance allow.
 
-    Positive where both flanks of a tooth would be pressed with the machine at rest.
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    half_backlash : (meshes,) array
+        Half the backlash of each mesh, m.
+    errors : Imperfections
+        Positions of the pinions' bearings and their clearance.
+
+    Returns
+    -------
+    (meshes,) array
+        m; positive where both flanks of a tooth would be pressed with the machine at rest.
     """
     sine = np.sin(layout.pressure_angle)
     side = np.array([[gear.sign] for gear in layout.gears])
@@ -100,8 +129,8 @@ def squeezed(layout: Layout, half_backlash: Array, errors: Imperfections) -> Arr
     return np.asarray(deeper.ravel() - half_backlash)
 
 
-def _wrapped(pitches: Array) -> Array:
-    """The nearest to zero of a number of pitches and whole pitches more or less."""
+def _wrap_pitches(pitches: Array) -> Array:
+    """Return the remainder to the nearest whole number of pitches."""
     return pitches - np.round(pitches)
 
 

@@ -13,59 +13,111 @@ from facegear.errors import NotConverged
 from facegear.transmission.machine import Machine
 
 EPSILON = float(np.finfo(float).eps)
-ROUNDED = 32.0
+"""Rounding unit of double precision."""
+ROUNDING_FACTOR = 32.0
 """Roundings of the largest terms of a sum that its result may be off by."""
 
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """What is left over on the bodies at K positions, moments at their arms, N.
+    """Force out of balance on the bodies at K positions, moments divided by their arms.
 
-    residual (K,): the largest, over the largest applied or mesh force. rounding (K,): what of it the size of
-    the numbers that cancel explains, over the same.
+    Attributes
+    ----------
+    residual : (K,) array
+        The largest, over the largest applied or mesh force.
+    rounding : (K,) array
+        The part that rounding explains by the size of the numbers that cancel, over the same force.
     """
 
     residual: Array
     rounding: Array
 
-    def require(self, accepted: float, names: list[str]) -> None:
-        """Raise NotConverged for the worst position whose residual is above `accepted` and rounding."""
-        over = self.residual - accepted - self.rounding
+    def require(self, limit: float, names: list[str]) -> None:
+        """Raise NotConverged for the worst position whose residual is above the limit and rounding.
+
+        Parameters
+        ----------
+        limit : float
+            Largest residual, relative.
+        names : list of str
+            Name of each position for the message.
+
+        Raises
+        ------
+        NotConverged
+            If the residual of a position is above the limit and its rounding.
+        """
+        over = self.residual - limit - self.rounding
         if (over <= 0.0).all():
             return
         worst = int(np.argmax(np.where(np.isnan(over), np.inf, over)))
-        allowed = accepted + self.rounding[worst]
-        tried = f"forces and moments out of balance by {self.residual[worst]:.2e} over {allowed:.0e}"
-        raise NotConverged("static equilibrium", names[worst], tried)
+        limit_with_rounding = limit + self.rounding[worst]
+        problem = (
+            f"forces and moments out of balance by {self.residual[worst]:.2e} over {limit_with_rounding:.0e}"
+        )
+        raise NotConverged("static equilibrium", names[worst], problem)
 
 
 def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Array, gaps: Array) -> Balance:
-    """Bearings, contacts and torques on every body, from displacements (K, dof) and contact forces (K, F).
+    """Compute the balance of bearings, contacts and torques on every body.
 
-    F contacts: both flanks of every mesh, or every mesh as one with a force of either sign. stiffness, gaps
-    (K, F): theirs, N/m and m, which say how well the forces can be known.
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    displacements : (K, dof) array
+        m and rad.
+    forces : (K, F) array
+        Contact forces, N.
+    stiffness : (K, F) array
+        Stiffness of the contacts, N/m, by which rounding of the forces is judged.
+    gaps : (K, F) array
+        Gaps of the contacts, m, for the same purpose.
+
+    Returns
+    -------
+    Balance
+        Relative to the largest applied or mesh force.
+
+    References
+    ----------
+    contacts are both flanks of every mesh, or every mesh as one with a force of either sign.
     """
     linear = machine.linear
-    rows, arms, applied = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
-    left_over = bearing_loads(machine, displacements) + forces @ rows - applied
-    size = np.maximum(np.abs(applied / arms).max(), np.abs(forces).max(axis=1))
+    rows, arms, loads = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
+    left_over = bearing_loads(machine, displacements) + forces @ rows - loads
+    size = np.maximum(np.abs(loads / arms).max(), np.abs(forces).max(axis=1))
     size = np.where(size > 0.0, size, 1.0)
-    moved = np.abs(displacements)
-    pressed = stiffness * (moved @ np.abs(rows).T + np.abs(gaps))
-    terms = moved @ np.abs(linear.stiffness) + pressed @ np.abs(rows)
+    motion_sizes = np.abs(displacements)
+    force_sizes = stiffness * (motion_sizes @ np.abs(rows).T + np.abs(gaps))
+    terms = motion_sizes @ np.abs(linear.stiffness) + force_sizes @ np.abs(rows)
     return Balance(
         residual=np.abs(left_over / arms).max(axis=1) / size,
-        rounding=ROUNDED * EPSILON * (terms / arms).max(axis=1) / size,
+        rounding=ROUNDING_FACTOR * EPSILON * (terms / arms).max(axis=1) / size,
     )
 
 
 def bearing_loads(machine: Machine, displacements: Array) -> Array:
-    """Force or moment of every degree of freedom on its bearing, (K, dof), beyond any clearance."""
+    """Return the force or moment of every degree of freedom on its bearing, beyond any clearance.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    displacements : (K, dof) array
+        m and rad.
+
+    Returns
+    -------
+    (K, dof) array
+        N and N m.
+    """
     linear = machine.linear
-    loads = displacements @ machine.alike.linear.stiffness_without_rings
+    loads = displacements @ machine.without_errors.linear.stiffness_without_rings
     rings, at = linear.rings, linear.ring_coordinates
-    moved = displacements[:, at]
-    distance = np.maximum(np.hypot(moved[..., 0], moved[..., 1]), rings.clearance)
+    ring_displacements = displacements[:, at]
+    distance = np.maximum(np.hypot(ring_displacements[..., 0], ring_displacements[..., 1]), rings.clearance)
     beyond = np.maximum(1.0 - rings.clearance / distance, 0.0)
-    loads[:, at] += moved * beyond[..., None] * rings.stiffness[:, None]
+    loads[:, at] += ring_displacements * beyond[..., None] * rings.stiffness[:, None]
     return np.asarray(loads)

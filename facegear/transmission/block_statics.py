@@ -11,7 +11,7 @@ import numpy as np
 
 from facegear._kernels import statics
 from facegear.arrays import Array, Integers
-from facegear.mesh_law.law import Held
+from facegear.mesh_law.law import LawAtPhases
 from facegear.mesh_law.laws_at_phases import LinearHeld, LoadDependentHeld
 
 KERNELS: Mapping[type, Callable[..., Any]] = {
@@ -54,7 +54,7 @@ class Springs(NamedTuple):
     loads: Array
 
 
-def has_kernel(law: Held) -> bool:
+def has_kernel(law: LawAtPhases) -> bool:
     """Tell whether the compiled kernel knows a law.
 
     Parameters
@@ -71,7 +71,7 @@ def has_kernel(law: Held) -> bool:
 
 
 def settle_all(
-    springs: Springs, law: Held, gap: Array, tolerance: float, start: Array
+    springs: Springs, law: LawAtPhases, gap: Array, tolerance: float, start: Array
 ) -> tuple[Array, Array, Array]:
     """Settle a machine at K positions, each from where the one before was found.
 

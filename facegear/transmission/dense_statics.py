@@ -15,15 +15,21 @@ from facegear.mesh_law.law import MeshLaw, beyond_edges
 from facegear.transmission.linear_model import LinearModel
 
 MAX_ITERATIONS = 200
+"""Largest number of steps of Newton's method, and of a search along a line."""
 RESIDUAL = 1e-10
+"""Largest force out of balance, over the largest force, of an accepted result."""
 FIRST_SPRING, LAST_SPRING, ROUNDS = 1e-2, 1e-12, 41
+"""Springs of the proximal point method over the stiffest spring of the machine, first and last, and the
+number of rounds between them.
+"""
 MORE_ROUNDS = 20
+"""Largest number of rounds that move a body with next to no load through its backlash."""
 FARTHEST = 2.0**60
-"""How many steps ahead a line is looked along."""
+"""Number of steps ahead to which a line is searched."""
 STRAIGHT = 1e-10
 """A slope is zero to this fraction of what it is at the start."""
 NO_PHASE = np.zeros(1)
-"""The phase at which a law is asked that depends on none."""
+"""Phase at which a law is evaluated that does not depend on the phase."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,35 +44,82 @@ class Contacts:
     upper: Array
 
     def beyond(self, deflections: Array) -> Array:
-        """How far deflections (..., contacts) lie beyond the edges, m."""
+        """Return how far deflections lie beyond the edges.
+
+        Parameters
+        ----------
+        deflections : (..., contacts) array
+            m.
+
+        Returns
+        -------
+        (..., contacts) array
+            m.
+        """
         return beyond_edges(deflections, self.lower, self.upper)
 
     def forces(self, beyond: Array) -> Array:
-        """Forces of contacts pressed in by `beyond` (..., contacts), N."""
+        """Return the forces of contacts.
+
+        Parameters
+        ----------
+        beyond : (..., contacts) array
+            Compression, m.
+
+        Returns
+        -------
+        (..., contacts) array
+            N.
+        """
         return self.law.force(NO_PHASE, beyond[..., None, :])[..., 0, :]
 
     def slopes(self, beyond: Array) -> Array:
-        """Their derivatives (contacts,) at `beyond` (contacts,), N/m."""
+        """Return the derivatives of the forces by the compression.
+
+        Parameters
+        ----------
+        beyond : (contacts,) array
+            Compression, m.
+
+        Returns
+        -------
+        (contacts,) array
+            N/m.
+        """
         return self.law.slope(NO_PHASE, beyond[None])[0]
 
 
 def dense_equilibrium(linear: LinearModel, contacts: Contacts, lengths: Array) -> tuple[Array, Array, Array]:
-    """Displacements (n,), deflections (contacts,) without errors, elastic forces (contacts,).
+    """Compute the static equilibrium of a linear model with contacts.
 
-    Minimises the elastic energy less the work of the loads (convex: gaps only flatten it). lengths (n,): of
-    one unit of each coordinate, so that all unknowns are lengths of one order.
+    The method minimises the elastic energy less the work of the loads (convex: gaps only flatten it).
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Bodies, bearings and loads.
+    contacts : Contacts
+        Contacts at one position.
+    lengths : (n,) array
+        Length of one unit of each coordinate, m, so that all unknowns are lengths of one order.
+
+    Returns
+    -------
+    tuple of three arrays
+        Displacements (n,) in m and rad, deflections (contacts,) without errors in m, elastic forces
+        (contacts,) in N.
     """
     scale = 1.0 / lengths
     ring_coordinates = linear.ring_coordinates
-    scaled = _Springs(
+    springs = _Springs(
         linear.rows[: contacts.upper.size] * scale,
         contacts,
         linear.stiffness_without_rings * np.outer(scale, scale),
         linear.loads * scale,
         _Rings(ring_coordinates, linear.rings.stiffness, linear.rings.clearance),
     )
-    solution = _minimise(scaled)
-    deflections = scaled.deflections(solution)
+    solution = _minimise(springs)
+    deflections = springs.deflections(solution)
     return scale * solution, deflections, contacts.forces(contacts.beyond(deflections))
 
 
@@ -81,10 +134,10 @@ class _Rings:
     def push(self, q: Array) -> Array:
         """Forces (..., n) of the bearings at displacements (..., n)."""
         forces = np.zeros_like(q)
-        moved = q[..., self.coordinates]
-        distance = np.maximum(np.hypot(moved[..., 0], moved[..., 1]), self.clearance)
-        stretched = self.stiffness * (1.0 - self.clearance / distance)
-        forces[..., self.coordinates] = stretched[..., None] * moved
+        displacements = q[..., self.coordinates]
+        distance = np.maximum(np.hypot(displacements[..., 0], displacements[..., 1]), self.clearance)
+        secant_stiffness = self.stiffness * (1.0 - self.clearance / distance)
+        forces[..., self.coordinates] = secant_stiffness[..., None] * displacements
         return forces
 
     def add_tangents(self, q: Array, matrix: Array) -> None:
@@ -104,7 +157,7 @@ class _Springs:
     jacobian: Array
     contacts: Contacts
     bearing: Array
-    applied: Array
+    loads: Array
     rings: _Rings
 
     def deflections(self, q: Array) -> Array:
@@ -114,8 +167,8 @@ class _Springs:
         return self.contacts.forces(self.contacts.beyond(self.deflections(q)))
 
     def balance(self, q: Array, forces: Array) -> Array:
-        """What is left over at q with these forces of the contacts."""
-        balance = self.bearing @ q + self.jacobian.T @ forces - self.applied
+        """Return the forces out of balance at q with these forces of the contacts."""
+        balance = self.bearing @ q + self.jacobian.T @ forces - self.loads
         return balance + self.rings.push(q) if self.rings.clearance.size else balance
 
     def curvature(self, q: Array, slope: Array) -> Array:
@@ -126,8 +179,8 @@ class _Springs:
         return curvature
 
     def along(self, q: Array, deflections: Array, step: Array, tie: float, anchor: Array) -> "Line":
-        """The energy's slope along a step from q, with a spring `tie` to the anchor."""
-        at_start = self.bearing @ q + tie * (q - anchor) - self.applied
+        """Return the energy's slope along a step from q, with a spring `tie` to the anchor."""
+        at_start = self.bearing @ q + tie * (q - anchor) - self.loads
 
         def bearings(s: Array) -> Array:
             return np.asarray(self.rings.push(q + s[:, None] * step) @ step)
@@ -159,25 +212,48 @@ class Line:
         return self.contacts.forces(self.contacts.beyond(self.deflections + s * self.rates))
 
     def slopes(self, s: Array) -> Array:
-        """The slope at some points (K,)."""
+        """Return the slope of the energy at points of the line.
+
+        Parameters
+        ----------
+        s : (K,) array
+            Points, in steps (dimensionless).
+
+        Returns
+        -------
+        (K,) array
+            J for a step.
+        """
         forces = self._forces(s[:, None])
         slopes = np.asarray(self.constant + self.rise * s + forces @ self.rates)
         return slopes if self.bearings is None else slopes + self.bearings(s)
 
     def corners(self) -> Array:
-        """Where a mesh passes a level of its law ahead, in order, with the two ends of the line: between two
-        of them the slope is smooth, and straight if the law is linear.
+        """Return where a mesh passes a level of its law ahead, in order, with the two ends of the line.
+
+        Between two corners the slope is smooth, and straight if the law is linear.
+
+        Returns
+        -------
+        (corners,) array
+            In steps (dimensionless).
         """
-        moving = self.rates != 0.0
-        levels, contacts = self.contacts.law.levels[:, moving], self.contacts
-        edges = np.concatenate([contacts.upper[moving] + levels, contacts.lower[moving] - levels])
+        has_motion = self.rates != 0.0
+        levels, contacts = self.contacts.law.levels[:, has_motion], self.contacts
+        edges = np.concatenate([contacts.upper[has_motion] + levels, contacts.lower[has_motion] - levels])
         with np.errstate(over="ignore"):  # an edge that is met at infinity is not ahead
-            at = ((edges - self.deflections[moving]) / self.rates[moving]).ravel()
+            at = ((edges - self.deflections[has_motion]) / self.rates[has_motion]).ravel()
         inside = np.sort(at[(at > 0.0) & (at < FARTHEST)])
         return np.concatenate([[0.0], inside, [FARTHEST]])
 
     def minimum(self) -> float:
-        """The zero of the slope, which only grows; the end of the line where it does not come to zero."""
+        """Return the zero of the slope, which only grows.
+
+        Returns
+        -------
+        float
+            In steps (dimensionless): the end of the line where the slope does not come to zero.
+        """
         at = self.corners()
         slopes = self.slopes(at)
         if slopes[0] >= 0.0:
@@ -189,8 +265,8 @@ class Line:
         return self._zero(at[after - 1], at[after], slopes[after - 1], slopes[after], close)
 
     def _zero(self, low: float, high: float, below: float, above: float, close: float) -> float:
-        """The zero between two corners, by one step where the slope is straight there, else by the Illinois
-        method (Dowell and Jarratt 1971).
+        """Return the zero between two corners, by one step where the slope is straight there, else by the
+        Illinois method (Dowell and Jarratt 1971).
         """
         side = 0
         for _ in range(MAX_ITERATIONS):
@@ -209,7 +285,7 @@ class Line:
         return s
 
     def _noise(self, s: float) -> float:
-        """What rounding makes of the slope at a point."""
+        """Return the rounding error of the slope at a point."""
         forces = self._forces(s)
         size = abs(self.constant) + abs(self.rise * s) + np.abs(forces * self.rates).sum()
         return 100.0 * float(np.finfo(float).eps * size)
@@ -222,9 +298,9 @@ def _minimise(springs: _Springs) -> Array:
     The springs make every round strictly convex, so that bodies free inside their backlash have a position
     too; the force in the springs goes to zero as the rounds settle.
     """
-    size = np.abs(springs.applied).max()
+    size = np.abs(springs.loads).max()
     stiffest = max(springs.contacts.law.steepest.max(), springs.bearing.max())
-    displacement = np.zeros(springs.applied.size)
+    displacement = np.zeros(springs.loads.size)
     for tie in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
         last = displacement
         displacement = _newton(springs, tie, last)
@@ -235,11 +311,11 @@ def _minimise(springs: _Springs) -> Array:
 
 
 def _pushed_on(springs: _Springs, tie: float, last: Array, displacement: Array) -> Array:
-    """A body that a force next to nothing has not yet moved through its backlash goes on as far as it can."""
+    """Move a body on that a force next to nothing has not yet moved through its backlash."""
     for _ in range(MORE_ROUNDS):
         deflections = springs.deflections(displacement)
         forces = springs.contacts.forces(springs.contacts.beyond(deflections))
-        size = max(np.abs(springs.applied).max(), np.abs(forces).max())
+        size = max(np.abs(springs.loads).max(), np.abs(forces).max())
         if np.abs(springs.balance(displacement, forces)).max() <= RESIDUAL * size:
             break
         step = displacement - last
@@ -271,9 +347,9 @@ def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
         ):
             return whole
         along = springs.along(displacement, deflections, step, tie, anchor).minimum()
-        moved = displacement + along * step
+        next_displacement = displacement + along * step
         size = max(np.abs(displacement).max(), widest)
-        if np.abs(moved - displacement).max() <= 1e-15 * size:
-            return moved
-        displacement = moved
+        if np.abs(next_displacement - displacement).max() <= 1e-15 * size:
+            return next_displacement
+        displacement = next_displacement
     return displacement

@@ -19,12 +19,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.linear_model import LinearModel, Spin
 
 TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
+"""J, which turns the cosine and sine coordinates of a wave by a quarter of a period."""
 X, Y, Z, THETA, TILT_X, TILT_Y = range(6)
+"""Rows of the hub's motions in `Coordinates.mass_hub`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +69,28 @@ class Coordinates:
 
 
 def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: float) -> Coordinates:
-    """Coordinates of a gear with meshes at angles (n,), rad; sign 1 for the upper, -1 for the lower gear."""
-    mode, part, letters = _numbered(body)
+    """Return the elastic coordinates of a gear with meshes at given angles.
+
+    Parameters
+    ----------
+    body : ReducedBody
+        The gear's reduced body.
+    sign : float
+        1 for the upper, -1 for the lower gear, dimensionless.
+    angles : (n,) array
+        Angles of the meshes, rad.
+    pressure_angle : float
+        Pressure angle, rad.
+
+    Returns
+    -------
+    Coordinates
+        SI units.
+    """
+    mode, part, letters = _number_coordinates(body)
     order, cosine = body.order[mode], part == 0
     pair = TURN[part[:, None], part]
-    same = (part[:, None] == part) * 1.0
+    is_same_part = (part[:, None] == part) * 1.0
     shift = np.diag(body.order.astype(float)) + body.coriolis
     n = body.order[:, None].astype(float)
     slowed = body.stiffening - np.diag(body.order.astype(float) ** 2) - 2.0 * n * body.coriolis
@@ -79,15 +98,15 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
     stiffness = (2.0 * np.pi * body.frequency[mode]) ** 2
     coriolis = 2.0 * pair * np.where(order[:, None] > 0, shift[np.ix_(mode, mode)], 0.0)
     coriolis += _order_zero(body, mode)
-    turned = pair * order * body.damping[mode] * (mode[:, None] == mode)
+    circulatory = pair * order * body.damping[mode] * (mode[:, None] == mode)
     return Coordinates(
         letters=letters,
         mass_hub=_hub_masses(body.hub[:, mode], order, cosine, body.round[mode], sign),
         stiffness=stiffness,
         damping=body.damping[mode],
         gyroscopic=coriolis,
-        circulatory=turned,
-        centrifugal=same * slowed[np.ix_(mode, mode)],
+        circulatory=circulatory,
+        centrifugal=is_same_part * slowed[np.ix_(mode, mode)],
         gyroscopic_hub=_hub_coriolis(body, mode, cosine, sign),
         rows=flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
         slopes=rim_slopes(order, part, axial, body.slopes[mode], body.round[mode], angles),
@@ -95,14 +114,14 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
     )
 
 
-def _numbered(body: ReducedBody) -> tuple[Integers, Integers, tuple[str, ...]]:
-    """Mode and part (0 cosine, 1 sine) of every coordinate, and their letters."""
+def _number_coordinates(body: ReducedBody) -> tuple[Integers, Integers, tuple[str, ...]]:
+    """Return mode and part (0 cosine, 1 sine) of every coordinate, and their letters."""
     mode, part, letters = [], [], []
     for number, order in enumerate(body.order.tolist()):
         rank = number - int(np.searchsorted(body.order, order)) + 1
-        for which, letter in enumerate(("c", "s") if order else ("",)):
+        for part_number, letter in enumerate(("c", "s") if order else ("",)):
             mode.append(number)
-            part.append(which)
+            part.append(part_number)
             letters.append(f"n{order} {rank}{letter}")
     return np.array(mode, np.int64), np.array(part, np.int64), tuple(letters)
 
@@ -110,14 +129,16 @@ def _numbered(body: ReducedBody) -> tuple[Integers, Integers, tuple[str, ...]]:
 def _order_zero(body: ReducedBody, mode: Integers) -> Array:
     """Coriolis terms between modes along the axis and round it: -2 g on the first, 2 g on the second."""
     order, turning = body.order[mode], body.round[mode] > 0.5
-    both = (order[:, None] == 0) & (order == 0)
+    are_order_zero = (order[:, None] == 0) & (order == 0)
     sign = np.where(turning, 1.0, -1.0)[:, None] * (turning[:, None] != turning)
-    return np.asarray(2.0 * sign * both * body.coriolis[np.ix_(mode, mode)])
+    return np.asarray(2.0 * sign * are_order_zero * body.coriolis[np.ix_(mode, mode)])
 
 
 def _hub_masses(hub: Array, order: Integers, cosine: Mask, turning: Array, sign: float) -> Array:
-    """Heights count towards the teeth, against z of the upper gear; X = -y and Y = x of the hub. Tilts raise
-    the teeth of the upper gear as those of a wave do, and lower those of the lower gear.
+    """Return the masses between the hub's motions and the modes, (6, k).
+
+    Heights count towards the teeth, against z of the upper gear; X = -y and Y = x of the hub. Tilts raise the
+    teeth of the upper gear as those of a wave do, and lower those of the lower gear.
     """
     masses = np.zeros((6, order.size))
     zero, single = order == 0, order == 1
@@ -150,21 +171,65 @@ def flank_rows(
     angles: Array,
     pressure_angle: float,
 ) -> Array:
-    """Derivatives of the deflections, as `Coordinates.rows`; part 0 is the cosine, 1 the sine.
+    """Return the derivatives of the deflections of the flanks, as `Coordinates.rows`.
 
-    d loses what the pitch point moves along the force on the gear, -sin a axially and +-cos a round it.
+    The deflection d loses the motion of the pitch point along the force on the gear, -sin a axially and +-cos
+    a round it.
+
+    Parameters
+    ----------
+    order : (k,) array of int
+        Number of waves round the gear of each coordinate, dimensionless.
+    part : (k,) array of int
+        0 for the cosine, 1 for the sine, dimensionless.
+    axial : (k,) array
+        Axial motion of the pitch point by a unit of each coordinate, m.
+    around : (k,) array
+        Its motion round the axis, m.
+    turning : (k,) array
+        1 for coordinates of order 0 that go round the axis, else 0; dimensionless.
+    sign : float
+        1 for the upper, -1 for the lower gear, dimensionless.
+    angles : (n,) array
+        Angles of the meshes, rad.
+    pressure_angle : float
+        Pressure angle, rad.
+
+    Returns
+    -------
+    (2 n, k) array
+        m for a unit of each coordinate, drive flanks first.
     """
     phase = order * angles[:, None]
     cos, sin = np.cos(phase), np.sin(phase)
     along = around * np.where(part == 0, sin, -cos)
     along = np.where((order == 0), around * turning, along)
     up = lifts(order, part, axial, turning, angles)
-    separating, tangential = np.sin(pressure_angle) * up, sign * np.cos(pressure_angle) * along
-    return np.concatenate([separating - tangential, separating + tangential])
+    separating_motion, tangential = np.sin(pressure_angle) * up, sign * np.cos(pressure_angle) * along
+    return np.concatenate([separating_motion - tangential, separating_motion + tangential])
 
 
 def lifts(order: Integers, part: Integers, axial: Array, turning: Array, angles: Array) -> Array:
-    """Heights at the angles (n,) by coordinates whose waves have the amplitudes `axial`, (n, k)."""
+    """Return the heights at some angles by coordinates whose waves have given amplitudes.
+
+    Parameters
+    ----------
+    order : (k,) array of int
+        Number of waves round the gear of each coordinate, dimensionless.
+    part : (k,) array of int
+        0 for the cosine, 1 for the sine, dimensionless.
+    axial : (k,) array
+        Amplitude of each wave, any unit.
+    turning : (k,) array
+        1 for coordinates of order 0 that go round the axis, else 0; dimensionless.
+    angles : (n,) array
+        Angles, rad.
+
+    Returns
+    -------
+    (n, k) array
+        In the unit of `axial`.
+    """
     phase = order * angles[:, None]
     up = axial * np.where(part == 0, np.cos(phase), np.sin(phase))
     return np.where(order == 0, axial * (1.0 - turning), up)
@@ -173,7 +238,28 @@ def lifts(order: Integers, part: Integers, axial: Array, turning: Array, angles:
 def rim_slopes(
     order: Integers, part: Integers, axial: Array, radial: Array, turning: Array, angles: Array
 ) -> Array:
-    """Slopes (2, n, k) along the radius and round the axis by waves of heights and radial slopes."""
+    """Return the slopes of the rim along the radius and round the axis by waves of heights and radial slopes.
+
+    Parameters
+    ----------
+    order : (k,) array of int
+        Number of waves round the gear of each coordinate, dimensionless.
+    part : (k,) array of int
+        0 for the cosine, 1 for the sine, dimensionless.
+    axial : (k,) array
+        Amplitude of the height of each wave, m.
+    radial : (k,) array
+        Amplitude of its slope along the radius, m/m.
+    turning : (k,) array
+        1 for coordinates of order 0 that go round the axis, else 0; dimensionless.
+    angles : (n,) array
+        Angles of the meshes, rad.
+
+    Returns
+    -------
+    (2, n, k) array
+        dW/dr in m/m and dW/dphi in m/rad for a unit of each coordinate.
+    """
     phase = order * angles[:, None]
     around = order * axial * np.where(part == 0, -np.sin(phase), np.cos(phase))
     return np.stack([lifts(order, part, radial, turning, angles), around])
@@ -235,12 +321,12 @@ class ElasticGears:
         of_gears = {gear: body.residual_of_flanks(directions) for gear, body in self.bodies.items()}
         return np.array([of_gears.get(gear, np.zeros((2, 2))) for _, gear in self.layout.meshes])
 
-    def __call__(self, lumped: LinearModel) -> LinearModel:
-        """The model with the coordinates of every gear behind its own.
+    def __call__(self, base_model: LinearModel) -> LinearModel:
+        """Return the model with the coordinates of every gear behind its own.
 
         The lumped damping stays on the coordinates that it is given for.
         """
-        model = lumped
+        model = base_model
         for gear, body in self.bodies.items():
             model = self._with_gear(model, gear, body)
         residuals = self.residuals()
@@ -263,17 +349,17 @@ class ElasticGears:
         spin = model.spin
         if spin is not None:
             turning = (spin.gyroscopic, spin.circulatory, spin.centrifugal)
-            spin = Spin(*(bordered(matrix, np.zeros((1, 1))) for matrix in turning))
+            spin = Spin(*(append_block(matrix, np.zeros((1, 1))) for matrix in turning))
         return replace(
             model,
             labels=(*model.labels, f"attached:{layout.mesh_names[mesh]}"),
-            mass=bordered(model.mass, np.eye(1)),
-            stiffness=bordered(model.stiffness, np.array([[omega**2]])),
+            mass=append_block(model.mass, np.eye(1)),
+            stiffness=append_block(model.stiffness, np.array([[omega**2]])),
             rows=np.hstack([model.rows, column]),
             torques=np.append(model.torques, 0.0),
             forces=np.append(model.forces, 0.0),
             lengths=np.append(model.lengths, way),
-            dampers=bordered(
+            dampers=append_block(
                 model.dampers, np.array([[2.0 * ATTACHED_DAMPING * omega - damping_of_lumped_model]])
             ),
             slopes=model.with_slopes(np.zeros(len(layout.meshes), dtype=bool), np.zeros((2, 0, 1))),
@@ -281,46 +367,46 @@ class ElasticGears:
         )
 
     def _with_gear(self, model: LinearModel, gear: int, body: ReducedBody) -> LinearModel:
-        layout, own = self.layout, self.layout.gears[gear]
-        added = coordinates(body, own.sign, layout.angles, layout.pressure_angle)
-        old, new = model.size, len(added.letters)
-        speed = own.sign * layout.pinion_teeth / layout.gear_teeth
-        hub, mass_hub, gyroscopic_hub = _hub_terms(layout, gear, body, added)
+        layout, face_gear = self.layout, self.layout.gears[gear]
+        elastic = coordinates(body, face_gear.sign, layout.angles, layout.pressure_angle)
+        old, new = model.size, len(elastic.letters)
+        speed = face_gear.sign * layout.pinion_teeth / layout.gear_teeth
+        hub, mass_hub, gyroscopic_hub = _hub_terms(layout, gear, body, elastic)
         rigid, moments = _hub_tilts(layout, gear, body, old)
-        mass = bordered(model.mass + rigid, np.eye(new), hub, mass_hub)
-        stiffness = bordered(model.stiffness, np.diag(added.stiffness))
-        lumped = model.mass_damping * mass + model.bearing_damping * stiffness
-        lumped[:old, :old] = model.mass_damping * rigid
-        dampers = bordered(model.dampers, np.diag(added.damping)) - lumped
+        mass = append_block(model.mass + rigid, np.eye(new), hub, mass_hub)
+        stiffness = append_block(model.stiffness, np.diag(elastic.stiffness))
+        damping_of_lumped_model = model.mass_damping * mass + model.bearing_damping * stiffness
+        damping_of_lumped_model[:old, :old] = model.mass_damping * rigid
+        dampers = append_block(model.dampers, np.diag(elastic.damping)) - damping_of_lumped_model
         meshes = np.array([g == gear for _, g in layout.meshes])
         rows = np.zeros((len(model.rows), new))
-        rows[np.tile(meshes, 2)] = added.rows
-        none = Spin(*(np.zeros((old, old)) for _ in range(3)))
-        before = none if model.spin is None else model.spin
+        rows[np.tile(meshes, 2)] = elastic.rows
+        no_spin = Spin(*(np.zeros((old, old)) for _ in range(3)))
+        before = no_spin if model.spin is None else model.spin
         turning = before.gyroscopic + speed * moments
-        gyroscopic = bordered(turning, speed * added.gyroscopic, hub, speed * gyroscopic_hub)
+        gyroscopic = append_block(turning, speed * elastic.gyroscopic, hub, speed * gyroscopic_hub)
         gyroscopic[old:, :old] *= -1.0
         return replace(
             model,
-            labels=(*model.labels, *(f"{own.name}:{letter}" for letter in added.letters)),
+            labels=(*model.labels, *(f"{face_gear.name}:{letter}" for letter in elastic.letters)),
             mass=mass,
             stiffness=stiffness,
             rows=np.hstack([model.rows, rows]),
             torques=np.append(model.torques, np.zeros(new)),
             forces=np.append(model.forces, np.zeros(new)),
-            lengths=np.append(model.lengths, added.lengths),
+            lengths=np.append(model.lengths, elastic.lengths),
             dampers=dampers,
-            slopes=model.with_slopes(meshes, added.slopes),
+            slopes=model.with_slopes(meshes, elastic.slopes),
             spin=Spin(
                 gyroscopic,
-                bordered(before.circulatory, speed * added.circulatory),
-                bordered(before.centrifugal, speed**2 * added.centrifugal),
+                append_block(before.circulatory, speed * elastic.circulatory),
+                append_block(before.centrifugal, speed**2 * elastic.centrifugal),
             ),
         )
 
 
 def _hub_terms(
-    layout: Layout, gear: int, body: ReducedBody, added: Coordinates
+    layout: Layout, gear: int, body: ReducedBody, elastic: Coordinates
 ) -> tuple[Integers, Array, Array]:
     """Coordinates (h,) of a gear's hub, and its masses and velocity terms (h, k) with those of the body.
 
@@ -328,25 +414,25 @@ def _hub_terms(
     """
     hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
     if layout.gears[gear].body.tilt is None:
-        return hub, added.mass_hub[:DOF_PER_BODY], added.gyroscopic_hub[:DOF_PER_BODY]
+        return hub, elastic.mass_hub[:DOF_PER_BODY], elastic.gyroscopic_hub[:DOF_PER_BODY]
     height = layout.gears[gear].sign * _centre(layout, gear, body)
-    masses = added.mass_hub.copy()
+    masses = elastic.mass_hub.copy()
     masses[TILT_X] -= height * masses[Y]
     masses[TILT_Y] += height * masses[X]
-    return np.append(hub, layout.first_tilts[gear] + np.arange(2)), masses, added.gyroscopic_hub
+    return np.append(hub, layout.first_tilts[gear] + np.arange(2)), masses, elastic.gyroscopic_hub
 
 
 def _hub_tilts(layout: Layout, gear: int, body: ReducedBody, size: int) -> tuple[Array, Array]:
     """Masses between motion sideways and tilt of a hub, and its gyroscopic moments; each (size, size)."""
     masses, moments = np.zeros((2, size, size))
-    own = layout.gears[gear]
-    if own.body.tilt is not None:
+    face_gear = layout.gears[gear]
+    if face_gear.body.tilt is not None:
         x, y = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(2)
         tilt_x, tilt_y = layout.first_tilts[gear] + np.arange(2)
-        off = own.sign * float(body.moment - body.mass * _centre(layout, gear, body))
+        off = face_gear.sign * float(body.moment - body.mass * _centre(layout, gear, body))
         masses[[y, tilt_x], [tilt_x, y]] = off
         masses[[x, tilt_y], [tilt_y, x]] = -off
-        moments[[tilt_x, tilt_y], [tilt_y, tilt_x]] = own.body.inertia, -own.body.inertia
+        moments[[tilt_x, tilt_y], [tilt_y, tilt_x]] = face_gear.body.inertia, -face_gear.body.inertia
     return masses, moments
 
 
@@ -356,8 +442,27 @@ def _centre(layout: Layout, gear: int, body: ReducedBody) -> float:
     return float(body.pitch_height) - (0.0 if tilt is None else tilt.below)
 
 
-def bordered(matrix: Array, corner: Array, at: Integers | None = None, border: Array | None = None) -> Array:
-    """A matrix with another behind it on the diagonal, joined by rows `border` at the places `at`."""
+def append_block(
+    matrix: Array, corner: Array, at: Integers | None = None, border: Array | None = None
+) -> Array:
+    """Append a block on the diagonal of a symmetric matrix.
+
+    Parameters
+    ----------
+    matrix : (n, n) array
+        The matrix, any unit.
+    corner : (k, k) array
+        The block, in the same unit.
+    at : (h,) array of int or None
+        Rows of the matrix that are coupled with the block, as an index.
+    border : (h, k) array or None
+        Their coupling, in the same unit.
+
+    Returns
+    -------
+    (n + k, n + k) array
+        In the same unit.
+    """
     old, new = len(matrix), len(corner)
     whole = np.zeros((old + new, old + new))
     whole[:old, :old], whole[old:, old:] = matrix, corner

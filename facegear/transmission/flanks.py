@@ -15,27 +15,49 @@ import numpy as np
 from facegear.arrays import Array, Mask
 from facegear.by_content import kept_by_content
 from facegear.harmonics.series import Harmonics
-from facegear.mesh_law.force_table import ForceTable, lagging
+from facegear.mesh_law.force_table import ForceTable, shift_tables
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
 from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import FlankTables, Machine, OpenFlanks
-from facegear.transmission.soft_tables import softened
+from facegear.transmission.soft_tables import soften_table
 
 NO_LOAD = 1e-9
 """Part of the largest force of all meshes below which a force is rounding and counts as none."""
 
 
-def carried(forces: Array) -> Array:
-    """Forces of meshes or flanks without those that are rounding beside the largest of all."""
+def significant_forces(forces: Array) -> Array:
+    """Return the forces with 0 in place of those that are rounding beside the largest.
+
+    Parameters
+    ----------
+    forces : array of any shape (...)
+        Forces of meshes or flanks, N.
+
+    Returns
+    -------
+    array of the same shape (...)
+        N.
+    """
     size = np.abs(forces)
     return np.where(size > NO_LOAD * size.max(initial=0.0), forces, 0.0)
 
 
 def flank_gaps(machine: Machine) -> Array:
-    """Half backlash b of every flank, shape (2 meshes,), m."""
+    """Return half the backlash b of every flank.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    (2 meshes,) array
+        m, drive flanks first.
+    """
     return np.tile(machine.half_backlash, 2)
 
 
@@ -55,7 +77,19 @@ class MeshContacts:
 
 
 def mesh_contacts(machine: Machine) -> MeshContacts:
-    """Without errors that change from one mesh cycle to the next."""
+    """Return the contacts of all meshes, without errors that change from one mesh cycle to the next.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    MeshContacts
+        One contact for each flank, or one for each mesh where both flanks share a line of action; m and N
+        s/m.
+    """
     return _flank_contacts(machine) if machine.layout.kinematics.flanks_apart else _line_contacts(machine)
 
 
@@ -92,12 +126,12 @@ def flank_dampers(machine: Machine, contact_mask: Mask) -> Array:
 
 
 def _line_contacts(machine: Machine) -> MeshContacts:
-    """Of meshes whose two flanks share one line of action."""
+    """Return the contacts of meshes whose two flanks share one line of action."""
     phases = np.round(machine.error_phases, 12) % 1.0
     half = machine.half_backlash
     return MeshContacts(
         law=line_law(machine),
-        error=tuple(machine.error.shifted(float(phase)) for phase in phases),
+        error=tuple(machine.error.shift(float(phase)) for phase in phases),
         lower=-half,
         upper=half,
         damping=np.full(phases.size, machine.damping.mesh),
@@ -105,8 +139,20 @@ def _line_contacts(machine: Machine) -> MeshContacts:
 
 
 def flank_law(machine: Machine) -> MeshLaw:
-    """The law of all drive flanks, then all back flanks: the machine's own, or else its mesh stiffness."""
-    return _flank_law(machine.alike)
+    """Return the law of all drive flanks, then all back flanks: the machine's own, or else its mesh
+    stiffness.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+
+    Returns
+    -------
+    MeshLaw
+        Force (N) of each flank by mesh position and compression (m).
+    """
+    return _flank_law(machine.without_errors)
 
 
 @lru_cache(maxsize=16)
@@ -115,26 +161,39 @@ def _flank_law(machine: Machine) -> MeshLaw:
         return machine.law
     if machine.tables is None:
         return _linear_law(machine.mesh_stiffness, machine.phases)
-    gears, own = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
-    return _law_of_tables(machine.tables, gears, own, machine.own_softening, tuple(_lags(machine)))
+    gears, factors = tuple(g for _, g in machine.layout.meshes), machine.imperfections.stiffness
+    return _law_of_tables(machine.tables, gears, factors, machine.own_softening, tuple(_lags(machine)))
 
 
 def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
-    """Fraction of positions (2 meshes,) at which flanks (K, 2 meshes), N, are pressed by more than their law
-    has at its last level; `cycles` (K,): mesh cycles from the start.
+    """Return how often the flanks are compressed beyond the last level of their law.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    cycles : (K,) array
+        Mesh cycles from the start, periods.
+    flank_forces : (K, 2 meshes) array
+        Forces of the flanks at these positions, N.
+
+    Returns
+    -------
+    (2 meshes,) array
+        Fraction of the positions; 0 for a law that is straight.
     """
     law = flank_law(machine)
     if law.straight:
         return np.zeros(law.contacts)
-    places = np.asarray(np.round(np.mod(cycles, 1.0), 9), dtype=np.float64)
-    phases, where = np.unique(places, return_inverse=True)
+    positions = np.asarray(np.round(np.mod(cycles, 1.0), 9), dtype=np.float64)
+    phases, phase_index = np.unique(positions, return_inverse=True)
     last = law.force(phases, np.repeat(law.levels[-1:], phases.size, axis=0))
-    return np.asarray((flank_forces > last[where]).mean(axis=0))
+    return np.asarray((flank_forces > last[phase_index]).mean(axis=0))
 
 
 @kept_by_content(4)
 def _linear_law(stiffness: tuple[Harmonics, ...], phases: Array) -> MeshLaw:
-    return linear_law(_both(stiffness, phases))
+    return linear_law(_flank_series(stiffness, phases))
 
 
 @kept_by_content(4)
@@ -145,30 +204,42 @@ def _law_of_tables(
     softening: Array | None,
     lags: tuple[float, ...],
 ) -> LoadDependentLaw:
-    """The tables of all flanks with their softening, each as its mesh passes through the cycle.
+    """Return the law of all flanks from their tables with softening, each with the lag of its mesh.
 
-    gears (meshes,): the number of each mesh's gear; factors, softening (m/N), lags (mesh periods) of meshes.
+    gears (meshes,): number of each mesh's gear; factors (meshes,) on the forces; softening (meshes,), m/N;
+    lags of the meshes, mesh periods.
     """
-    mirrored_backs = [both.back.mirrored() for both in tables]
+    mirrored_backs = [gear_tables.back.mirror() for gear_tables in tables]
     drives, backs = [tables[g].drive for g in gears], [mirrored_backs[g] for g in gears]
     flanks = [
-        table if factor == 1.0 else table.scaled(factor)
+        table if factor == 1.0 else table.scale(factor)
         for table, factor in zip([*drives, *backs], 2 * factors.tolist(), strict=True)
     ]
     if softening is not None:
         soft = 2 * softening.tolist()
-        flanks = [softened(table, compliance) for table, compliance in zip(flanks, soft, strict=True)]
-    return load_dependent_law(lagging(flanks, 2 * lags))
+        flanks = [soften_table(table, compliance) for table, compliance in zip(flanks, soft, strict=True)]
+    return load_dependent_law(shift_tables(flanks, 2 * lags))
 
 
 def _lags(machine: Machine) -> list[float]:
-    """Lag of every mesh in the mesh cycle, in mesh periods."""
+    """Return the lag of every mesh in the mesh cycle, in mesh periods."""
     return [float(lag) for lag in np.round(machine.phases, 12) % 1.0]
 
 
 @lru_cache(maxsize=16)
 def line_law(machine: Machine) -> MeshLaw:
-    """The law of meshes whose two flanks share one line of action, as equation (13) is printed."""
+    """Return the law of meshes whose two flanks share one line of action, as equation (13) is printed.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine with the printed kinematics.
+
+    Returns
+    -------
+    MeshLaw
+        Force (N) of each mesh by mesh position and compression (m).
+    """
     if machine.law is not None:
         return machine.law
     lags = tuple(_lags(machine))
@@ -179,30 +250,52 @@ def line_law(machine: Machine) -> MeshLaw:
 
 @kept_by_content(4)
 def _line_linear_law(stiffness: Harmonics, lags: tuple[float, ...]) -> MeshLaw:
-    return linear_law([stiffness.shifted(lag) for lag in lags])
+    return linear_law([stiffness.shift(lag) for lag in lags])
 
 
 @kept_by_content(4)
 def _line_law_of_tables(drive: tuple[ForceTable, ...], lags: tuple[float, ...]) -> MeshLaw:
-    return load_dependent_law(lagging(drive, lags))
+    return load_dependent_law(shift_tables(drive, lags))
 
 
 def error_series(machine: Machine) -> tuple[Harmonics, ...]:
-    """e(t) of every flank over the reference's mesh cycle, m, without what is constant or slow."""
-    return _error_series(machine.alike)
+    """Return e(t) of every flank over the reference's mesh cycle, without constant and slow errors.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    tuple of Harmonics
+        One series for each flank, in m; drive flanks first.
+    """
+    return _error_series(machine.without_errors)
 
 
 @lru_cache(maxsize=16)
 def _error_series(machine: Machine) -> tuple[Harmonics, ...]:
-    own = machine.imperfections.series
-    shapes = [own.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
-    return _both(tuple(shapes), machine.error_phases)
+    mesh_series = machine.imperfections.series
+    shapes = [mesh_series.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
+    return _flank_series(tuple(shapes), machine.error_phases)
 
 
 @lru_cache(maxsize=16)
 def constant_errors(machine: Machine) -> Array:
-    """Error of every flank that never changes, (2 meshes,), m: teeth, pinions out of place, assembly; shared,
-    only read.
+    """Return the error of every flank that never changes: teeth, pinions out of place, assembly.
+
+    The array is shared between calls and must not be written to.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+
+    Returns
+    -------
+    (2 meshes,) array
+        m; positive keeps the flank from touching.
     """
     layout, errors = machine.layout, machine.imperfections
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
@@ -210,19 +303,31 @@ def constant_errors(machine: Machine) -> Array:
     side = np.array([[gear.sign] for gear in layout.gears])
     lower = np.array([[float(gear.side is Side.LOWER)] for gear in layout.gears])
     off = side * cosine * errors.position[:, 0] + lower * misfit
-    separating = -side * sine * errors.position[:, 1]
-    return _flanks(errors.error - off.ravel(), separating.ravel())
+    separating_error = -side * sine * errors.position[:, 1]
+    return _flanks(errors.error - off.ravel(), separating_error.ravel())
 
 
 def slow_errors(machine: Machine, cycles: Array) -> Array:
-    """Error of every flank from runouts, pitch deviations and single teeth, shape (K, 2 meshes), m.
+    """Return the error of every flank from runouts, pitch deviations and single teeth.
 
-    `cycles` (K,) counts mesh cycles of the reference from the start. A face gear's high point stands at its
-    phase from the first pinion at the start and goes on as the gear turns, the lower one against the angles.
-    Teeth whose centre lies towards the angle p stand ahead by the sine of p less the mesh's angle.
+    A face gear's high point stands at its phase from the first pinion at the start and goes on as the gear
+    turns, the lower one against the angles. Teeth whose centre lies towards the angle p stand ahead by the
+    sine of p less the mesh's angle.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    cycles : (K,) array
+        Mesh cycles of the reference from the start, periods.
+
+    Returns
+    -------
+    (K, 2 meshes) array
+        m.
     """
     layout, errors = machine.layout, machine.imperfections
-    tangential, separating = np.zeros((2, cycles.size, len(layout.meshes)))
+    tangential, separating_error = np.zeros((2, cycles.size, len(layout.meshes)))
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     from_first = 2.0 * np.pi * layout.pitches_from_first / layout.gear_teeth
     for mesh, (i, g) in enumerate(layout.meshes):
@@ -230,79 +335,115 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
         runout = errors.pinion_runout[i]
         turn = 2.0 * np.pi * cycles / layout.pinion_teeth + runout.phase
         tangential[:, mesh] -= side * cosine * runout.amplitude * np.sin(turn)
-        separating[:, mesh] -= side * sine * runout.amplitude * np.cos(turn)
+        separating_error[:, mesh] -= side * sine * runout.amplitude * np.cos(turn)
         runout = errors.gear_runout[g]
         turn = 2.0 * np.pi * cycles / layout.gear_teeth + runout.phase - side * from_first[i]
         tangential[:, mesh] += cosine * runout.amplitude * np.sin(turn)
         on_pinion, on_gear = teeth_in_mesh(layout, mesh, cycles)
         tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
         tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
-    return _flanks(tangential, separating) - _early_teeth(machine, cycles)
+    return _flanks(tangential, separating_error) - _early_teeth(machine, cycles)
 
 
 def _early_teeth(machine: Machine, cycles: Array) -> Array:
-    """By how much every flank comes early, (K, 2 meshes) m, as single teeth of its gears deviate.
+    """Return by how much every flank comes early (K, 2 meshes), m, as single teeth of its gears deviate.
 
-    Both teeth are at that place of the mesh cycle at which the mesh is.
+    Both teeth are at the place of the mesh cycle at which the mesh is.
     """
     teeth, layout = machine.imperfections.teeth, machine.layout
     early = np.zeros((2, cycles.size, len(layout.meshes)))
     if teeth is None:
         return _beside(early)
     for mesh, lag in enumerate(_lags(machine)):
-        both = []
-        for counted in teeth_in_mesh(layout, mesh, cycles):
-            apart = cycles - lag - counted
-            both.append(counted + apart - np.round(apart))
-        early[:, :, mesh] = teeth.early(layout, *both)
+        positions = []
+        for tooth in teeth_in_mesh(layout, mesh, cycles):
+            apart = cycles - lag - tooth
+            positions.append(tooth + apart - np.round(apart))
+        early[:, :, mesh] = teeth.early(layout, *positions)
     return _beside(early)
 
 
-def _beside(both: Array) -> Array:
-    """Those (2, K, meshes) of drive and back flanks beside each other, (K, 2 meshes)."""
-    return np.concatenate([both[0], both[1]], axis=-1)
+def _beside(values: Array) -> Array:
+    """Concatenate the values of drive and back flanks (2, K, meshes) to (K, 2 meshes)."""
+    return np.concatenate([values[0], values[1]], axis=-1)
 
 
 def flank_places(phases: Array, cycles: Array) -> Array:
-    """Place of every flank in the reference's mesh cycle, (K, 2 meshes) in [0, 1), drive flanks first.
+    """Return the position of every flank in the reference's mesh cycle.
 
-    phases (meshes,): lag of each mesh; `cycles` (K,) counts mesh cycles from the start. A back flank goes
-    through the reference's cycle the other way round.
+    A back flank goes through the reference's cycle the other way round.
+
+    Parameters
+    ----------
+    phases : (meshes,) array
+        Lag of each mesh, mesh periods.
+    cycles : (K,) array
+        Mesh cycles from the start, periods.
+
+    Returns
+    -------
+    (K, 2 meshes) array
+        Mesh periods in [0, 1), drive flanks first.
     """
     drive = cycles[:, None] - phases
     return np.mod(np.concatenate([drive, -drive], axis=1), 1.0)
 
 
 def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Array]:
-    """Teeth of the pinion and of the face gear (K,) that a mesh has come to, counted on from turn to turn.
+    """Return the teeth of the pinion and of the face gear that a mesh has come to, counted on from turn to
+    turn.
 
-    `cycles` (K,) counts mesh cycles of the reference from the start; a fraction lies between two teeth. At
-    the start the first tooth of each gear is at the first pinion.
+    At the start the first tooth of each gear is at the first pinion. A fraction lies between two teeth.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    mesh : int
+        Index of the mesh.
+    cycles : (K,) array
+        Mesh cycles of the reference from the start, periods.
+
+    Returns
+    -------
+    pair of (K,) arrays
+        Tooth of the pinion and tooth of the face gear, as an index from 0.
     """
     i, g = layout.meshes[mesh]
     half_turn = 0.5 * layout.pinion_teeth if layout.half_turned(g) else 0.0
     return cycles - half_turn, cycles - layout.gears[g].sign * layout.pitches_from_first[i]
 
 
-def mirrored(series: Harmonics) -> Harmonics:
-    """The series of f(-t)."""
+def mirror_series(series: Harmonics) -> Harmonics:
+    """Return the series of f(-t).
+
+    Parameters
+    ----------
+    series : Harmonics
+        The series of f(t).
+
+    Returns
+    -------
+    Harmonics
+        In the unit of the given series.
+    """
     return Harmonics(-series.sine, series.cosine)
 
 
 @kept_by_content(8)
-def _both(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
-    """Drive flanks and their mirror images, each as its mesh passes through the cycle."""
-    flanks = [*drive, *(mirrored(own) for own in drive)]
+def _flank_series(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
+    """Return the series of drive flanks and of their mirror images, each with the lag of its mesh."""
+    flanks = [*drive, *(mirror_series(series) for series in drive)]
     lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
-    return tuple(own.shifted(lag) for own, lag in zip(flanks, lags, strict=True))
+    return tuple(series.shift(lag) for series, lag in zip(flanks, lags, strict=True))
 
 
-def _flanks(tangential: Array, separating: Array) -> Array:
-    return np.concatenate([separating + tangential, separating - tangential], axis=-1)
+def _flanks(tangential: Array, separating_error: Array) -> Array:
+    return np.concatenate([separating_error + tangential, separating_error - tangential], axis=-1)
 
 
-def _deviation(curve: Array | None, places: Array) -> Array:
+def _deviation(curve: Array | None, tooth_positions: Array) -> Array:
     """Pitch deviation between the teeth, linear from tooth to tooth, (K,)."""
     if curve is None:
-        return np.zeros(places.size)
-    return np.interp(places, np.arange(curve.size), curve, period=curve.size)
+        return np.zeros(tooth_positions.size)
+    return np.interp(tooth_positions, np.arange(curve.size), curve, period=curve.size)

@@ -1,4 +1,4 @@
-"""What makes one mesh or one body of a real gearbox differ from the others."""
+"""Imperfections by which one mesh or one body of a real gearbox differs from the others."""
 
 from dataclasses import dataclass, field, replace
 
@@ -70,8 +70,8 @@ class Imperfections:
         return teeth or pitch or any(curve.amplitude != 0.0 for curve in turning)
 
     @property
-    def standing(self) -> "Imperfections":
-        """The same without what changes from one mesh cycle to the next, as steady motions see it."""
+    def without_slow_errors(self) -> "Imperfections":
+        """Imperfections without what changes from one mesh cycle to the next, as steady motions see them."""
         pinions, gears = len(self.pinion_runout), len(self.gear_runout)
         return replace(
             self,
@@ -84,7 +84,18 @@ class Imperfections:
 
 
 def perfect(layout: Layout) -> Imperfections:
-    """No errors at all."""
+    """Return imperfections without any error.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+
+    Returns
+    -------
+    Imperfections
+        Zeros, and factors of 1 on the stiffness.
+    """
     meshes, pinions, gears = len(layout.meshes), len(layout.pinions), len(layout.gears)
     return Imperfections(
         error=np.zeros(meshes),

@@ -1,4 +1,4 @@
-"""What is connected to what: pinions around one or two face gears."""
+"""Layout of a transmission: pinions around one or two face gears, and which of them mesh."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -11,12 +11,15 @@ from facegear.arrays import Array
 from facegear.errors import InvalidInput
 
 DOF_PER_BODY = 4
+"""Coordinates of each body: x, y, z and rotation about its own axis."""
 DOF_LETTERS = ("x", "y", "z", "theta")
+"""Names of the coordinates of a body, in their order."""
 TILT_LETTERS = ("tilt_x", "tilt_y")
+"""Names of the two tilts of a body that may tilt."""
 
 
 class Role(StrEnum):
-    """What a pinion does in the power flow."""
+    """Role of a pinion in the power flow."""
 
     INPUT = "input"
     IDLER = "idler"
@@ -92,7 +95,9 @@ class FaceGear:
 
     @property
     def sign(self) -> float:
-        """1 for the upper gear, -1 for the lower, which a pinion sees turned half round its own axis."""
+        """1 for the upper gear, -1 for the lower gear, which a pinion sees rotated by 180 degrees about its
+        own axis.
+        """
         return -1.0 if self.side is Side.LOWER else 1.0
 
 
@@ -101,7 +106,7 @@ class Kinematics(Protocol):
 
     @property
     def name(self) -> str:
-        """As a config has it."""
+        """Name that a config gives to these kinematics."""
 
     @property
     def flanks_apart(self) -> bool:
@@ -114,19 +119,73 @@ class Kinematics(Protocol):
         """Whether the teeth of a lower face gear that is alone pass the pinions the other way round."""
 
     def require(self, layout: "Layout") -> None:
-        """Raise InvalidInput for radii that do not fit the teeth."""
+        """Raise InvalidInput for radii that do not fit the teeth.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout to check.
+        """
 
     def arm(self, radius: float, pressure_angle: float) -> float:
-        """Torque over the mesh force that balances it, m, for the radius that a layout gives to a body."""
+        """Return the torque over the mesh force that balances it.
+
+        Parameters
+        ----------
+        radius : float
+            Radius that a layout gives to a body, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
 
     def mesh_radius(self, layout: "Layout") -> float:
-        """Distance of the meshes from the face gears' axis, m."""
+        """Return the distance of the meshes from the face gears' axis.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        float
+            m.
+        """
 
     def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
-        """The radius (m) that a layout gives to a face gear with a base radius."""
+        """Return the radius that a layout gives to a face gear with a base radius.
+
+        Parameters
+        ----------
+        base_radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
 
     def flank_rows(self, layout: "Layout") -> Array:
-        """Derivative of the flanks' deflections by the DOF, (2 meshes, dof), drive flanks first."""
+        """Return the derivative of the flanks' deflections by the DOF.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        (2 meshes, dof) array
+            Drive flanks first; m/m, and m/rad for rotations.
+        """
 
 
 @dataclass(frozen=True)
@@ -183,7 +242,18 @@ class Layout:
         return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
 
     def tilt_distance(self, gear: int) -> float:
-        """Distance (m) from the pinions' axes to the point that a gear tilts about."""
+        """Return the distance from the pinions' axes to the point that a gear tilts about.
+
+        Parameters
+        ----------
+        gear : int
+            Number of the gear.
+
+        Returns
+        -------
+        float
+            m.
+        """
         tilt = self.gears[gear].body.tilt
         pitch_radius = self.pinion_arm / float(np.cos(self.pressure_angle))
         return pitch_radius + (0.0 if tilt is None else tilt.below)
@@ -222,9 +292,9 @@ class Layout:
     @cached_property
     def dof_names(self) -> tuple[str, ...]:
         """Names of the degrees of freedom, ``body:letter``."""
-        places = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
+        names = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
         tilts = [f"{self.gears[g].name}:{letter}" for g in self.tilting for letter in TILT_LETTERS]
-        return (*places, *tilts)
+        return (*names, *tilts)
 
     @cached_property
     def meshes(self) -> tuple[tuple[int, int], ...]:
@@ -254,14 +324,42 @@ class Layout:
         return np.array([pinion.pitches - self.pinions[0].pitches for pinion in self.pinions])
 
     def half_turned(self, gear: int) -> bool:
-        """Whether a gear meets a pinion half a turn of it away from the reference mesh.
+        """Whether a gear meets a pinion half a turn of the pinion away from the reference mesh.
 
         The reference is the first pinion's mesh with the upper gear, or with the only gear.
+
+        Parameters
+        ----------
+        gear : int
+            Number of the gear.
+
+        Returns
+        -------
+        bool
+            True for the lower of two gears.
         """
         return len(self.gears) > 1 and self.gears[gear].side is Side.LOWER
 
     def mesh_index(self, pinion: int, side: Side) -> int:
-        """Position of a mesh in `meshes`. Raises KeyError if the layout has no such gear."""
+        """Return the position of a mesh in `meshes`.
+
+        Parameters
+        ----------
+        pinion : int
+            Number of the pinion.
+        side : Side
+            Side of the face gear.
+
+        Returns
+        -------
+        int
+            Index of the mesh.
+
+        Raises
+        ------
+        KeyError
+            If the layout has no such gear.
+        """
         sides = [gear.side for gear in self.gears]
         if side not in sides:
             raise KeyError(side)

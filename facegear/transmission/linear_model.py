@@ -16,7 +16,7 @@ from facegear.arrays import AnyArray, Array, Integers, Mask
 
 @dataclass(frozen=True, eq=False)
 class Spin:
-    """What turning bodies add, for a speed of the pinions of 1 rad/s; each (n, n), SI units.
+    """Matrices that rotation adds, for a speed of the pinions of 1 rad/s; each (n, n), SI units.
 
     Attributes
     ----------
@@ -125,8 +125,8 @@ class LinearModel:
     def stiffness_without_rings(self) -> Array:
         """Stiffness (n, n) without the bearings that have clearance."""
         stiffness = self.stiffness.copy()
-        for places, spring in zip(self.ring_coordinates, self.rings.stiffness, strict=True):
-            stiffness[places, places] -= spring
+        for pair, spring in zip(self.ring_coordinates, self.rings.stiffness, strict=True):
+            stiffness[pair, pair] -= spring
         return stiffness
 
     @property
@@ -135,32 +135,78 @@ class LinearModel:
         return self.translations[self.rings.body, :2]
 
     def momentum(self, velocities: AnyArray) -> AnyArray:
-        """M times vectors (n, ...)."""
+        """Return M times vectors.
+
+        Parameters
+        ----------
+        velocities : (n, ...) array
+            m/s and rad/s.
+
+        Returns
+        -------
+        (n, ...) array
+            kg m/s and kg m2/s.
+        """
         if self.masses is None:
             return self.mass @ velocities
         return self.masses.reshape(-1, *(1,) * (velocities.ndim - 1)) * velocities
 
     def over_all(self, rows: Array) -> Array:
-        """Rows (..., dof) over the coordinates of the layout as rows (..., n) over all."""
-        added = self.size - rows.shape[-1]
-        return np.concatenate([rows, np.zeros((*rows.shape[:-1], added))], axis=-1)
+        """Extend rows over the coordinates of the layout to all coordinates, with zeros.
 
-    def with_slopes(self, meshes: Mask, added: Array) -> Array:
-        """`slopes` with columns (2, meshes of a gear, k) of more coordinates, of those meshes alone."""
-        slopes = np.zeros((2, meshes.size, self.size + added.shape[2]))
+        Parameters
+        ----------
+        rows : (..., dof) array
+            Any unit.
+
+        Returns
+        -------
+        (..., n) array
+            In the same unit.
+        """
+        added_count = self.size - rows.shape[-1]
+        return np.concatenate([rows, np.zeros((*rows.shape[:-1], added_count))], axis=-1)
+
+    def with_slopes(self, meshes: Mask, added_slopes: Array) -> Array:
+        """Return `slopes` with columns of more coordinates.
+
+        Parameters
+        ----------
+        meshes : (meshes,) array of bool
+            The meshes that these coordinates move.
+        added_slopes : (2, meshes of a gear, k) array
+            Slopes by k more coordinates below these meshes, 1/m and m/m.
+
+        Returns
+        -------
+        (2, meshes, n + k) array
+            In the units of `slopes`, 1/m and m/m.
+        """
+        slopes = np.zeros((2, meshes.size, self.size + added_slopes.shape[2]))
         if self.slopes is not None:
             slopes[:, :, : self.size] = self.slopes
-        slopes[:, meshes, self.size :] = added
+        slopes[:, meshes, self.size :] = added_slopes
         return slopes
 
     def of_body(self, name: str) -> Integers:
-        """Which coordinates belong to a body."""
+        """Return which coordinates belong to a body.
+
+        Parameters
+        ----------
+        name : str
+            Name of the body.
+
+        Returns
+        -------
+        array of int, shape (coordinates,)
+            Indices.
+        """
         owners = [label.rpartition(":")[0] for label in self.labels]
         return np.flatnonzero(np.array(owners) == name)
 
 
 class Bodies(Protocol):
-    """What makes more of the bodies than rigid masses on springs."""
+    """Function that adds to the linear model of rigid masses on springs."""
 
-    def __call__(self, lumped: LinearModel) -> LinearModel:
-        """The model with coordinates added behind those of the lumped one, or with other matrices."""
+    def __call__(self, base_model: LinearModel) -> LinearModel:
+        """Return the model with coordinates added behind its own, or with other matrices."""

@@ -13,46 +13,92 @@ from facegear.transmission.loaded_contacts import Contact, LoadedContacts, loade
 from facegear.transmission.machine import Machine
 from facegear.transmission.modes import Modes, drive_flanks, modes_of
 
-SAME = 1e-6
+FREQUENCY_TOLERANCE = 1e-6
 """Relative difference of a frequency, undecided contacts open or closed, that counts as none."""
 
 
 @dataclass(frozen=True, eq=False)
 class VibratingMachine:
-    """Modes, the contacts that they keep, and which frequencies (n,) no undecided contact changes.
+    """Modes, the contacts that they keep, and which frequencies are certain.
 
-    contacts: None for printed meshes, which are all closed on their one line of action.
+    Attributes
+    ----------
+    modes : Modes
+        Frequencies in Hz, and shapes.
+    contacts : LoadedContacts or None
+        None for printed meshes, which are all closed on their one line of action.
+    is_decided : (n,) array of bool
+        Whether no undecided contact changes the frequency.
     """
 
     modes: Modes
     contacts: LoadedContacts | None
-    decided: Mask
+    is_decided: Mask
 
 
 def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
-    """Modes at a pinion speed with the flanks that carry load at their mean stiffness, or at its slope under
-    their load where it depends on that.
+    """Compute the modes at a pinion speed with the stiffness of the flanks that carry load.
 
-    Bearings with clearance are as they are pressed. An open mesh stays open, a wedged one has both flanks;
-    undecided contacts count as open. Raises NotConverged.
+    The stiffness is the mean of each flank, or its slope under the load where it depends on the load.
+    Bearings with clearance have the stiffness that they have under load. An open mesh stays open, a wedged
+    one has both flanks; undecided contacts count as open.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    Modes
+        Frequencies in Hz.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     return vibrating_machine(machine, speed_rpm).modes
 
 
 def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMachine:
-    """loaded_modes() with what is known of the contacts. Raises NotConverged."""
+    """Compute loaded_modes() together with the contacts.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    VibratingMachine
+        Frequencies in Hz, forces in N.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
+    """
     speed = speed_rpm * np.pi / 30.0
     if not machine.layout.kinematics.flanks_apart:
         meshes = drive_flanks(machine.layout, machine.linear, machine.stiffness.mean)
         modes = modes_of(machine.linear, meshes, speed)
         return VibratingMachine(modes, None, np.ones(modes.frequencies.size, bool))
     contacts = loaded_contacts(machine)
-    modes = _modes(machine, contacts, (Contact.CLOSED,), speed)
+    modes = _modes(machine, contacts, (Contact.IN_CONTACT,), speed)
     if not contacts.any_undecided():
         return VibratingMachine(modes, contacts, np.ones(modes.frequencies.size, bool))
-    holding = (Contact.CLOSED, Contact.UNDECIDED)
-    other = _modes(machine, contacts, holding, speed).frequencies
-    return VibratingMachine(modes, contacts, np.abs(other - modes.frequencies) <= SAME * other)
+    closed_states = (Contact.IN_CONTACT, Contact.UNCERTAIN)
+    other_frequencies = _modes(machine, contacts, closed_states, speed).frequencies
+    return VibratingMachine(
+        modes,
+        contacts,
+        np.abs(other_frequencies - modes.frequencies) <= FREQUENCY_TOLERANCE * other_frequencies,
+    )
 
 
 def machine_in_motion(machine: Machine) -> Machine:
@@ -95,39 +141,53 @@ def _wedged_meshes(machine: Machine) -> list[int]:
     if machine.softening is None or not machine.softening[:, 0, 1].any():
         return []
     contacts = loaded_contacts(machine)
-    contact_mask = np.array([state is Contact.CLOSED for state in contacts.flank_states()])
+    contact_mask = np.array([state is Contact.IN_CONTACT for state in contacts.flank_states()])
     return coupled_meshes(machine, contact_mask).tolist()
 
 
-def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...], speed: float) -> Modes:
-    """Modes with the contacts whose state is among `holding`."""
-    linear, pressed = _pressed(machine, contacts, holding)
-    return modes_of(linear, linear.rows.T @ pressed @ linear.rows, speed)
+def _modes(
+    machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...], speed: float
+) -> Modes:
+    """Return the modes with the contacts closed whose state is among `closed_states`."""
+    linear, springs = _springs_in_states(machine, contacts, closed_states)
+    return modes_of(linear, linear.rows.T @ springs @ linear.rows, speed)
 
 
 def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
-    """Return the linear model with its bearings as they are pressed, and the stiffness of the flanks.
+    """Return the linear model with its bearings under load, and the stiffness of the flanks.
 
-    The stiffness (2 meshes, 2 meshes), N/m, is that of `flank_springs`: zero for flanks that carry no load.
-    The meshes must be geometric. Raises NotConverged.
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+
+    Returns
+    -------
+    tuple of LinearModel and (2 meshes, 2 meshes) array
+        The stiffness in N/m is that of `flank_springs`: zero for flanks that carry no load.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
-    return _pressed(machine, loaded_contacts(machine), (Contact.CLOSED,))
+    return _springs_in_states(machine, loaded_contacts(machine), (Contact.IN_CONTACT,))
 
 
-def _pressed(
-    machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]
+def _springs_in_states(
+    machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...]
 ) -> tuple[LinearModel, Array]:
-    closed = np.array([state in holding for state in contacts.flank_states()])
-    return _pressed_bearings(machine, contacts, holding), flank_springs(machine, contacts, closed)
+    contact_mask = np.array([state in closed_states for state in contacts.flank_states()])
+    return _pressed_bearings(machine, contacts, closed_states), flank_springs(machine, contacts, contact_mask)
 
 
 def _pressed_bearings(
-    machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]
+    machine: Machine, contacts: LoadedContacts, closed_states: tuple[Contact, ...]
 ) -> LinearModel:
-    """The linear model with every bearing that has clearance replaced by its tangent.
+    """Return the linear model with every bearing that has clearance replaced by its tangent.
 
     A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - clearance /
-    way); one that floats inside carries nothing.
+    distance). A bearing that floats inside its ring carries nothing.
     """
     linear, states = machine.linear, contacts.ring_states()
     if not linear.rings.body.size:
@@ -136,10 +196,10 @@ def _pressed_bearings(
     for at, i, spring, clearance in zip(
         linear.ring_coordinates, rings.body, rings.stiffness, rings.clearance, strict=True
     ):
-        if states[i] in holding:
-            distance = float(np.hypot(*contacts.places[i]))
+        if states[i] in closed_states:
+            distance = float(np.hypot(*contacts.ring_positions[i]))
             across = spring * (1.0 - clearance / distance)
-            direction = contacts.places[i] / distance
+            direction = contacts.ring_positions[i] / distance
             tangent = across * np.eye(2) + (spring - across) * np.outer(direction, direction)
             stiffness[np.ix_(at, at)] += tangent
     return replace(linear, stiffness=stiffness)

@@ -1,4 +1,4 @@
-"""The lumped model with everything that drives it."""
+"""Lumped model of a transmission with everything that drives it."""
 
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
@@ -19,11 +19,12 @@ from facegear.transmission.excitation import Excitation, rigid_rotation, without
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.linear_model import Bodies, LinearModel
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 from facegear.transmission.mesh_friction import MeshFriction, friction_rows
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
 TORQUE_BALANCE = 1e-9
+"""Sum of all tangential forces, over the sum of their sizes, up to which torques count as balanced."""
 
 
 class OpenFlanks(StrEnum):
@@ -68,47 +69,48 @@ class FlankTables:
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """The lumped model with everything that drives it.
+    """Lumped model of a transmission with everything that drives it.
 
     Attributes
     ----------
     layout
         Bodies and mesh geometry.
-    torques
-        On the bodies, N m.
+    torques : (bodies,)
+        Torques on the bodies, N m.
     stiffness
-        Of the reference mesh, N/m.
+        Stiffness of the reference mesh over a mesh cycle, N/m.
     error
-        e(t) of the reference mesh, a Fourier series in m.
+        Transmission error e(t) of the reference mesh, a Fourier series in m.
     half_backlash : (meshes,)
         Half the backlash of each mesh, m.
     damping, phase_convention
-        Of bodies, bearings and meshes; how meshes lag.
+        Damping of bodies, bearings and meshes; how meshes lag.
     error_lags : (meshes,)
-        Lag of the error in mesh periods; without them each mesh lags by its stiffness phase.
+        Lag of the error in mesh periods. If None, each mesh lags by its stiffness phase.
     imperfections
-        Of single meshes and bodies; none by default.
+        Errors of single meshes and bodies; none by default.
     forces : (bodies, 3)
-        External ones on the bodies along x, y, z, N; none by default.
+        External forces on the bodies along x, y, z, N; none by default.
     law
-        Of all contacts, as facegear.transmission.flanks.mesh_contacts orders them. Without one their force is
-        the stiffness times how far they are pressed in, and with one `stiffness` is only the scale of it.
+        Law of all contacts, as facegear.transmission.flanks.mesh_contacts orders them. If None, force =
+        stiffness * compression. With a law, `stiffness` is only its scale.
     tables
-        Of the flanks at each gear, from which that law is made where it depends on the load.
+        Force tables of the flanks at each gear, from which the law is made where it depends on the load.
     friction
-        Of the meshes; it disturbs the motion, and nothing at rest.
+        Friction of the meshes. It disturbs the motion, and does nothing at rest.
     bodies
-        What makes more of them than rigid masses on springs.
+        Function that makes more of the bodies than rigid masses on springs.
     softening : (meshes, 2, 2)
         Compliance in series with the teeth of each mesh, m/N: motion of the drive and the back flank (rows)
-        by a unit force on either (columns); nothing by default. Motion takes its diagonal alone, after
+        by a unit force on either (columns); none by default. Motion takes its diagonal alone, after
         `loaded_modes.machine_in_motion` has attached coordinates for the rest.
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
     directions
-        What turns the forces of the meshes from the normals of the ideal contact; nothing by default.
+        Function that turns the forces of the meshes away from the normals of the ideal contact; none by
+        default.
     excitations
-        Periodic torques beside the mean ones; nothing at rest.
+        Periodic torques beside the mean torques; without effect at rest.
     """
 
     layout: Layout
@@ -137,15 +139,15 @@ class Machine:
             object.__setattr__(self, "forces", np.zeros((len(self.layout.bodies), 3)))
         require_balance(self.layout, self.torques)
         meshes = len(self.layout.meshes)
-        for quantity, given in (
+        for quantity, values in (
             ("lags of the transmission error", self.error_lags),
             ("half backlashes", self.half_backlash),
             ("errors of the meshes", self.imperfections.error),
             ("softening of the meshes", self.softening),
         ):
-            if given is not None and len(given) != meshes:
+            if values is not None and len(values) != meshes:
                 raise InvalidInput(
-                    quantity, count_noun(len(given), "mesh", "meshes"), f"one for each of {meshes}"
+                    quantity, count_noun(len(values), "mesh", "meshes"), f"one for each of {meshes}"
                 )
         minimum = self.stiffness.minimum
         if minimum <= 0.0:
@@ -156,31 +158,41 @@ class Machine:
     @cached_property
     def linear(self) -> LinearModel:
         """Masses, bearings, loads and the directions of the contacts."""
-        with_shafts = self.lumped if self.drive_line is None else self.drive_line(self.lumped)
+        with_shafts = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
         whole = with_shafts if self.bodies is None else self.bodies(with_shafts)
         return whole if self.directions is None else self.directions(whole)
 
     @cached_property
-    def lumped(self) -> LinearModel:
-        """The same of the layout alone: rigid bodies on springs."""
+    def lumped_model(self) -> LinearModel:
+        """Linear model of the layout alone: rigid bodies on springs."""
         damping = (self.damping.mass, self.damping.bearing)
         return lumped_model(
             self.layout, self.torques, self.forces, damping, self.imperfections.bearing_clearance
         )
 
     @cached_property
-    def alike(self) -> "Machine":
-        """The one machine for all that differ from this one in backlashes, constant and slow errors and the
-        amount of their clearances alone: what those do not change is computed of it, once.
+    def without_errors(self) -> "Machine":
+        """Machine without backlash, constant errors and slow errors; its bearing clearances are 1 m or 0.
+
+        Machines that differ in these errors alone share one object, so that all that does not depend on them
+        is computed once.
         """
-        own, rest = self.imperfections, tuple([getattr(self, name) for name in _WITHOUT_ERRORS])
-        return _alike(rest, own.stiffness, own.clocking, own.series, own.bearing_clearance > 0.0)
+        imperfections, rest = self.imperfections, tuple([getattr(self, name) for name in _WITHOUT_ERRORS])
+        return _machine_without_errors(
+            rest,
+            imperfections.stiffness,
+            imperfections.clocking,
+            imperfections.series,
+            imperfections.bearing_clearance > 0.0,
+        )
 
     @cached_property
-    def resting(self) -> "Machine":
-        """The machine with its drive line as it is at rest, where its answer follows from that."""
+    def static_machine(self) -> "Machine":
+        """Machine without its drive line where static results with it follow from those without it, else this
+        machine.
+        """
         line = self.drive_line
-        if line is None or not line.static_from_layout(self.lumped):
+        if line is None or not line.static_from_layout(self.lumped_model):
             return self
         return replace(self, drive_line=None)
 
@@ -189,16 +201,17 @@ class Machine:
         """Which coordinate the torque of each body turns, (bodies,)."""
         if self.drive_line is not None:
             return self.drive_line.torque_coordinates()
-        return np.arange(self.lumped.size)[self.layout.spins]
+        return np.arange(self.lumped_model.size)[self.layout.spins]
 
     @cached_property
     def mesh_stiffness(self) -> tuple[Harmonics, ...]:
         """Stiffness of each mesh over the reference's mesh cycle with its factor and its softening, N/m."""
-        own = [self.stiffness.scaled(float(factor)) for factor in self.imperfections.stiffness]
+        series_of_teeth = [self.stiffness.scale(float(factor)) for factor in self.imperfections.stiffness]
         if self.own_softening is None:
-            return tuple(own)
+            return tuple(series_of_teeth)
         return tuple(
-            series.softened(float(soft)) for series, soft in zip(own, self.own_softening, strict=True)
+            series.add_compliance(float(soft))
+            for series, soft in zip(series_of_teeth, self.own_softening, strict=True)
         )
 
     @property
@@ -266,35 +279,66 @@ class Machine:
 _WITHOUT_ERRORS = tuple(
     [part.name for part in fields(Machine) if part.name not in ("half_backlash", "imperfections")]
 )
+"""Names of the fields that are the same in `Machine.without_errors`."""
 
 
 @kept_by_content(8)
-def _alike(
+def _machine_without_errors(
     rest: tuple[Any, ...],
     stiffness: Array,
     clocking: Array,
     series: dict[int, Harmonics],
     with_clearance: Mask,
 ) -> Machine:
-    """The machine of these fields _WITHOUT_ERRORS without backlash, its clearances 1 m."""
-    given = dict(zip(_WITHOUT_ERRORS, rest, strict=True))
+    """Return the machine with the fields of `_WITHOUT_ERRORS`, without backlash and with clearances of 1
+    m.
+    """
+    field_values = dict(zip(_WITHOUT_ERRORS, rest, strict=True))
     flaws = replace(
-        perfect(given["layout"]),
+        perfect(field_values["layout"]),
         stiffness=stiffness,
         clocking=clocking,
         series=series,
         bearing_clearance=np.where(with_clearance, 1.0, 0.0),
     )
-    return Machine(**given, half_backlash=np.zeros(stiffness.size), imperfections=flaws)
+    return Machine(**field_values, half_backlash=np.zeros(stiffness.size), imperfections=flaws)
 
 
 def mesh_frequency(layout: Layout, speed_rpm: float) -> float:
-    """Mesh frequency in Hz at a pinion speed in rpm."""
+    """Return the mesh frequency at a pinion speed.
+
+    Parameters
+    ----------
+    layout : Layout
+        Tooth numbers.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    float
+        Hz.
+    """
     return layout.pinion_teeth * speed_rpm / 60.0
 
 
 def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> Array:
-    """Torque on each pinion: inputs drive, tail pinions take a share of the sum, idlers none; N m."""
+    """Return the torque on each pinion: inputs drive, tail pinions take a share of the sum, idlers have none.
+
+    Parameters
+    ----------
+    layout : Layout
+        Roles of the pinions.
+    per_input : float
+        Torque on each input pinion, N m.
+    tail_share : float
+        Torque of all tail pinions together, as a fraction of the sum of the input torques.
+
+    Returns
+    -------
+    (pinions,) array
+        N m.
+    """
     roles = [pinion.role for pinion in layout.pinions]
     inputs, tails = roles.count(Role.INPUT), roles.count(Role.TAIL)
     each_tail = -tail_share * inputs * per_input / tails if tails else 0.0
@@ -303,9 +347,21 @@ def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> Array
 
 
 def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0.0) -> Array:
-    """Torques on all bodies with the output face gear in static balance, N m.
+    """Return the torques on all bodies with the output face gear in static balance.
 
-    `on_other_gear`: torque on the one that is not the output, where there are two.
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    on_pinions : (pinions,) array
+        Torques on the pinions, N m.
+    on_other_gear : float
+        Torque on the face gear that is not the output, where there are two, N m.
+
+    Returns
+    -------
+    (bodies,) array
+        N m.
     """
     on_gears = np.full(len(layout.gears), float(on_other_gear))
     on_gears[layout.output] = 0.0
@@ -314,14 +370,27 @@ def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0
 
 
 def require_balance(layout: Layout, torques: Array) -> None:
-    """Raise InvalidInput unless the torques hold the rigid rotation in balance."""
+    """Raise InvalidInput unless the torques are in balance for the rigid rotation.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    torques : (bodies,) array
+        Torques on all bodies, N m.
+
+    Raises
+    ------
+    InvalidInput
+        If the excess at the mesh is above TORQUE_BALANCE of the sum of the tangential forces.
+    """
     pinions = len(layout.pinions)
     tangential = np.concatenate(
         [torques[:pinions] / layout.pinion_radius, torques[pinions:] / layout.gear_radius]
     )
     excess = float(tangential.sum())
     if abs(excess) > TORQUE_BALANCE * np.abs(tangential).sum():
-        allowed = (
+        requirement = (
             "0, as torques must balance: sum of pinion torques / r_pinion + sum of gear torques / r_gear"
         )
-        raise InvalidInput("torques", f"{excess:.6g} N in excess at the mesh", allowed)
+        raise InvalidInput("torques", f"{excess:.6g} N in excess at the mesh", requirement)

@@ -27,18 +27,34 @@ their own axes, positive as they turn, over the arms of the elastic force.
 
 @dataclass(frozen=True, eq=False)
 class MeshFriction:
-    """Fourier series (meshes, PARTS, 2, orders) of the ratios, sine part first, over the reference's cycle.
+    """Ratios of friction to elastic force as Fourier series over the reference's mesh cycle.
 
-    They are those of the drive flank of each mesh without its lag.
+    Attributes
+    ----------
+    ratios : (meshes, PARTS, 2, orders) array
+        Series of the drive flank of each mesh without its lag, sine part first; dimensionless.
     """
 
     ratios: Array
 
     def loss(self, phases: Array, cycles: Array, forces: Array) -> Array:
-        """Force (K, meshes) that friction takes along the base circles, N: loss over their speed.
+        """Return the force that friction takes along the base circles: loss over their speed.
 
-        phases (meshes,): lag of each mesh; cycles (K,) in mesh periods; forces (K, meshes): elastic ones,
-        those of the drive flank positive. The machine turns evenly.
+        The machine turns evenly.
+
+        Parameters
+        ----------
+        phases : (meshes,) array
+            Lag of each mesh, mesh periods.
+        cycles : (K,) array
+            Positions, mesh periods.
+        forces : (K, meshes) array
+            Elastic forces, those of the drive flank positive, N.
+
+        Returns
+        -------
+        (K, meshes) array
+            N.
         """
         levers = -flank_ratios(self.ratios, phases)[:, 3:].sum(axis=1)
         drive, back = np.split(stacked_values(levers, cycles), 2, axis=1)
@@ -46,24 +62,37 @@ class MeshFriction:
 
 
 def friction_rows(layout: Layout, at_output: bool = True) -> Array:
-    """Directions in which the PARTS act on the bodies, (meshes, PARTS, dof), N/N and m for moments.
+    """Return the directions in which the PARTS act on the bodies, equal for both flanks.
 
-    With `at_output` each moment is met by one on the output, so that none turns the machine as a whole. A
-    pinion without a bearing along its axis stays where it is. Equal for both flanks.
+    A pinion without a bearing along its axis stays where it is.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    at_output : bool
+        Whether a moment on the output meets each moment, so that none turns the machine as a whole.
+
+    Returns
+    -------
+    (meshes, PARTS, dof) array
+        N/N, and m for moments.
     """
     rows = np.zeros((len(layout.meshes), len(PARTS), layout.dof))
-    tilted = layout.first_tilts
+    tilt_coordinates = layout.first_tilts
     output = DOF_PER_BODY * (len(layout.pinions) + layout.output) + 3
     for row, (i, g) in zip(rows, layout.meshes, strict=True):
         side = layout.gears[g].sign
         cosine, sine = np.cos(layout.angles[i]), np.sin(layout.angles[i])
         pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
         row[0, pinion], row[0, gear : gear + 2] = side, [-side * cosine, -side * sine]
-        held = layout.pinions[i].body.bearing[2] > 0.0
-        row[1, pinion + 2], row[1, gear : gear + 2] = float(held), [-sine, cosine]
+        has_axial_bearing = layout.pinions[i].body.bearing[2] > 0.0
+        row[1, pinion + 2], row[1, gear : gear + 2] = float(has_axial_bearing), [-sine, cosine]
         row[2, pinion + 1], row[2, gear + 2] = side, -side
-        if g in tilted:
-            row[2, tilted[g] : tilted[g] + 2] = side * layout.mesh_radius * np.array([cosine, sine])
+        if g in tilt_coordinates:
+            row[2, tilt_coordinates[g] : tilt_coordinates[g] + 2] = (
+                side * layout.mesh_radius * np.array([cosine, sine])
+            )
         row[3, pinion + 3], row[4, gear + 3] = layout.pinion_arm, layout.gear_arm
         if at_output:
             row[3:, output] -= layout.gear_arm
@@ -71,16 +100,29 @@ def friction_rows(layout: Layout, at_output: bool = True) -> Array:
 
 
 def flank_ratios(ratios: Array, phases: Array) -> Array:
-    """Series (2 meshes, PARTS, 2, orders) of all drive flanks, then all back flanks, each with its lag.
+    """Return the series of all drive flanks, then all back flanks, each with its lag.
 
-    phases (meshes,) in mesh periods. The back flank is the mirror image of the drive flank that turns the
-    other way: its tangential force and its moments are those at the mirrored place, the other parts are
-    opposite.
+    The back flank is the mirror image of the drive flank that turns the other way: its tangential force and
+    its moments are those at the mirrored place, the other parts are opposite.
+
+    Parameters
+    ----------
+    ratios : (meshes, PARTS, 2, orders) array
+        Series of the drive flanks without lag, dimensionless.
+    phases : (meshes,) array
+        Lag of each mesh, mesh periods.
+
+    Returns
+    -------
+    (2 meshes, PARTS, 2, orders) array
+        Dimensionless.
     """
     mirror = np.array([1.0, -1.0, -1.0, 1.0, 1.0])[:, None, None] * np.array([-1.0, 1.0])[:, None]
-    both = np.concatenate([ratios, ratios * mirror])
-    shifted = np.empty_like(both)
-    for flank, lag in zip(np.ndindex(both.shape[:2]), np.repeat(np.tile(phases, 2), len(PARTS)), strict=True):
-        series = Harmonics(*both[flank]).shifted(float(lag))
-        shifted[flank] = series.sine, series.cosine
-    return shifted
+    flank_series = np.concatenate([ratios, ratios * mirror])
+    lagged_series = np.empty_like(flank_series)
+    for flank, lag in zip(
+        np.ndindex(flank_series.shape[:2]), np.repeat(np.tile(phases, 2), len(PARTS)), strict=True
+    ):
+        series = Harmonics(*flank_series[flank]).shift(float(lag))
+        lagged_series[flank] = series.sine, series.cosine
+    return lagged_series

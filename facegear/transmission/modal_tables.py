@@ -12,14 +12,26 @@ from facegear.transmission.mode_classes import ModeName
 from facegear.transmission.modes import Modes
 
 CONTACT_COLUMNS = ("contact", "state", "force_n", "stiffness_n_per_m", "definition")
+"""Columns of contact_table()."""
 
 
-def frequency_table(vibrating: VibratingMachine, names: tuple[ModeName, ...]) -> pd.DataFrame:
-    """Columns order, frequency_hz, multiplicity, symbols, class, pinion_energy_fraction, decided.
+def frequency_table(vibrating_machine: VibratingMachine, names: tuple[ModeName, ...]) -> pd.DataFrame:
+    """Return the natural frequencies and the names of the modes.
 
-    decided: whether the frequency is the same with undecided contacts open and closed.
+    Parameters
+    ----------
+    vibrating_machine : VibratingMachine
+        The modes.
+    names : tuple of ModeName
+        Name of each mode.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a mode: order, frequency_hz, multiplicity, symbols, class, pinion_energy_fraction, and
+        decided: whether the frequency is the same with undecided contacts open and closed.
     """
-    modes = vibrating.modes
+    modes = vibrating_machine.modes
     multiplicity = [stop - start for start, stop in modes.groups for _ in range(stop - start)]
     return pd.DataFrame(
         {
@@ -29,20 +41,32 @@ def frequency_table(vibrating: VibratingMachine, names: tuple[ModeName, ...]) ->
             "symbols": [name.symbols for name in names],
             "class": [name.mode_class.value for name in names],
             "pinion_energy_fraction": [name.pinion_energy_fraction for name in names],
-            "decided": vibrating.decided,
+            "decided": vibrating_machine.is_decided,
         }
     )
 
 
-def contact_table(machine: Machine, vibrating: VibratingMachine, stiffness_name: str) -> pd.DataFrame:
-    """What modes keep closed: columns contact, state, force_n, stiffness_n_per_m, definition.
+def contact_table(machine: Machine, vibrating_machine: VibratingMachine, stiffness_name: str) -> pd.DataFrame:
+    """Return the contacts that the modes keep closed.
 
-    One row a mesh, whose state is drive, back, wedged, open or undecided, with the mean stiffness of a closed
-    flank (`stiffness_name` says which); then one a bearing with clearance: closed, open or undecided, with
-    its stiffness along the load. Forces under the mean torques, negative on the back flank; empty for printed
-    meshes, all of which are closed.
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    vibrating_machine : VibratingMachine
+        Its modes and contacts.
+    stiffness_name : str
+        Definition of the mean stiffness, listed in the column definition.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns contact, state, force_n, stiffness_n_per_m, definition. One row a mesh, whose state is drive,
+        back, wedged, open or undecided, with the mean stiffness of a closed flank; then one a bearing with
+        clearance: closed, open or undecided, with its stiffness along the load. Forces under the mean torques
+        are negative on the back flank, and empty for printed meshes, all of which are closed.
     """
-    layout, contacts = machine.layout, vibrating.contacts
+    layout, contacts = machine.layout, vibrating_machine.contacts
     stiffness = machine.mean_stiffness
     if contacts is None:
         rows = [
@@ -69,15 +93,29 @@ def contact_table(machine: Machine, vibrating: VibratingMachine, stiffness_name:
 
 
 def _mesh_state(drive: Contact, back: Contact) -> str:
-    if Contact.UNDECIDED in (drive, back):
-        return Contact.UNDECIDED.value
-    if drive is Contact.CLOSED:
-        return "wedged" if back is Contact.CLOSED else "drive"
-    return "back" if back is Contact.CLOSED else "open"
+    if Contact.UNCERTAIN in (drive, back):
+        return Contact.UNCERTAIN.value
+    if drive is Contact.IN_CONTACT:
+        return "wedged" if back is Contact.IN_CONTACT else "drive"
+    return "back" if back is Contact.IN_CONTACT else "open"
 
 
 def shape_table(labels: Sequence[str], modes: Modes) -> pd.DataFrame:
-    """Columns order, body, dof, amplitude_m_or_rad (unit modal mass), relative (to the mode's largest)."""
+    """Return the mode shapes.
+
+    Parameters
+    ----------
+    labels : Sequence of str
+        `body:letter` of each coordinate.
+    modes : Modes
+        The modes.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a mode and coordinate: order, body, dof, amplitude_m_or_rad (unit modal mass), relative (to
+        the mode's largest).
+    """
     rows = []
     names = [name.rsplit(":", 1) for name in labels]
     for order, shape in enumerate(modes.shapes.T, start=1):

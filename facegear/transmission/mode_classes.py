@@ -27,7 +27,7 @@ class ModeClass(StrEnum):
     RIGID = "rigid body"
     PINION = "pinion"
     GEAR = "face gear"
-    COUPLED = "pinion coupled face gear"
+    PINION_AND_GEAR = "pinion coupled face gear"
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,22 @@ class ModeName:
 
 
 def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeName, ...]:
-    """One name for each mode, in the order of the frequencies."""
+    """Name each mode by the bodies that move in it.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    linear : LinearModel
+        Linear model of the machine.
+    modes : Modes
+        Its modes.
+
+    Returns
+    -------
+    tuple of ModeName
+        One name for each mode, in the order of the frequencies.
+    """
     names: list[ModeName] = []
     for start, stop in modes.groups:
         name = _name(layout, linear, modes.frequencies[start], modes.shapes[:, start:stop])
@@ -59,7 +74,7 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
     elif pinion_fraction <= ENERGY_FRACTION:
         mode_class = ModeClass.GEAR
     else:
-        mode_class = ModeClass.COUPLED
+        mode_class = ModeClass.PINION_AND_GEAR
     squared = (np.abs(shapes) ** 2).sum(axis=1)
     return ModeName(
         mode_class, _symbols(layout, linear.labels, np.sqrt(squared) * linear.lengths), pinion_fraction
@@ -68,16 +83,16 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
 
 def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
     """Who moves and how, from the amplitudes of all DOF as lengths, shape (dof,)."""
-    moving: dict[str, set[str]] = {name: set() for name in layout.body_names}
+    letters_of_body: dict[str, set[str]] = {name: set() for name in layout.body_names}
     for label in np.array(labels)[amplitudes > AMPLITUDE_FRACTION * amplitudes.max()]:
         body, _, letter = label.rpartition(":")
-        moving[body].add(letter)
+        letters_of_body[body].add(letter)
     parts: dict[str, list[str]] = {}
     for role in Role:
         names = [pinion.name for pinion in layout.pinions if pinion.role is role]
-        if motion := _motion(set().union(*(moving[name] for name in names))):
+        if motion := _motion(set().union(*(letters_of_body[name] for name in names))):
             parts.setdefault(motion, []).append(role.value)
-    if motion := _motion(set().union(*(moving[gear.name] for gear in layout.gears))):
+    if motion := _motion(set().union(*(letters_of_body[gear.name] for gear in layout.gears))):
         parts.setdefault(f"{motion} ", []).append("face gear")
     return "; ".join(f"{', '.join(who)} {motion.strip()}" for motion, who in parts.items())
 
@@ -95,5 +110,5 @@ def _motion(moves: set[str]) -> str:
         letters.append("A")
     if moves & set(TILT_LETTERS):
         letters.append("tilt")
-    added = {letter.split()[0] for letter in moves - {*DOF_LETTERS, *TILT_LETTERS}}
-    return "-".join([*letters, *sorted(added)])
+    elastic_letters = {letter.split()[0] for letter in moves - {*DOF_LETTERS, *TILT_LETTERS}}
+    return "-".join([*letters, *sorted(elastic_letters)])

@@ -12,6 +12,7 @@ from facegear.transmission.layout import Layout
 from facegear.transmission.linear_model import LinearModel
 
 EQUAL = 1e-8
+"""Difference of neighbouring frequencies, over the largest of all, up to which they count as equal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,15 +29,47 @@ class Modes:
 
 
 def drive_flanks(layout: Layout, linear: LinearModel, mesh_stiffness: float) -> Array:
-    """Stiffness (n, n) of the meshes with every drive flank closed, N/m each."""
+    """Return the stiffness matrix of the meshes with every drive flank closed.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    linear : LinearModel
+        Linear model with n coordinates.
+    mesh_stiffness : float
+        Stiffness of each mesh, N/m.
+
+    Returns
+    -------
+    (n, n) array
+        N/m.
+    """
     rows = linear.rows[: len(layout.meshes)]
     return np.asarray(mesh_stiffness * rows.T @ rows)
 
 
 def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
-    """All modes with the stiffness matrix (n, n) of the meshes, SI units, at a speed of the pinions in rad/s.
+    """Compute all undamped modes.
 
-    Raises NotConverged where the machine has no position to vibrate about at the speed.
+    Parameters
+    ----------
+    linear : LinearModel
+        Bodies and bearings.
+    meshes : (n, n) array
+        Stiffness matrix of the meshes, N/m.
+    speed : float
+        Speed of the pinions, rad/s.
+
+    Returns
+    -------
+    Modes
+        Frequencies in Hz.
+
+    Raises
+    ------
+    NotConverged
+        If the machine has no position to vibrate about at the speed.
     """
     stiffness = linear.stiffness + meshes
     if linear.spin is not None and speed != 0.0:
@@ -58,10 +91,10 @@ def _stable(omega_squared: Array, speed: float) -> Array:
     noise = omega_squared.size * np.finfo(float).eps * omega_squared[-1]
     omega_squared = np.where(np.abs(omega_squared) < 10.0 * noise, 0.0, omega_squared)
     if omega_squared[0] < 0.0:
-        tried = (
+        problem = (
             f"the stiffness is not positive, as little as {omega_squared[0]:.3g} 1/s2 in its softest motion"
         )
-        raise NotConverged("modes", f"{speed:.6g} rad/s", tried)
+        raise NotConverged("modes", f"{speed:.6g} rad/s", problem)
     return omega_squared
 
 
@@ -84,8 +117,8 @@ def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
     speeds[speeds < 10.0 * size * np.finfo(float).eps * speeds[-1]] = 0.0
     # Kinetic and potential energy together are those of unit modal mass at rest.
     shapes = -1j * np.sqrt(2.0) * velocities
-    resting = np.count_nonzero(speeds == 0.0)
-    shapes[:, :resting] = vectors[:, :resting]
+    rigid_count = np.count_nonzero(speeds == 0.0)
+    shapes[:, :rigid_count] = vectors[:, :rigid_count]
     shapes = inverse.T @ shapes
     largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
     frequencies = speeds / (2.0 * np.pi)

@@ -12,22 +12,35 @@ class PhaseConvention(StrEnum):
     """`geometric`: the half turn counts for every pinion; `printed`: for the first only, equation (11)."""
 
     GEOMETRIC = "geometric"
-    PRINTED = "printed"
+    AS_PRINTED = "printed"
 
 
 def mesh_phases(layout: Layout, convention: PhaseConvention, clocking: Array | None = None) -> Array:
-    """Lag of each mesh behind the reference, in mesh periods within [0, 1), shape (meshes,).
+    """Return the lag of each mesh behind the reference.
 
     The reference is the first pinion's mesh with the upper gear, or with the only gear. The upper gear's
     teeth pass the pinions in the order of their angles, counted from the first pinion: equation (7). The
-    other side of a pinion is half a turn of it away, and turned by `clocking` (pinions,) in pitches. Where
-    the lower gear is alone its teeth come round the other way. Equation (13) as printed knows no sense of
-    rotation.
+    other side of a pinion is half a turn of it away, and turned by `clocking`. Where the lower gear is alone
+    its teeth come round the other way. Equation (13) as printed knows no sense of rotation.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    convention : PhaseConvention
+        For which pinions the half turn counts.
+    clocking : (pinions,) array or None
+        Lower rim ahead of the upper, pitches; 0 if None.
+
+    Returns
+    -------
+    (meshes,) array
+        Mesh periods within [0, 1).
     """
     upper_first = (
         any(gear.side is Side.UPPER for gear in layout.gears) or not layout.kinematics.follows_rotation
     )
-    turned = np.zeros(len(layout.pinions)) if clocking is None else clocking
+    rim_clocking = np.zeros(len(layout.pinions)) if clocking is None else clocking
     lags = layout.pitches_from_first * (1.0 if upper_first else -1.0)
     phases = np.empty(len(layout.meshes))
     for row, (i, g) in enumerate(layout.meshes):
@@ -35,6 +48,6 @@ def mesh_phases(layout: Layout, convention: PhaseConvention, clocking: Array | N
         if layout.half_turned(g):
             if convention is PhaseConvention.GEOMETRIC or i == 0:
                 lag += 0.5 * layout.pinion_teeth
-            lag -= turned[i]
+            lag -= rim_clocking[i]
         phases[row] = np.mod(lag, 1.0)
     return phases

@@ -12,12 +12,12 @@ from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_equilibrium
 
 ROUNDING = 1e-9
-"""Share of the largest mesh force."""
+"""Share of the largest mesh force below which a force counts as none."""
 
 
 @dataclass(frozen=True)
 class Ratings:
-    """What a machine does at one pinion speed.
+    """Gear ratio, speeds and powers of a machine at one pinion speed.
 
     Attributes
     ----------
@@ -46,8 +46,21 @@ class Ratings:
         return (self.power_in - self.power_out) / largest if largest > 0.0 else 0.0
 
 
-def rated(machine: Machine, speed_rpm: float) -> Ratings:
-    """Key numbers at a pinion speed (rpm)."""
+def compute_ratings(machine: Machine, speed_rpm: float) -> Ratings:
+    """Return the ratings at a pinion speed.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    Ratings
+        rpm, Hz and W.
+    """
     layout = machine.layout
     powers = body_powers(machine, speed_rpm)
     return Ratings(
@@ -60,33 +73,70 @@ def rated(machine: Machine, speed_rpm: float) -> Ratings:
     )
 
 
-def number_table(rated: Ratings) -> pd.DataFrame:
-    """Columns quantity (unit at its end) and value."""
+def number_table(ratings: Ratings) -> pd.DataFrame:
+    """Return the ratings as a table.
+
+    Parameters
+    ----------
+    ratings : Ratings
+        The ratings.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns quantity (unit at its end) and value.
+    """
     rows = {
-        "gear_ratio": rated.ratio,
-        "pinion_speed_rpm": rated.pinion_speed,
-        "gear_speed_rpm": rated.gear_speed,
-        "mesh_frequency_hz": rated.mesh_frequency,
-        "power_in_kw": 1e-3 * rated.power_in,
-        "power_out_kw": 1e-3 * rated.power_out,
-        "power_imbalance": rated.imbalance,
+        "gear_ratio": ratings.ratio,
+        "pinion_speed_rpm": ratings.pinion_speed,
+        "gear_speed_rpm": ratings.gear_speed,
+        "mesh_frequency_hz": ratings.mesh_frequency,
+        "power_in_kw": 1e-3 * ratings.power_in,
+        "power_out_kw": 1e-3 * ratings.power_out,
+        "power_imbalance": ratings.imbalance,
     }
     return pd.DataFrame(list(rows.items()), columns=["quantity", "value"])
 
 
 def body_powers(machine: Machine, speed_rpm: float) -> Array:
-    """Power that each body's torque brings in (positive) or takes out, shape (bodies,), W.
+    """Return the power that each body's torque brings in (positive) or takes out.
 
     All bodies turn in step as their teeth say, whatever the lever arms of the model.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    (bodies,) array
+        W.
     """
     return machine.torques * _body_speeds(machine.layout, speed_rpm) * np.pi / 30.0
 
 
 def body_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
-    """One row a body: role, torque_n_m, speed_rpm, power_kw (positive: brought in), share of the power in."""
+    """Return role, torque, speed and power of each body.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a body: body, role, torque_n_m, speed_rpm, power_kw (positive: brought in),
+        share_of_input_percent.
+    """
     layout = machine.layout
     powers = body_powers(machine, speed_rpm)
-    brought = powers[powers > 0.0].sum()
+    power_in = powers[powers > 0.0].sum()
     return pd.DataFrame(
         {
             "body": layout.body_names,
@@ -94,16 +144,33 @@ def body_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
             "torque_n_m": machine.torques,
             "speed_rpm": _body_speeds(layout, speed_rpm),
             "power_kw": 1e-3 * powers,
-            "share_of_input_percent": 100.0 * powers / brought if brought > 0.0 else np.zeros_like(powers),
+            "share_of_input_percent": 100.0 * powers / power_in if power_in > 0.0 else np.zeros_like(powers),
         }
     )
 
 
 def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
-    """One row a mesh at rest with mean stiffness: flank, force, torque on the pinion, power to the gear.
+    """Return flank, force and power of each mesh at rest with mean stiffness.
 
-    The force acts along the line of action, negative on the back flank. A force below ROUNDING of the
-    largest counts as none, its mesh as open. Raises NotConverged.
+    The force acts along the line of action, negative on the back flank. A force below ROUNDING of the largest
+    counts as none, its mesh as open.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a mesh: mesh, flank, force_n, pinion_torque_n_m on the pinion, power_kw to the gear.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     layout = machine.layout
     mesh_forces = static_equilibrium(at_rest(machine)).forces

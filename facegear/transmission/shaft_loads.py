@@ -1,4 +1,4 @@
-"""What the bearings of pinions' shafts carry, from the forces and moments of the pinions on their shafts."""
+"""Loads of the bearings of pinions' shafts, from the forces and moments of the pinions on their shafts."""
 
 from collections.abc import Mapping
 from string import ascii_uppercase
@@ -10,7 +10,18 @@ from facegear.transmission.drive_line import DriveLine
 
 
 def bearing_names(line: DriveLine) -> list[tuple[int, str]]:
-    """Pinion and letter of every bearing of a shaft, by pinions; A is the first that the config lists."""
+    """Return pinion and letter of every bearing of a shaft, by pinions.
+
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+
+    Returns
+    -------
+    list of tuple of int and str
+        Number of the pinion, and letter; A is the first bearing that the config lists.
+    """
     return [
         (pinion, ascii_uppercase[number])
         for pinion, seat in sorted(line.seats.items())
@@ -19,11 +30,21 @@ def bearing_names(line: DriveLine) -> list[tuple[int, str]]:
 
 
 def shaft_bearing_loads(line: DriveLine, forces: Array, moments: Mapping[int, Array] | None = None) -> Array:
-    """Loads x, y, z, tilt_x, tilt_y of the shafts on their bearings, (K, bearings, 5), N and N m.
+    """Return the loads of the shafts on their bearings.
 
-    In the order of `bearing_names`.
-    forces (K, bodies, 3): of the bodies on what they sit on; moments (K, 2) by the numbers of pinions, about
-    x and y.
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+    forces : (K, bodies, 3) array
+        Forces of the bodies on what they sit on, N.
+    moments : mapping of int to (K, 2) array, or None
+        Moments about x and y by the numbers of pinions, N m.
+
+    Returns
+    -------
+    (K, bearings, 5) array
+        x, y, z, tilt_x, tilt_y in N and N m, in the order of `bearing_names`.
     """
     loads = [np.zeros((len(forces), 0, 5))]
     for pinion, seat in sorted(line.seats.items()):

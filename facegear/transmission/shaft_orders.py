@@ -26,12 +26,13 @@ from facegear.transmission.loaded_modes import pressed_springs
 from facegear.transmission.machine import Machine
 
 SAMPLES = 32
-"""Of a mesh cycle."""
+"""Samples of the errors in a mesh cycle."""
 LAST = 1.5
 """Frequency over that of the mesh up to which orders are kept."""
-NOTHING = 1e-9
+ERROR_TOLERANCE = 1e-9
 """Part of the largest error below which an order is rounding."""
 GEARS = ("pinion", "face_gear")
+"""Names of the bodies whose turns are counted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +56,19 @@ class TurnOrders:
     teeth: Integers
     error: ComplexArray
 
-    def kept(self, rows: Sequence[int]) -> "TurnOrders":
-        """Some of them."""
+    def select(self, rows: Sequence[int]) -> "TurnOrders":
+        """Return some of the orders.
+
+        Parameters
+        ----------
+        rows : Sequence of int
+            Their indices.
+
+        Returns
+        -------
+        TurnOrders
+            Errors in m.
+        """
         numbers = np.array(rows, dtype=np.int64)
         turning = [self.turning[row] for row in rows]
         return TurnOrders(turning, self.order[numbers], self.teeth[numbers], self.error[numbers])
@@ -68,7 +80,20 @@ class TurnOrders:
 
 
 def turn_orders(machine: Machine, last: float = LAST) -> TurnOrders:
-    """Orders of runouts, pitch deviations and single teeth, up to `last` times the mesh frequency."""
+    """Return the orders of runouts, pitch deviations and single teeth.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    last : float
+        Highest frequency over the mesh frequency, dimensionless.
+
+    Returns
+    -------
+    TurnOrders
+        Orders whose error is above ERROR_TOLERANCE of the largest; amplitudes in m.
+    """
     layout = machine.layout
     turning: list[str] = []
     order: list[int] = []
@@ -83,24 +108,24 @@ def turn_orders(machine: Machine, last: float = LAST) -> TurnOrders:
             order.append(number)
             teeth.append(count)
             error.append(amplitudes[number])
-    stacked = np.array(error)
-    largest = np.abs(stacked).max(axis=1)
-    kept = largest > NOTHING * largest.max(initial=0.0)
-    every = TurnOrders(turning, np.array(order), np.array(teeth), stacked)
-    return every.kept(np.flatnonzero(kept).tolist())
+    errors = np.array(error)
+    largest = np.abs(errors).max(axis=1)
+    is_significant = largest > ERROR_TOLERANCE * largest.max(initial=0.0)
+    every = TurnOrders(turning, np.array(order), np.array(teeth), errors)
+    return every.select(np.flatnonzero(is_significant).tolist())
 
 
 def _errors_of(machine: Machine, gear: str) -> Machine:
-    """The machine whose pinions alone, or face gears alone, are uneven."""
+    """Return the machine with errors of the pinions alone, or of the face gears alone."""
     flaws = machine.imperfections
-    even, teeth = flaws.standing, flaws.teeth
+    even, teeth = flaws.without_slow_errors, flaws.teeth
     if gear == "pinion":
-        own = replace(even, pinion_runout=flaws.pinion_runout, pinion_pitch=flaws.pinion_pitch)
+        imperfections = replace(even, pinion_runout=flaws.pinion_runout, pinion_pitch=flaws.pinion_pitch)
         curves = None if teeth is None else replace(teeth, gear=_flat(teeth.gear))
     else:
-        own = replace(even, gear_runout=flaws.gear_runout, gear_pitch=flaws.gear_pitch)
+        imperfections = replace(even, gear_runout=flaws.gear_runout, gear_pitch=flaws.gear_pitch)
         curves = None if teeth is None else replace(teeth, pinion=_flat(teeth.pinion))
-    return replace(machine, imperfections=replace(own, teeth=curves))
+    return replace(machine, imperfections=replace(imperfections, teeth=curves))
 
 
 def _flat(curves: tuple[Array, Array]) -> tuple[Array, Array]:
@@ -126,19 +151,34 @@ class LoadedMachine:
     dampers: Array
 
     @property
-    def closed(self) -> Mask:
+    def contact_mask(self) -> Mask:
         """Which flanks carry, (2 meshes,)."""
         return np.asarray(np.diagonal(self.springs) > 0.0)
 
     def forces(self, orders: TurnOrders, speed_rpm: float, pinion_teeth: int) -> ComplexArray:
-        """Elastic forces (n, 2 meshes) N of the flanks that carry, at a speed of the pinions."""
+        """Return the elastic forces of the flanks that carry load, at a speed.
+
+        Parameters
+        ----------
+        orders : TurnOrders
+            Errors of the flanks at n orders.
+        speed_rpm : float
+            Speed of the pinions, rpm.
+        pinion_teeth : int
+            Number of teeth of the pinions.
+
+        Returns
+        -------
+        (n, 2 meshes) complex array
+            Amplitudes, N.
+        """
         rows, speed = self.linear.rows, speed_rpm * np.pi / 30.0
         forces = np.zeros_like(orders.error)
         for row, of_mesh in enumerate(orders.of_mesh):
             omega = speed * pinion_teeth * of_mesh
             flank = self.springs + 1j * omega * np.diag(self.dampers)
-            moved = np.linalg.solve(self._dynamic(speed, omega), rows.T @ (flank @ orders.error[row]))
-            forces[row] = self.springs @ (rows @ moved - orders.error[row])
+            motion = np.linalg.solve(self._dynamic(speed, omega), rows.T @ (flank @ orders.error[row]))
+            forces[row] = self.springs @ (rows @ motion - orders.error[row])
         return forces
 
     def excited_motion(self, machine: Machine, excitation: Excitation, speed_rpm: float) -> ComplexArray:
@@ -190,22 +230,62 @@ class LoadedMachine:
         return np.asarray(stiffness + 1j * omega * damping - omega**2 * linear.mass)
 
     def at_rest(self, orders: TurnOrders) -> ComplexArray:
-        """The same turned slowly."""
+        """Return the elastic forces of the flanks that carry load, at a speed close to zero.
+
+        Parameters
+        ----------
+        orders : TurnOrders
+            Errors of the flanks at n orders.
+
+        Returns
+        -------
+        (n, 2 meshes) complex array
+            Amplitudes, N.
+        """
         rows = self.linear.rows
         stiffness = self.linear.stiffness + rows.T @ self.springs @ rows
-        pushed = rows.T @ (self.springs @ orders.error.T)
-        moved = np.linalg.lstsq(stiffness, pushed, rcond=1e-13)[0]
-        return np.asarray((self.springs @ (rows @ moved - orders.error.T)).T)
+        loads = rows.T @ (self.springs @ orders.error.T)
+        displacements = np.linalg.lstsq(stiffness, loads, rcond=1e-13)[0]
+        return np.asarray((self.springs @ (rows @ displacements - orders.error.T)).T)
 
 
 def loaded_machine(machine: Machine) -> LoadedMachine:
-    """Of geometric meshes about the machine's mean torques. Raises NotConverged."""
+    """Return the linear model of a machine about its mean torques.
+
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+
+    Returns
+    -------
+    LoadedMachine
+        SI units.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
+    """
     linear, springs = pressed_springs(machine)
     return LoadedMachine(linear, springs, flank_dampers(machine, np.diagonal(springs) > 0.0))
 
 
-def mesh_amplitudes(forces: ComplexArray, closed: Mask) -> Array:
-    """Amplitude (..., meshes) of the flank of each mesh that carries; closed (2 meshes,) says which do."""
+def mesh_amplitudes(forces: ComplexArray, contact_mask: Mask) -> Array:
+    """Return the force amplitude of the flank of each mesh that carries load.
+
+    Parameters
+    ----------
+    forces : (..., 2 meshes) complex array
+        Amplitudes of the flanks, N, drive flanks first.
+    contact_mask : (2 meshes,) array of bool
+        Which flanks carry load.
+
+    Returns
+    -------
+    (..., meshes) array
+        N; 0 for an open mesh, and the drive flank's where both flanks carry.
+    """
     drive, back = np.split(np.abs(forces), 2, axis=-1)
-    first, second = np.split(closed, 2)
+    first, second = np.split(contact_mask, 2)
     return np.asarray(np.where(first, drive, np.where(second, back, 0.0)))

@@ -7,19 +7,31 @@ import pandas as pd
 import scipy.linalg
 
 from facegear.arrays import Array
-from facegear.shafts.condensed import Shaft, deflections
+from facegear.shafts.condensed_shaft import Shaft, deflections
 from facegear.transmission.drive_line import DriveLine, TurningMass
 from facegear.transmission.machine import Machine
 from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads
 from facegear.transmission.statics import Equilibria, bearing_forces
 
 MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
+"""Names of the five motions of a shaft at its pinion."""
 STATIONS = 25
 """Even stations from end to end at which a deflected shaft is listed, beside steps, bearings and pinion."""
 
 
 def stiffness_table(line: DriveLine) -> pd.DataFrame:
-    """Five rows a pinion with a shaft: columns pinion, motion, then its stiffness by MOTION_NAMES."""
+    """Return the stiffness of the pinions' shafts.
+
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+
+    Returns
+    -------
+    pd.DataFrame
+        Five rows a pinion with a shaft: columns pinion, motion, then its stiffness by MOTION_NAMES.
+    """
     rows = [
         (line.layout.pinions[pinion].name, motion, *row)
         for pinion, seat in sorted(line.seats.items())
@@ -29,15 +41,29 @@ def stiffness_table(line: DriveLine) -> pd.DataFrame:
 
 
 def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.DataFrame:
-    """One row a pinion with a shaft: stiffness without moments along x, y, z, N/m, and where it stands under
-    the mean torques: x_um, y_um, z_um, tilt_x_urad, tilt_y_urad.
+    """Return stiffness and static displacement of each pinion on a shaft.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+    at_rest : Equilibria
+        Equilibrium under the mean torques.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a pinion with a shaft: stiffness without moments along x, y, z, N/m, and displacement under
+        the mean torques: x_um, y_um, z_um, tilt_x_urad, tilt_y_urad.
     """
     forces = bearing_forces(machine, at_rest)[0]
     rows = []
     for pinion, seat in sorted(line.seats.items()):
         square = 1.0 / np.diagonal(seat.shaft.compliance)[:3]
-        moved = seat.shaft.compliance[:, :3] @ forces[pinion]
-        rows.append((line.layout.pinions[pinion].name, *square, *(1e6 * moved)))
+        displacement = seat.shaft.compliance[:, :3] @ forces[pinion]
+        rows.append((line.layout.pinions[pinion].name, *square, *(1e6 * displacement)))
     stiffness = [f"stiffness_{axis}_n_per_m" for axis in "xyz"]
     return pd.DataFrame(
         rows, columns=["pinion", *stiffness, "x_um", "y_um", "z_um", "tilt_x_urad", "tilt_y_urad"]
@@ -47,27 +73,59 @@ def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
 def deflection_table(
     machine: Machine, line: DriveLine, at_rest: Equilibria, shafts: Mapping[int, Shaft]
 ) -> pd.DataFrame:
-    """Rows along each shaft, by the number of its pinion: at_mm from its beginning, x_um and y_um under the
-    mean torques.
+    """Return the deflection along each shaft under the mean torques.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+    at_rest : Equilibria
+        Equilibrium under the mean torques.
+    shafts : Mapping of int to Shaft
+        Shafts by the numbers of their pinions.
+
+    Returns
+    -------
+    pd.DataFrame
+        Rows along each shaft: pinion, at_mm from its beginning, x_um and y_um.
     """
     forces = bearing_forces(machine, at_rest)[0]
     rows = []
     for pinion, shaft in sorted(shafts.items()):
         at = _stations(shaft)
-        moved = deflections(shaft, at)[:, :2, :3] @ forces[pinion]
+        displacements = deflections(shaft, at)[:, :2, :3] @ forces[pinion]
         name = line.layout.pinions[pinion].name
-        rows += [(name, *row) for row in np.column_stack([1e3 * at, 1e6 * moved]).tolist()]
+        rows += [(name, *row) for row in np.column_stack([1e3 * at, 1e6 * displacements]).tolist()]
     return pd.DataFrame(rows, columns=["pinion", "at_mm", "x_um", "y_um"])
 
 
 def _stations(shaft: Shaft) -> Array:
     ends = np.cumsum([segment.length for segment in shaft.segments])
-    held = [bearing.position for bearing in shaft.bearings]
-    return np.unique(np.round([*np.linspace(0.0, ends[-1], STATIONS), *ends, *held, shaft.pinion], 9))
+    bearing_positions = [bearing.position for bearing in shaft.bearings]
+    return np.unique(
+        np.round([*np.linspace(0.0, ends[-1], STATIONS), *ends, *bearing_positions, shaft.pinion], 9)
+    )
 
 
 def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.DataFrame:
-    """One row a bearing of a shaft: load of the shaft on it under the mean torques, N and N m."""
+    """Return the load of each shaft on its bearings under the mean torques.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+    at_rest : Equilibria
+        Equilibrium under the mean torques.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a bearing: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
+    """
     loads = shaft_bearing_loads(line, bearing_forces(machine, at_rest))[0]
     rows = [
         (line.layout.pinions[pinion].name, letter, *load, np.hypot(*load[:2]))
@@ -78,8 +136,21 @@ def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
 
 
 def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
-    """One row a turning mass: inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m of its spring, twist_deg of it
-    and of all before it (windup_deg), and frequency_hz of the chain by itself, the body free.
+    """Return torque and twist of the torsional springs.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a turning mass: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m of its spring,
+        twist_deg of it, windup_deg of it and of all before it, and frequency_hz of the chain by itself, the
+        body free.
     """
     rows = []
     for body, _, chain in line.chains():
@@ -94,7 +165,22 @@ def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
 
 
 def chain_frequencies(line: DriveLine, body: int, chain: tuple[TurningMass, ...]) -> Array:
-    """Natural frequencies of a body and its chain in the open, without the zero, (masses,), Hz."""
+    """Return the natural frequencies of a body and its chain in the open, without the zero.
+
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+    body : int
+        Number of the body in the layout.
+    chain : tuple of TurningMass
+        Turning masses of the chain, from the body outwards.
+
+    Returns
+    -------
+    (masses,) array
+        Hz.
+    """
     inertias = np.array([line.layout.bodies[body].inertia, *(mass.inertia for mass in chain)])
     stiffness = np.zeros((inertias.size, inertias.size))
     for number, mass in enumerate(chain):

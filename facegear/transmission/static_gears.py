@@ -12,96 +12,146 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.gear_body.reduced import ReducedBody
-from facegear.transmission.elastic_gears import ElasticGears, bordered, flank_rows, rim_slopes
+from facegear.gear_body.reduced_body import ReducedBody
+from facegear.transmission.elastic_gears import ElasticGears, append_block, flank_rows, rim_slopes
 from facegear.transmission.layout import Layout
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.machine import Machine
 
-NOTHING = 1e-10
+RANK_TOLERANCE = 1e-10
 """Part of the largest singular value below which a direction of the flanks is that of others."""
 
 
 def at_rest(machine: Machine) -> Machine:
-    """The machine for static questions alone, with all that its bodies give between any two meshes.
+    """Return the machine for static questions alone, with the full static compliance between any two meshes.
 
-    Masses of its coordinates beyond the lumped ones are of no use but to scale them.
+    The masses of its coordinates beyond the lumped ones only scale them.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    Machine
+        Its gears are StaticGears if they were ElasticGears.
     """
-    machine = machine.resting
+    machine = machine.static_machine
     if not isinstance(machine.bodies, ElasticGears):
         return machine
-    posed = machine.directions is not None
-    return replace(machine, bodies=StaticGears(machine.bodies, posed), softening=None)
+    with_slopes = machine.directions is not None
+    return replace(machine, bodies=StaticGears(machine.bodies, with_slopes), softening=None)
 
 
 @dataclass(frozen=True, eq=False)
 class StaticGears:
-    """The gears of `elastic` by their static compliance alone; `posed`: with the slopes of their rims."""
+    """Gears of `elastic` by their static compliance alone.
+
+    Attributes
+    ----------
+    elastic : ElasticGears
+        The gears with their modes.
+    with_slopes : bool
+        Whether the slopes of the rims have coordinates, too.
+    """
 
     elastic: ElasticGears
-    posed: bool = False
+    with_slopes: bool = False
 
-    def __call__(self, lumped: LinearModel) -> LinearModel:
-        """The lumped model with the coordinates of every gear behind its own."""
-        model, layout = lumped, self.elastic.layout
+    def __call__(self, base_model: LinearModel) -> LinearModel:
+        """Return the model with the coordinates of every gear behind its own."""
+        model, layout = base_model, self.elastic.layout
         for gear, body in self.elastic.bodies.items():
             meshes = np.array([g == gear for _, g in layout.meshes])
-            if self.posed:
-                own, slopes = posed_rows(body, layout, gear)
-                lengths = np.abs(np.concatenate([own, layout.gear_radius * slopes[0], slopes[1]])).max(axis=0)
+            if self.with_slopes:
+                gear_rows, slopes = posed_rows(body, layout, gear)
+                lengths = np.abs(np.concatenate([gear_rows, layout.gear_radius * slopes[0], slopes[1]])).max(
+                    axis=0
+                )
             else:
-                own, slopes = static_rows(body, layout, gear), None
-                lengths = np.abs(own).max(axis=0)
-            rows = np.zeros((len(model.rows), own.shape[1]))
-            rows[np.tile(meshes, 2)] = own
-            mass = bordered(model.mass, np.diag(lengths**2))
-            none = np.zeros(lengths.size)
+                gear_rows, slopes = static_rows(body, layout, gear), None
+                lengths = np.abs(gear_rows).max(axis=0)
+            rows = np.zeros((len(model.rows), gear_rows.shape[1]))
+            rows[np.tile(meshes, 2)] = gear_rows
+            mass = append_block(model.mass, np.diag(lengths**2))
+            zeros = np.zeros(lengths.size)
             model = replace(
                 model,
                 labels=(
                     *model.labels,
-                    *(f"{layout.gears[gear].name}:bent {n + 1}" for n in range(none.size)),
+                    *(f"{layout.gears[gear].name}:bent {n + 1}" for n in range(zeros.size)),
                 ),
                 mass=mass,
-                stiffness=bordered(model.stiffness, np.eye(none.size)),
+                stiffness=append_block(model.stiffness, np.eye(zeros.size)),
                 rows=np.hstack([model.rows, rows]),
-                torques=np.append(model.torques, none),
-                forces=np.append(model.forces, none),
+                torques=np.append(model.torques, zeros),
+                forces=np.append(model.forces, zeros),
                 lengths=np.append(model.lengths, lengths),
-                dampers=bordered(model.dampers, np.diag(none)),
+                dampers=append_block(model.dampers, np.diag(zeros)),
                 slopes=None if slopes is None else model.with_slopes(meshes, slopes),
             )
         return model
 
 
 def static_rows(body: ReducedBody, layout: Layout, gear: int) -> Array:
-    """R (2 meshes of the gear, p) of A = R R^T, drive flanks first; A in m/N.
+    """Return R of A = R R^T, the static compliance between the flanks of a gear.
 
     Every order counts as two modes with unit stiffness that have its compliance.
+
+    Parameters
+    ----------
+    body : ReducedBody
+        The gear's reduced body.
+    layout : Layout
+        Bodies and mesh geometry.
+    gear : int
+        Number of the gear.
+
+    Returns
+    -------
+    (2 meshes of the gear, p) array
+        Drive flanks first; A is in m/N.
     """
     sizes, vectors = np.linalg.eigh(body.static)
     shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
     shapes[0] = np.diag(np.sqrt(np.diagonal(body.static[0])))  # along the axis or round it, never both
-    return _condensed(_waves(shapes, np.array([0.0, 1.0]), layout, gear)[0])
+    return _condense_columns(_waves(shapes, np.array([0.0, 1.0]), layout, gear)[0])
 
 
 def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Array]:
-    """R of the flanks as `static_rows`, and of the slopes below all meshes of the gear, (2, meshes, p)."""
-    whole = body.joined(layout.gear_radius)
+    """Return R of the flanks as `static_rows`, and of the slopes below all meshes of the gear.
+
+    Parameters
+    ----------
+    body : ReducedBody
+        The gear's reduced body.
+    layout : Layout
+        Bodies and mesh geometry.
+    gear : int
+        Number of the gear.
+
+    Returns
+    -------
+    pair of arrays
+        R of the flanks (2 meshes of the gear, p), and of the slopes (2, meshes, p): along the radius over the
+        gear radius, and round the axis. R R^T of the flanks is in m/N.
+    """
+    whole = body.compliance_with_slope(layout.gear_radius)
     whole[0, 1, [0, 2]] = whole[0, [0, 2], 1] = 0.0  # along the axis or round it, never both
     sizes, vectors = np.linalg.eigh(whole)
     shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
     flanks, slopes = _waves(shapes, np.abs(vectors[0, 1]).round(), layout, gear)
-    own = _condensed(np.concatenate([flanks, *slopes]))
-    radial, around = np.split(own[len(flanks) :], 2)
-    return own[: len(flanks)], np.stack([radial / layout.gear_radius, around])
+    columns = _condense_columns(np.concatenate([flanks, *slopes]))
+    radial, around = np.split(columns[len(flanks) :], 2)
+    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, around])
 
 
 def _waves(shapes: Array, turning: Array, layout: Layout, gear: int) -> tuple[Array, Array]:
-    """Motions of the flanks, and slopes below the meshes, by waves of all orders with unit stiffness.
+    """Return motions of the flanks, and slopes below the meshes, by waves of all orders with unit stiffness.
 
-    shapes (orders, i, k): W_p, V_p and what else they have of slope, each by k waves of every order; turning
-    (k,): which of those of order 0 go round the axis. Slopes of none where `shapes` has none.
+    shapes (orders, i, k): W_p, V_p and the slopes, each by k waves of every order; turning (k,): which waves
+    of order 0 go round the axis. The slopes are empty where `shapes` has none.
     """
     count = shapes.shape[2]
     orders = np.repeat(np.arange(len(shapes)), count)
@@ -109,16 +159,18 @@ def _waves(shapes: Array, turning: Array, layout: Layout, gear: int) -> tuple[Ar
     round_axis = np.where(orders == 0, np.tile(turning, len(shapes)), 0.0)
     flanks, slopes = [], []
     for part in (0, 1):
-        kept, parts = orders >= part, np.full(orders.size, part)  # order 0 has no sine
+        has_wave, parts = orders >= part, np.full(orders.size, part)  # order 0 has no sine
         sign, angles = layout.gears[gear].sign, layout.angles
         rows = flank_rows(orders, parts, axial, around, round_axis, sign, angles, layout.pressure_angle)
-        flanks.append(rows[:, kept])
-        slopes += [rim_slopes(orders, parts, axial, own, round_axis, angles)[..., kept] for own in slope]
+        flanks.append(rows[:, has_wave])
+        slopes += [
+            rim_slopes(orders, parts, axial, radial, round_axis, angles)[..., has_wave] for radial in slope
+        ]
     return np.concatenate(flanks, axis=1), np.concatenate(slopes, axis=2) if slopes else np.zeros((0, 0, 0))
 
 
-def _condensed(rows: Array) -> Array:
-    """As many columns R as R R^T of the rows needs."""
+def _condense_columns(rows: Array) -> Array:
+    """Return R with as many columns as R R^T of the rows needs."""
     left, values, _ = np.linalg.svd(rows, full_matrices=False)
-    kept = values > NOTHING * values.max()
-    return np.asarray(left[:, kept] * values[kept])
+    is_significant = values > RANK_TOLERANCE * values.max()
+    return np.asarray(left[:, is_significant] * values[is_significant])

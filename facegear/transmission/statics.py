@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.harmonics.series import stacked, stacked_values
-from facegear.mesh_law.law import Held, MeshLaw
+from facegear.harmonics.series import stack_series, stacked_values
+from facegear.mesh_law.law import LawAtPhases, MeshLaw
 from facegear.transmission.balance import balance, bearing_loads
 from facegear.transmission.block_statics import has_kernel, settle_all
 from facegear.transmission.dense_statics import RESIDUAL, Contacts, dense_equilibrium
@@ -24,10 +24,13 @@ from facegear.transmission.flanks import (
     slow_errors,
 )
 from facegear.transmission.machine import Machine
-from facegear.transmission.static_springs import has_blocks, static_springs, unknowns
+from facegear.transmission.static_springs import has_blocks, static_springs, static_unknowns
 
 TOLERANCE = 1e-13
-ACCEPTED = 1e-12
+"""Largest force out of balance, over the largest force, at which the compiled solver ends; dimensionless."""
+RESIDUAL_LIMIT = 1e-12
+"""Largest force out of balance, over the largest force, that a result of `settle` may have beyond rounding.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,15 +62,32 @@ class Equilibria:
 
     @property
     def forces(self) -> Array:
-        """What each mesh transmits, drive flank less back flank, (K, meshes), N."""
+        """Force that each mesh transmits, drive flank less back flank, (K, meshes), N."""
         drive, back = np.split(self.flank_forces, 2, axis=1)
         return drive - back
 
 
 def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilibrium:
-    """Equilibrium at a position of the mesh cycle, or (None) with mean stiffness and no e(t).
+    """Compute the static equilibrium at one position of the mesh cycle, or with mean stiffness and no e(t).
 
-    A body that is free inside its backlash is left at one of its possible positions. Raises NotConverged.
+    A body that is free inside its backlash is left at one of its possible positions.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    cycles : float or None
+        Mesh cycles from the start, periods; None for the mean stiffness without e(t).
+
+    Returns
+    -------
+    Equilibrium
+        m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance.
     """
     if machine.layout.kinematics.flanks_apart:
         at_rest = mean_equilibrium(machine) if cycles is None else equilibria(machine, np.array([cycles]))
@@ -78,7 +98,7 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
 
 
 def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
-    """Of meshes whose two flanks share one line of action."""
+    """Return the equilibrium of meshes whose two flanks share one line of action."""
     law = line_law(machine)
     law = law.mean() if cycles is None else law.at_phase(cycles)
     error = np.zeros(law.contacts) if cycles is None else machine.error(cycles - machine.error_phases)
@@ -89,56 +109,113 @@ def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
     contacts = Contacts(law, error, -half, half)
     displacements, deflections, forces = dense_equilibrium(machine.linear, contacts, lengths)
     gaps = machine.half_backlash + np.abs(deflections)
-    checked = balance(machine, displacements[None], forces[None], law.steepest[None], gaps[None])
-    checked.require(RESIDUAL, ["mean stiffness" if cycles is None else f"mesh position {cycles:.4f}"])
-    return Equilibrium(displacements, deflections, forces, float(checked.residual[0]))
+    force_balance = balance(machine, displacements[None], forces[None], law.steepest[None], gaps[None])
+    force_balance.require(RESIDUAL, ["mean stiffness" if cycles is None else f"mesh position {cycles:.4f}"])
+    return Equilibrium(displacements, deflections, forces, float(force_balance.residual[0]))
 
 
 def equilibria(machine: Machine, cycles: Array) -> Equilibria:
-    """Equilibrium at `cycles` (K,), mesh cycles from the start, all errors in. Raises NotConverged."""
-    errors = constant_errors(machine) + stacked_values(stacked(error_series(machine)), cycles)
+    """Compute the static equilibrium at given mesh positions, with all errors.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    cycles : (K,) array
+        Mesh cycles from the start, periods.
+
+    Returns
+    -------
+    Equilibria
+        m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance at a position.
+    """
+    errors = constant_errors(machine) + stacked_values(stack_series(error_series(machine)), cycles)
     if machine.imperfections.any_slow:
         errors += slow_errors(machine, cycles)
     return settle(machine, flank_law(machine), cycles, errors, [f"mesh position {at:.4f}" for at in cycles])
 
 
 def mean_equilibrium(machine: Machine) -> Equilibria:
-    """Equilibrium with the mean law and constant errors alone. Raises NotConverged."""
+    """Compute the static equilibrium with the mean law and constant errors alone.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+
+    Returns
+    -------
+    Equilibria
+        One position, in m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance.
+    """
     law, errors = flank_law(machine).mean(), constant_errors(machine)[None]
     return settle(machine, law, np.zeros(1), errors, ["mean stiffness"])
 
 
 def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: list[str]) -> Equilibria:
-    """Equilibrium with the law of the flanks at `cycles` (K,) and errors (K, 2 meshes) of theirs.
+    """Compute static equilibria with given laws and errors of the flanks.
 
     Where every pinion has a bearing of its own and the law has a kernel, the compiled solver takes all
-    positions together. Raises NotConverged.
+    positions together.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    law : MeshLaw
+        Law of the flanks.
+    cycles : (K,) array
+        Positions at which the law is taken, mesh periods.
+    errors : (K, 2 meshes) array
+        Errors of the flanks, m.
+    names : list of str
+        Name of each position for messages.
+
+    Returns
+    -------
+    Equilibria
+        m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance at a position.
     """
-    held, gaps = law.statics_law(cycles), errors + flank_gaps(machine)
-    if has_blocks(machine.resting) and has_kernel(held):
-        displacements, forces = _by_blocks(machine.resting, held, gaps)
-        if machine.drive_line is not None and machine.resting is not machine:
-            displacements = machine.drive_line.extended(machine.lumped, displacements)
+    law_at_positions, gaps = law.statics_law(cycles), errors + flank_gaps(machine)
+    if has_blocks(machine.static_machine) and has_kernel(law_at_positions):
+        displacements, forces = _by_blocks(machine.static_machine, law_at_positions, gaps)
+        if machine.drive_line is not None and machine.static_machine is not machine:
+            displacements = machine.drive_line.extend_displacements(machine.lumped_model, displacements)
     else:
         displacements, forces = _one_by_one(machine, law, cycles, gaps)
-    checked = balance(machine, displacements, forces, held.stiffness, gaps)
-    checked.require(ACCEPTED, names)
+    force_balance = balance(machine, displacements, forces, law_at_positions.stiffness, gaps)
+    force_balance.require(RESIDUAL_LIMIT, names)
     drive, back = np.split(displacements @ machine.linear.rows.T - errors, 2, axis=1)
-    return Equilibria(displacements, 0.5 * (drive - back), forces, checked.residual)
+    return Equilibria(displacements, 0.5 * (drive - back), forces, force_balance.residual)
 
 
-def _by_blocks(machine: Machine, held: Held, gaps: Array) -> tuple[Array, Array]:
-    """Displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
-    kept, scale = unknowns(machine)
-    springs, start = static_springs(machine), np.zeros(kept.size)
-    solution, forces, _ = settle_all(springs, held, gaps, TOLERANCE, start)
+def _by_blocks(machine: Machine, law: LawAtPhases, gaps: Array) -> tuple[Array, Array]:
+    """Return displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
+    coordinates, scale = static_unknowns(machine)
+    springs, start = static_springs(machine), np.zeros(coordinates.size)
+    solution, forces, _ = settle_all(springs, law, gaps, TOLERANCE, start)
     displacements = np.zeros((len(gaps), machine.linear.size))
-    np.add.at(displacements.T, kept, (solution * scale).T)
+    np.add.at(displacements.T, coordinates, (solution * scale).T)
     return displacements, forces
 
 
 def _one_by_one(machine: Machine, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
-    """The same in dense algebra."""
+    """Return displacements (K, dof) and flank forces (K, flanks) by dense algebra."""
     linear, never = machine.linear, np.full(gaps.shape[1], -np.inf)
     solutions = [
         dense_equilibrium(linear, Contacts(law.at_phase(at), 0.0 * gap, never, gap), linear.lengths)
@@ -150,9 +227,24 @@ def _one_by_one(machine: Machine, law: MeshLaw, cycles: Array, gaps: Array) -> t
 
 
 def static_bearing_forces(machine: Machine) -> Array:
-    """Force of every body on its bearing along x, y, z at rest under the mean torques, (bodies, 3), N.
+    """Return the force of every body on its bearing at rest under the mean torques.
 
-    Mean stiffness, constant errors, either kinematics. Raises NotConverged.
+    Mean stiffness and constant errors, with either kinematics.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    (bodies, 3) array
+        Along x, y, z, N.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
     """
     if machine.layout.kinematics.flanks_apart:
         return bearing_forces(machine, mean_equilibrium(machine))[0]
@@ -161,5 +253,18 @@ def static_bearing_forces(machine: Machine) -> Array:
 
 
 def bearing_forces(machine: Machine, at_rest: Equilibria) -> Array:
-    """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N."""
+    """Return the force of every body on its bearing at K equilibria.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    at_rest : Equilibria
+        Its equilibria.
+
+    Returns
+    -------
+    (K, bodies, 3) array
+        Along x, y, z, N.
+    """
     return bearing_loads(machine, at_rest.displacements)[:, machine.linear.translations]

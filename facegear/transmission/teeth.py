@@ -9,6 +9,7 @@ from facegear.errors import InvalidInput
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 
 SAME_ARM = 1e-9
+"""Relative difference of radii that counts as none."""
 
 
 @dataclass(frozen=True)
@@ -20,43 +21,110 @@ class Teeth:
     follows_rotation: bool = True
 
     def require(self, layout: Layout) -> None:
-        """Raise InvalidInput unless the radii are those of the tooth numbers."""
+        """Raise InvalidInput unless the radii are those of the tooth numbers.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout to check.
+        """
         conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
         if abs(layout.gear_radius - conjugate) > SAME_ARM * conjugate:
-            allowed = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
-            raise InvalidInput("gear_radius", layout.gear_radius, allowed)
+            requirement = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
+            raise InvalidInput("gear_radius", layout.gear_radius, requirement)
 
     def arm(self, radius: float, pressure_angle: float) -> float:
-        """The radius itself."""
+        """Return the torque over the mesh force that balances it: the radius itself.
+
+        Parameters
+        ----------
+        radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
         return radius
 
     def mesh_radius(self, layout: Layout) -> float:
-        """m N2 / 2."""
+        """Return the distance of the meshes from the face gears' axis, m N2 / 2.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        float
+            m.
+        """
         return layout.gear_radius / float(np.cos(layout.pressure_angle))
 
     def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
-        """The base radius."""
+        """Return the radius of a face gear in the layout: its base radius.
+
+        Parameters
+        ----------
+        base_radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
         return base_radius
 
     def flank_rows(self, layout: Layout) -> Array:
-        """The back flank's normal has the same separating part and the opposite tangential part."""
-        tangential, separating = mesh_parts(layout)
-        return np.concatenate([separating + tangential, separating - tangential])
+        """Return the derivative of the flanks' deflections by the DOF.
+
+        The back flank's normal has the same separating part and the opposite tangential part.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        (2 meshes, dof) array
+            Drive flanks first; m/m, and m/rad for rotations.
+        """
+        tangential, separating_part = mesh_parts(layout)
+        return np.concatenate([separating_part + tangential, separating_part - tangential])
 
 
 GEOMETRIC = Teeth()
+"""The only object of its class."""
 
 
 def mesh_parts(layout: Layout) -> tuple[Array, Array]:
-    """Tangential and separating motion at the flanks by the DOF, each (meshes, dof), from the geometry.
+    """Return tangential and separating motion at the flanks by the DOF, from the geometry.
 
-    A pinion sees the lower gear as the upper one turned half round the pinion's own axis, so its x and y
+    A pinion sees the lower gear as the upper one rotated by 180 degrees about the pinion axis, so its x and y
     change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
+
+    Parameters
+    ----------
+    layout : Layout
+        The layout.
+
+    Returns
+    -------
+    pair of (meshes, dof) arrays
+        Tangential and separating part; m/m, and m/rad for rotations.
     """
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
-    tangential, separating = np.zeros((2, len(layout.meshes), layout.dof))
+    tangential, separating_part = np.zeros((2, len(layout.meshes), layout.dof))
     angles = layout.angles
-    tilted = layout.first_tilts
+    tilt_coordinates = layout.first_tilts
     for row, (i, g) in enumerate(layout.meshes):
         side = layout.gears[g].sign
         along = np.array([np.cos(angles[i]), np.sin(angles[i])])
@@ -64,12 +132,14 @@ def mesh_parts(layout: Layout) -> tuple[Array, Array]:
         tangential[row, pinion] = side * cosine
         tangential[row, gear : gear + 2] = -side * cosine * along
         tangential[row, [pinion + 3, gear + 3]] = layout.pinion_arm, -layout.gear_arm
-        separating[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
-        if g in tilted:
+        separating_part[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
+        if g in tilt_coordinates:
             # Tilts about x and y lift the rim at the mesh by its distance from the diameter, and move it
             # along the tangent where they are about a point below the pitch plane.
             away = np.array([along[1], -along[0]])
             below = getattr(layout.gears[g].body.tilt, "below", 0.0)
-            tangential[row, tilted[g] : tilted[g] + 2] -= below * cosine * away
-            separating[row, tilted[g] : tilted[g] + 2] = side * sine * layout.mesh_radius * along
-    return tangential, separating
+            tangential[row, tilt_coordinates[g] : tilt_coordinates[g] + 2] -= below * cosine * away
+            separating_part[row, tilt_coordinates[g] : tilt_coordinates[g] + 2] = (
+                side * sine * layout.mesh_radius * along
+            )
+    return tangential, separating_part

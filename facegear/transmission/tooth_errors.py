@@ -1,4 +1,4 @@
-"""What single teeth of the gears add to the transmission error of every flank, mesh cycle by mesh cycle."""
+"""Errors of single teeth, which add to the transmission error of every flank, mesh cycle by mesh cycle."""
 
 from dataclasses import dataclass
 
@@ -26,10 +26,24 @@ class ToothErrors:
         return pinion, gear
 
     def early(self, layout: Layout, on_pinion: Array, on_gear: Array) -> tuple[Array, Array]:
-        """By how much drive and back flanks come early (K,) m, at places counted in teeth of either gear.
+        """Return by how much drive and back flanks come early.
 
         A tooth of the pinion that has come s mesh cycles far is at 2 - s of its way in the mirror, in which
         the back flank drives, and one of the gear at 1 - s.
+
+        Parameters
+        ----------
+        layout : Layout
+            Tooth numbers.
+        on_pinion : (K,) array
+            Positions in teeth of the pinion.
+        on_gear : (K,) array
+            Positions in teeth of the face gear.
+
+        Returns
+        -------
+        pair of (K,) arrays
+            Drive and back flank, m.
         """
         teeth = layout.pinion_teeth, layout.gear_teeth
         drive = _at(self.pinion[0], teeth[0], on_pinion) + _at(self.gear[0], teeth[1], on_gear)
@@ -37,11 +51,22 @@ class ToothErrors:
         return drive, back
 
 
-def _at(curve: Array, teeth: int, places: Array) -> Array:
-    return np.interp(places, np.arange(curve.size) * (teeth / curve.size), curve, period=teeth)
+def _at(curve: Array, teeth: int, tooth_positions: Array) -> Array:
+    return np.interp(tooth_positions, np.arange(curve.size) * (teeth / curve.size), curve, period=teeth)
 
 
 def from_arrays(arrays: Arrays) -> ToothErrors:
-    """From arrays `curves` of stage tooth_errors."""
+    """Read tooth errors from the arrays of the stage tooth_errors.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays `curves` of that stage, by name.
+
+    Returns
+    -------
+    ToothErrors
+        Curves in m.
+    """
     pinion, gear = ((arrays[f"{body}_drive_m"], arrays[f"{body}_back_m"]) for body in ("pinion", "face_gear"))
     return ToothErrors(pinion, gear)

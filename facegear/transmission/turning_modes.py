@@ -24,7 +24,7 @@ RIGID = 1e-6
 """Part of the largest l below which an imaginary part is a rigid motion's or rounding."""
 GROWS = 1e-9
 """Negative damping ratio that is not rounding."""
-SHOWN = 0.01
+LISTED_ENERGY = 0.01
 """Part of a mode's energy below which a gear's waves of one order are left out of the table."""
 
 
@@ -47,9 +47,23 @@ class TurningModes:
 
 
 def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: float) -> TurningModes:
-    """Return the modes at a pinion speed in rad/s.
+    """Compute the damped modes at a pinion speed.
 
-    springs (2 meshes, 2 meshes): stiffness of the flanks, N/m; dampers (2 meshes,): their damping, N s/m.
+    Parameters
+    ----------
+    linear : LinearModel
+        Bodies and bearings.
+    springs : (2 meshes, 2 meshes) array
+        Stiffness of the flanks, N/m.
+    dampers : (2 meshes,) array
+        Damping of the flanks, N s/m.
+    speed : float
+        Speed of the pinions, rad/s.
+
+    Returns
+    -------
+    TurningModes
+        Modes that vibrate, ascending by frequency; exponents in 1/s.
     """
     rows, size = linear.rows, linear.size
     stiffness = linear.stiffness + rows.T @ springs @ rows
@@ -57,32 +71,65 @@ def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: fl
     if linear.spin is not None:
         stiffness = stiffness + speed * linear.spin.circulatory + speed**2 * linear.spin.centrifugal
         damping = damping + speed * linear.spin.gyroscopic
-    solved = scipy.linalg.solve(linear.mass, np.hstack([stiffness, damping]), assume_a="pos")
-    system = np.block([[np.zeros((size, size)), np.eye(size)], [-solved[:, :size], -solved[:, size:]]])
+    accelerations = scipy.linalg.solve(linear.mass, np.hstack([stiffness, damping]), assume_a="pos")
+    system = np.block(
+        [[np.zeros((size, size)), np.eye(size)], [-accelerations[:, :size], -accelerations[:, size:]]]
+    )
     exponents, states = scipy.linalg.eig(system)
-    vibrating = np.flatnonzero(exponents.imag > RIGID * np.abs(exponents).max())
-    order = vibrating[np.argsort(exponents[vibrating].imag)]
+    oscillating = np.flatnonzero(exponents.imag > RIGID * np.abs(exponents).max())
+    order = oscillating[np.argsort(exponents[oscillating].imag)]
     return TurningModes(exponents[order], states[:size, order])
 
 
 def machine_at_speeds(machine: Machine, speeds_rpm: Sequence[float]) -> list[TurningModes]:
-    """Modes of geometric meshes about their static load at every pinion speed. Raises NotConverged."""
+    """Compute the damped modes of geometric meshes about their static load at every pinion speed.
+
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+    speeds_rpm : Sequence of float
+        Speeds of the pinions, rpm.
+
+    Returns
+    -------
+    list of TurningModes
+        One entry for each speed, 1/s.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
+    """
     linear, springs = pressed_springs(machine)
     dampers = flank_dampers(machine, np.diagonal(springs) > 0.0)
     return [turning_modes(linear, springs, dampers, speed * np.pi / 30.0) for speed in speeds_rpm]
 
 
 def wave_table(layout: Layout, linear: LinearModel, modes: TurningModes) -> pd.DataFrame:
-    """One row for each mode, gear and number of nodal diameters that holds SHOWN of its kinetic energy.
+    """Return the waves that hold LISTED_ENERGY of the kinetic energy of each mode.
 
-    Columns order, frequency_hz, damping_ratio, gear, nodal_diameters, energy_fraction, forward_fraction: of
-    the wave's amplitude squared what travels as the gear turns, half of it for none.
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    linear : LinearModel
+        Linear model of the machine.
+    modes : TurningModes
+        Its modes.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each mode, gear and number of nodal diameters. Columns order, frequency_hz, damping_ratio,
+        gear, nodal_diameters, energy_fraction, forward_fraction: part of the wave's amplitude squared that
+        travels as the gear turns, half of it for no nodal diameters.
     """
     rows = []
-    for gear, diameters, held, forward in wave_parts(layout, linear, modes.shapes):
-        for mode in np.flatnonzero(held > SHOWN):
+    for gear, diameters, energy, forward in wave_parts(layout, linear, modes.shapes):
+        for mode in np.flatnonzero(energy > LISTED_ENERGY):
             parts = (modes.frequencies[mode], modes.damping_ratios[mode])
-            rows.append((mode + 1, *parts, gear, diameters, held[mode], forward[mode]))
+            rows.append((mode + 1, *parts, gear, diameters, energy[mode], forward[mode]))
     columns = ["order", "frequency_hz", "damping_ratio", "gear", "nodal_diameters"]
     table = pd.DataFrame(rows, columns=[*columns, "energy_fraction", "forward_fraction"])
     return table.sort_values(["order", "gear", "nodal_diameters"], ignore_index=True)
@@ -91,8 +138,22 @@ def wave_table(layout: Layout, linear: LinearModel, modes: TurningModes) -> pd.D
 def wave_parts(
     layout: Layout, linear: LinearModel, shapes: ComplexArray
 ) -> list[tuple[str, int, Array, Array]]:
-    """For every gear that bends and number of nodal diameters: both, the part of the kinetic energy of every
-    mode (m,) in these waves, and what travels forward of them (m,).
+    """Return the kinetic energy in the waves of every gear that bends, by number of nodal diameters.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    linear : LinearModel
+        Linear model of the machine.
+    shapes : (n, m) complex array
+        Mode shapes.
+
+    Returns
+    -------
+    list of tuple
+        Side of the gear, number of nodal diameters, fraction (m,) of the kinetic energy of every mode in
+        these waves, and fraction (m,) of the waves that travels forward.
     """
     energy = np.real(shapes.conj() * linear.momentum(shapes))
     energy = energy / energy.sum(axis=0)

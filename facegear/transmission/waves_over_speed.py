@@ -17,7 +17,7 @@ from facegear.transmission.layout import Layout
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.turning_modes import TurningModes, wave_parts
 
-ALIKE = 0.2
+MIN_MAC = 0.2
 """MAC below which two modes are not joined. A standing wave at rest has 0.5 of either travelling wave, and
 0.25 where two equal gears share it."""
 
@@ -25,27 +25,42 @@ ALIKE = 0.2
 def campbell_table(
     layout: Layout, linear: LinearModel, speeds_rpm: Sequence[float], modes: Sequence[TurningModes]
 ) -> pd.DataFrame:
-    """One row for each speed and mode, with the waves that hold the largest part of its kinetic energy.
+    """Return frequency, damping and main waves of each mode at each speed.
 
-    Columns speed_rpm, line (the same number at all speeds for modes that are joined by their shapes, from 1),
-    frequency_hz, damping_ratio, gear, nodal_diameters, energy_fraction, forward_fraction.
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    linear : LinearModel
+        Linear model of the machine.
+    speeds_rpm : Sequence of float
+        Pinion speeds, rpm.
+    modes : Sequence of TurningModes
+        Modes at each speed.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each speed and mode, with the waves that hold the largest part of its kinetic energy.
+        Columns speed_rpm, line (the same number at all speeds for modes that are joined by their shapes, from
+        1), frequency_hz, damping_ratio, gear, nodal_diameters, energy_fraction, forward_fraction.
     """
-    numbers = joined_lines(linear, [each.shapes for each in modes])
+    numbers = join_lines(linear, [speed_modes.shapes for speed_modes in modes])
     tables = []
-    for speed, each, lines in zip(speeds_rpm, modes, numbers, strict=True):
-        parts = wave_parts(layout, linear, each.shapes)
-        held, forward = (np.array([part[column] for part in parts]) for column in (2, 3))
-        largest, every = held.argmax(axis=0), np.arange(lines.size)
+    for speed, speed_modes, lines in zip(speeds_rpm, modes, numbers, strict=True):
+        parts = wave_parts(layout, linear, speed_modes.shapes)
+        energy, forward = (np.array([part[column] for part in parts]) for column in (2, 3))
+        largest, every = energy.argmax(axis=0), np.arange(lines.size)
         tables.append(
             pd.DataFrame(
                 {
                     "speed_rpm": speed,
                     "line": lines,
-                    "frequency_hz": each.frequencies,
-                    "damping_ratio": each.damping_ratios,
+                    "frequency_hz": speed_modes.frequencies,
+                    "damping_ratio": speed_modes.damping_ratios,
                     "gear": [parts[number][0] for number in largest],
                     "nodal_diameters": [parts[number][1] for number in largest],
-                    "energy_fraction": held[largest, every],
+                    "energy_fraction": energy[largest, every],
                     "forward_fraction": forward[largest, every],
                 }
             )
@@ -53,16 +68,29 @@ def campbell_table(
     return pd.concat(tables, ignore_index=True)
 
 
-def joined_lines(linear: LinearModel, shapes: Sequence[ComplexArray]) -> list[Integers]:
-    """Numbers of the lines, from 1, that the modes (n, m) of every speed belong to."""
+def join_lines(linear: LinearModel, shapes: Sequence[ComplexArray]) -> list[Integers]:
+    """Return the numbers of the lines that the modes of every speed belong to.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    shapes : sequence of (n, m) complex arrays
+        Mode shapes at each speed.
+
+    Returns
+    -------
+    list of (m,) arrays of int
+        Index of each line, from 1, at each speed.
+    """
     lines = [np.arange(1, shapes[0].shape[1] + 1)]
     last = int(lines[0].size)
     for before, after in pairwise(shapes):
         likeness = assurance(linear, before, after)
         first, second = linear_sum_assignment(-likeness)
-        joined = likeness[first, second] >= ALIKE
+        is_joined = likeness[first, second] >= MIN_MAC
         numbers = np.zeros(after.shape[1], np.int64)
-        numbers[second[joined]] = lines[-1][first[joined]]
+        numbers[second[is_joined]] = lines[-1][first[is_joined]]
         new = numbers == 0
         numbers[new] = last + np.arange(1, new.sum() + 1)
         last = max(last, int(numbers.max(initial=0)))
@@ -71,18 +99,45 @@ def joined_lines(linear: LinearModel, shapes: Sequence[ComplexArray]) -> list[In
 
 
 def assurance(linear: LinearModel, first: ComplexArray, second: ComplexArray) -> Array:
-    """MAC (m, k) between the columns of two sets of shapes, (n, m) and (n, k)."""
-    own = [np.real((shapes.conj() * linear.momentum(shapes)).sum(axis=0)) for shapes in (first, second)]
-    both = first.conj().T @ linear.momentum(second)
-    return np.asarray(np.abs(both) ** 2 / np.outer(*own))
+    """Return the modal assurance criterion between the columns of two sets of shapes.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    first : (n, m) complex array
+        Mode shapes, any unit.
+    second : (n, k) complex array
+        Mode shapes, any unit.
+
+    Returns
+    -------
+    (m, k) array
+        MAC from 0 to 1, dimensionless.
+    """
+    norms = [np.real((shapes.conj() * linear.momentum(shapes)).sum(axis=0)) for shapes in (first, second)]
+    cross_products = first.conj().T @ linear.momentum(second)
+    return np.asarray(np.abs(cross_products) ** 2 / np.outer(*norms))
 
 
 def campbell_crossings(table: pd.DataFrame, teeth: tuple[int, int], angles: Array) -> pd.DataFrame:
-    """One row for each crossing of a mesh harmonic with a line of campbell_table(), linear between speeds.
+    """Return the crossings of mesh harmonics with the lines of campbell_table(), linear between speeds.
 
-    teeth: of pinion and face gear; angles (n,) of the pinions, rad. Columns of the table, of the nearer
-    speed, with harmonic, wave (standing, forward or backward, by the larger part) and phase_factor: how many
-    times the force of one mesh drives that wave.
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table of campbell_table().
+    teeth : tuple[int, int]
+        Number of teeth of pinion and face gear.
+    angles : (n,) array
+        Angles of the pinions, rad.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row for each crossing. Columns of the table, taken from the nearer speed, with harmonic, wave
+        (standing, forward or backward, by the larger part) and phase_factor: how many times the force of one
+        mesh drives that wave.
     """
     rows = []
     for _, line in table.groupby("line"):

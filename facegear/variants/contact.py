@@ -26,7 +26,7 @@ from facegear.geometry.bodies import BODIES
 from facegear.stiffness.curve import LoadTable
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.source import curve_from_contact
-from facegear.stiffness.unloaded import unloaded_samples
+from facegear.stiffness.unloaded_error import unloaded_samples
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passing_tension import PassingTension
@@ -78,7 +78,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "ReduceTeeth | None" = 
             return None
         flanks_of_it, base_radius = analysis.models[0].flanks, analysis.models[0].design.pinion_base_radius
         positions = even_positions(plan.positions)
-        return known_contact(analysis.solved[0][0], positions, flanks_of_it.pinion.shape, base_radius)
+        return known_contact(analysis.results[0][0], positions, flanks_of_it.pinion.shape, base_radius)
 
     @lru_cache(maxsize=CACHED_PAIRS)
     def solve_mesh(text: str) -> PairExcitation:
@@ -93,7 +93,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "ReduceTeeth | None" = 
             compliances,
             plan,
             every_flank=False,
-            known=start_contact,
+            known_contact=start_contact,
         )
         curve = curve_from_contact(analysis.ltca[0], request)
         numbers = ToothNumbers.of_config(values)

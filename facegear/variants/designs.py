@@ -16,7 +16,7 @@ from facegear.config.tolerances import Tolerances, population
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.dynamics.sweeps.plan import JumpRange
-from facegear.load_sharing.quantity_names import columns_of, of_jumps
+from facegear.load_sharing.quantity_names import is_jump_quantity, matching_names
 from facegear.scenarios.evolution import Task, Variable
 from facegear.scenarios.sampling import changes, samples
 from facegear.variants.machines import Question, VariedMachine
@@ -124,7 +124,7 @@ def assessor(
 def _goal(
     goal: ObjectiveSection, names: Sequence[str], nominal: Quantities, sample_quantities: Sequence[Quantities]
 ) -> float:
-    columns = [name for start in goal.quantities for name in columns_of(start, names)]
+    columns = [name for start in goal.quantities for name in matching_names(start, names)]
     worst = min if goal.large else max
     if goal.percentile is None:
         return worst(nominal[name] for name in columns)
@@ -138,6 +138,8 @@ def _goal(
 def _jumps(section: Search) -> tuple[JumpRange | None, JumpRange | None]:
     """Where jumps are looked for as designed, and in the samples; None where no goal asks."""
     goals = (*section.objectives, *section.constraints)
-    percentile_goals = {goal.percentile is not None for goal in goals if any(map(of_jumps, goal.quantities))}
+    percentile_goals = {
+        goal.percentile is not None for goal in goals if any(map(is_jump_quantity, goal.quantities))
+    }
     within = jump_range(section.jumps)
     return (within if False in percentile_goals else None, within if True in percentile_goals else None)

@@ -19,7 +19,7 @@ from facegear.lubrication.reduction import Condition, FewPlaces, ReducedPair, re
 from facegear.lubrication.request import GivenBulk, Limits, Lubrication
 from facegear.lubrication.scuffing import temperature_safety
 from facegear.transmission.machine import Machine
-from facegear.transmission.ratings import rated
+from facegear.transmission.ratings import compute_ratings
 
 GOLDEN = 0.6180339887
 """Multiples of it, less their whole part, are spread evenly over 0..1 however many are taken."""
@@ -127,7 +127,7 @@ def friction_quantities(
     """
     meshes = mesh_loads(machine, loads)
     losses = machine_loss(pair, meshes, speed_rpm * pi / 30)
-    power_in = rated(machine, speed_rpm).power_in
+    power_in = compute_ratings(machine, speed_rpm).power_in
     hottest, film_ratio = float(losses.contact_temperature.max()), float(losses.film_ratio.min())
     allowed_temperature = limits.allowed_contact(pair.lubrication.oil, pair.lubrication.oil_temperature)
     return {

@@ -28,7 +28,7 @@ from facegear.geometry.bodies import BODIES
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.quantities import (
     FlankLoads,
-    Found,
+    MachineQuantities,
     dynamic_quantities,
     orbit_of,
     quasi_static_quantities,
@@ -364,7 +364,7 @@ def judge(
     return judge_machine
 
 
-def _ask(question: Question) -> Callable[[Machine, float, Guide | None], Found]:
+def _ask(question: Question) -> Callable[[Machine, float, Guide | None], MachineQuantities]:
     if not question.dynamic:
         return lambda lumped_machine, speed, guide: quasi_static_quantities(
             at_rest(lumped_machine), question.cycles

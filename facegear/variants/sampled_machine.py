@@ -21,12 +21,12 @@ from facegear.config.tooth_pair import ToothPair
 from facegear.errors import FacegearError
 from facegear.load_sharing.quantity_names import (
     BULK,
+    CYCLE_SELECTION_ERRORS,
     K_GAMMA,
-    MISSED,
-    OPEN,
-    REVERSED,
-    SIMPLIFIED,
-    columns_of,
+    OPEN_FRACTION,
+    REVERSED_FRACTION,
+    SIMPLIFICATION_ERRORS,
+    matching_names,
 )
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
@@ -160,8 +160,8 @@ class SampledMachine(VariedMachine):
     @property
     def checks(self) -> tuple[str, ...]:
         """Columns with the error of the first CHECKED_SAMPLES samples."""
-        hunting = () if self.question.dynamic else tuple(MISSED.values())
-        return (*hunting, *(SIMPLIFIED.values() if self.friction else ()))
+        hunting = () if self.question.dynamic else tuple(CYCLE_SELECTION_ERRORS.values())
+        return (*hunting, *(SIMPLIFICATION_ERRORS.values() if self.friction else ()))
 
     def judge_sample(self, sample: Values, check: bool, judge: Judge | None = None) -> dict[str, float]:
         """Judge a sample, and where asked compute the error of its simplifications.
@@ -189,18 +189,20 @@ class SampledMachine(VariedMachine):
     def _reduction_errors(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
         """Return the error of the few points of the contact: columns SIMPLIFIED."""
         whole = self.thorough_judge(sample)
-        off = {name: values[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFIED}
+        off = {
+            name: values[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFICATION_ERRORS
+        }
         off[BULK] = values[BULK] - whole[BULK]
-        return {column: off[name] for name, column in SIMPLIFIED.items()}
+        return {column: off[name] for name, column in SIMPLIFICATION_ERRORS.items()}
 
     def _cycle_deviations(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
         """Return the error of the mesh cycles taken: columns MISSED."""
         whole = self.whole_judge(sample)
-        paths = columns_of(f"{K_GAMMA} ", list(whole))
-        deviations = {name: whole[name] - values[name] for name in (OPEN, REVERSED)}
+        paths = matching_names(f"{K_GAMMA} ", list(whole))
+        deviations = {name: whole[name] - values[name] for name in (OPEN_FRACTION, REVERSED_FRACTION)}
         ratios = (whole[name] / values[name] - 1.0 for name in paths if values[name] > 0.0)
         deviations[K_GAMMA] = max(ratios, default=nan)
-        return {MISSED[name]: value for name, value in deviations.items()}
+        return {CYCLE_SELECTION_ERRORS[name]: value for name, value in deviations.items()}
 
     def run(
         self,

@@ -15,7 +15,7 @@ from facegear.config.elastic_bodies import (
 from facegear.config.gear_body import BodySection
 from facegear.config.tooth_pair import ToothPair, pair_design
 from facegear.config.transmission import Transmission
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.geometry.design import Flanks, GearModifications, PairDesign
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.machine import Machine

@@ -4,7 +4,7 @@ import pandas as pd
 
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
-from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.load_sharing.collect import NOMINAL, collect_tables
 from facegear.provenance.stage import stage
 from facegear.report.inputs import inputs_in_words
 from paper.scorecard.claims import read_claims
@@ -20,7 +20,7 @@ TABLES = (
 with stage(snakemake) as run:
     files, values = snakemake.input, snakemake.params.values
     inputs = {name: tables.read(files[name], allow_empty=name == "jumps") for name in TABLES}
-    nominal = collected({(NOMINAL, NOMINAL): tables.read(files.nominal)})
+    nominal = collect_tables({(NOMINAL, NOMINAL): tables.read(files.nominal)})
     inputs["curves"] = pd.concat([nominal, *(tables.read(path) for path in files.studies)], ignore_index=True)
     for name in ("sharing", "curves"):
         inputs[name]["point"] = inputs[name]["point"].astype(str)

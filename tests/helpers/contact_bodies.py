@@ -99,8 +99,8 @@ def stiffness(parts):
         count, width = part.rows.shape
         at = np.repeat(part.rows, width, axis=1), np.tile(part.rows, (1, width))
         entries = part.matrices(np.arange(count)).ravel(), tuple(each.ravel() for each in at)
-        small = sp.csr_matrix(entries, shape=(part.moved.shape[0],) * 2)
-        total = total + part.moved.T @ small @ part.moved
+        small = sp.csr_matrix(entries, shape=(part.transformation.shape[0],) * 2)
+        total = total + part.transformation.T @ small @ part.transformation
     return total.tocsr()
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from lumped_machines import make_layout, make_machine
 
 from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, Shaft, condensed
+from facegear.shafts.condensed_shaft import Bearing, Shaft, condense_shaft
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -23,7 +23,7 @@ def on_bearings(first, second, young=1.0, coupled=0.0):
     matrix = np.diag([first, first, 1e8, 2e5, 2e5])
     matrix[2, 4] = matrix[4, 2] = coupled
     bearings = (Bearing(0.0, matrix), Bearing(0.12, np.diag([second, second, 0.0, 0.0, 0.0])))
-    return condensed(Shaft((Segment(0.12, 0.04),), Elasticity(young * 206e9, 0.3), bearings, 0.05))
+    return condense_shaft(Shaft((Segment(0.12, 0.04),), Elasticity(young * 206e9, 0.3), bearings, 0.05))
 
 
 def seated(shaft, layout, tilting=True, masses=None):

@@ -4,7 +4,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.transmission.layout import DOF_PER_BODY, Layout
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 from facegear.transmission.modes import Modes, drive_flanks, modes_of
 
 

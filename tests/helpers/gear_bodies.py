@@ -13,7 +13,7 @@ from facegear.gear_body.body import SolvedBody, solve_body
 from facegear.gear_body.matrices import BodyMatrices, body_matrices
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.patch import Patch
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.section import Hub, Rim, Section, Web, rectangle, wheel
 from facegear.geometry.design import Material
@@ -70,7 +70,7 @@ def rectangular(inner: float, outer: float, thickness: float, material: Material
 
 def at(body: BodyMatrices, r: float, height: float) -> int:
     """Number of the scalar shape that stands at a place."""
-    return int(np.argmin(np.hypot(*(body.elements.places - np.array([[r], [height]])))))
+    return int(np.argmin(np.hypot(*(body.elements.shape_points - np.array([[r], [height]])))))
 
 
 def small_body(seed=0) -> ReducedBody:

@@ -33,4 +33,4 @@ def law_period_map(law, damping, amplitude=0.0, tolerance=1e-12, mean=1.0):
 
 def orbit(period_map, speed, place, rate):
     u = float(np.log(speed))
-    return at_parameter(period_map, period_map.weighted(State(np.array([place]), np.array([rate])), u), u)
+    return at_parameter(period_map, period_map.to_weighted(State(np.array([place]), np.array([rate])), u), u)

@@ -5,7 +5,7 @@ import numpy as np
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
 from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
 PLACES = (
     ("tail idler", Role.TAIL, 0.0),
@@ -21,7 +21,7 @@ def make_layout(
     sides=(Side.LOWER, Side.UPPER),
     pinion_bearing=6.5e7,
     gear_bearing=8.7e9,
-    kinematics=PRINTED,
+    kinematics=PRINTED_KINEMATICS,
 ) -> Layout:
     pinion = Body(1.199, 0.002, (pinion_bearing, pinion_bearing, 0.0))
     gear = Body(7.795, 0.54, (gear_bearing,) * 3)
@@ -33,7 +33,7 @@ def make_layout(
         gear_teeth=143,
         pressure_angle=angle,
         pinion_radius=3.75e-3 * 23 / 2 * np.cos(angle),
-        gear_radius=0.2625 if kinematics is PRINTED else 3.75e-3 * 143 / 2 * np.cos(angle),
+        gear_radius=0.2625 if kinematics is PRINTED_KINEMATICS else 3.75e-3 * 143 / 2 * np.cos(angle),
         kinematics=kinematics,
     )
 

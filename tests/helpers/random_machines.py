@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import Model, static_start
 from facegear.harmonics.series import Harmonics
@@ -14,7 +14,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
 FINE = Settings(tolerance=1e-14)
 
@@ -47,7 +47,7 @@ def machines(draw, **fixed):
         "open_flanks": draw(st.sampled_from(list(OpenFlanks))),
     }
     symmetric = fixed.pop("symmetric", False)
-    if kinematics is PRINTED:
+    if kinematics is PRINTED_KINEMATICS:
         return make_machine(layout, **(options | fixed))
     if draw(st.booleans()):
         tilt = Tilt(0.3, draw(st.floats(1e6, 1e8)))
@@ -73,5 +73,5 @@ def kicked(model: Model, seed: int = 0) -> State:
     """Static equilibrium with a random velocity that opens contacts within a period."""
     start = static_start(model)
     kick = np.random.default_rng(seed).normal(size=start.velocity.size)
-    reach = np.abs(model.reduced.mesh_jacobian).max()
+    reach = np.abs(model.reduction.mesh_jacobian).max()
     return replace(start, velocity=0.5 * model.system.scale / reach * kick * 2e3)

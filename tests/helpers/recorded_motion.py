@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings, State
 

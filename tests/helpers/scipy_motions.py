@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import static_start
 from facegear.harmonics.series import stacked_values
 
@@ -14,7 +14,7 @@ def kicked(model, size):
     """The static equilibrium with a random velocity."""
     start = static_start(model)
     kick = np.random.default_rng(3).normal(size=start.velocity.size)
-    reach = np.abs(model.reduced.mesh_jacobian).max()
+    reach = np.abs(model.reduction.mesh_jacobian).max()
     return replace(start, velocity=size / reach * kick)
 
 
@@ -43,7 +43,7 @@ def right_side(model, omega, acting):
 
 def gap_to_scipy(model, omega, acting, start, run, phases, tolerance):
     """Largest distance, m, of a recorded motion from that of DOP853 at phases from 0 on, rad."""
-    scale = np.abs(model.reduced.mesh_jacobian).max()
+    scale = np.abs(model.reduction.mesh_jacobian).max()
     found = solve_ivp(
         right_side(model, omega, acting),
         (0.0, phases[-1] / omega),

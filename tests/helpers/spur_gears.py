@@ -105,10 +105,10 @@ def root_tension(design: PairDesign, roll: float) -> float:
     m = design.module
     tooth = slab_tooth(design, replace(named_sizes("medium", m), width=0.64 * m))
     elastic, side = elastic_tooth(design, tooth, STEEL, "right")
-    held = elastic.held.copy()
+    held = elastic.is_held.copy()
     held[:, 1] = True
     gauges, rows = root_gauges(tooth, STEEL)
-    plain = replace(elastic, held=held)
+    plain = replace(elastic, is_held=held)
     found = flank_compliance(plain, Refinement(), design.pinion.teeth, 2, "ring", gauges=rows)
     at = np.interp(-roll, -side.u[: side.flank_rows, 1], np.arange(side.flank_rows))
     line = interpolation(np.array([[at, 0.0], [at, 1.0], [at, 2.0]]), side.shape).toarray()

@@ -34,24 +34,24 @@ def stored_figures(config, results):
     """
     case = facegear.load(config)._whole_case(None).chain.case
     for stage in STAGES.values():
-        if not (stage.figures and asked_for(stage.name, case) and stage.figures.named(case)):
+        if not (stage.figures and asked_for(stage.name, case) and stage.figures.figure_names(case)):
             continue
-        upstream = {name: source for name, source in stage.figures.upstream.items() if source.wanted(case)}
+        upstream = {name: source for name, source in stage.figures.upstream.items() if source.is_needed(case)}
         parts = {name: _part(source, case, Path(results)) for name, source in upstream.items()}
         describe = load(stage.figures.draw)
         needs = typed_arguments(describe, resolved_needs(stage.figures.needs, case))
-        yield from zip(stage.figures.named(case), describe(**parts, **needs), strict=True)
+        yield from zip(stage.figures.figure_names(case), describe(**parts, **needs), strict=True)
 
 
 def _part(source, case, results):
     file, parts = STAGES[source.stage].files[source.file], []
-    for where in source.places(case):
+    for where in source.file_wildcards(case):
         shared = shared_sources(case.cases, source.stage)[where.get("case", case.values["case"])]
         wildcards = {name: text for name, text in where.items() if name != "case"}
-        if file.each:
-            return [file.read(results / shared / file.at({"each": text})) for text in file.each(case)]
+        if file.each_text:
+            return [file.read(results / shared / file.at({"each": text})) for text in file.each_text(case)]
         parts.append(file.read(results / shared / file.at(wildcards)))
-    return parts if source.each else parts[0]
+    return parts if source.each_wildcards else parts[0]
 
 
 def require_equal_drawings(figure):
@@ -113,7 +113,7 @@ def _require_equal_panels(panel, axes, traces):
     maps = [mark for mark in axes.collections if isinstance(mark, QuadMesh)]
     marks = [mark for mark in panel.marks if type(mark).__name__ == "Map"]
     for mesh, mark, trace in zip(maps, marks, (t for t in traces if t["type"] == "heatmap"), strict=True):
-        np.testing.assert_allclose(np.ma.filled(mesh.get_array(), np.nan).ravel(), np.ravel(mark.values))
+        np.testing.assert_allclose(np.ma.count(mesh.get_array(), np.nan).ravel(), np.ravel(mark.values))
         expected = straight(mark)[2]
         np.testing.assert_allclose(np.array(trace["z"], dtype=float), expected, rtol=1e-3, atol=1e-9)
         np.testing.assert_allclose(mesh.get_clim(), (trace["zmin"], trace["zmax"]))

@@ -95,15 +95,18 @@ def test_machines_of_a_series_have_one_machine_without_errors_and_no_other_machi
         position=flaws.position + 1e-6,
         bearing_clearance=2.0 * flaws.bearing_clearance,
     )
-    assert replace(first, half_backlash=2.0 * first.half_backlash, imperfections=moved).alike is first.alike
+    assert (
+        replace(first, half_backlash=2.0 * first.half_backlash, imperfections=moved).without_errors
+        is first.without_errors
+    )
     for name, value in (
         ("stiffness", 2.0 * flaws.stiffness),
         ("clocking", flaws.clocking + 0.1),
         ("bearing_clearance", 0.0 * flaws.bearing_clearance),
     ):
         other = replace(first, imperfections=replace(flaws, **{name: value}))
-        assert other.alike is not first.alike, name
-    assert replace(first, torques=2.0 * first.torques).alike is not first.alike
+        assert other.without_errors is not first.without_errors, name
+    assert replace(first, torques=2.0 * first.torques).without_errors is not first.without_errors
 
 
 def test_machines_that_differ_in_errors_and_clearances_share_reduction_and_law_and_nothing_that_differs():
@@ -117,12 +120,12 @@ def test_machines_that_differ_in_errors_and_clearances_share_reduction_and_law_a
         )
         models.append(build_model(make_machine(layout, imperfections=flaws)))
     tight, narrow, wide = models
-    assert narrow.reduced is wide.reduced and narrow.system.law is wide.system.law
-    assert tight.reduced is not wide.reduced
+    assert narrow.reduction is wide.reduction and narrow.system.law is wide.system.law
+    assert tight.reduction is not wide.reduction
     assert (wide.system.ring_clearance == 20e-6).all() and (narrow.system.ring_clearance == 10e-6).all()
     assert (wide.system.upper != narrow.system.upper).any()
     for model in models:
         machine = model.machine
         alone = reduce(machine.linear, layout.contacts, machine.pushes)
         for name in ("basis", "mesh_jacobian", "omega_squared", "damping", "load"):
-            assert np.array_equal(getattr(alone, name), getattr(model.reduced, name)), name
+            assert np.array_equal(getattr(alone, name), getattr(model.reduction, name)), name

@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 
 import facegear
 from facegear import errors
-from facegear.compare.answers import opened
+from facegear.compare.answers import open_answer
 from facegear.compare.judge import compare
 from facegear.errors import FacegearError
 from facegear.io.workbook import LONGEST_NAME
@@ -138,7 +138,7 @@ def test_every_answer_has_a_table_a_figure_and_files(gearbox, saved, name):
 
 
 def test_the_example_gives_the_stored_answers(saved):
-    with opened("current/example") as stored:
+    with open_answer("current/example") as stored:
         found = compare(stored, saved[0])
     assert found.equal, f"{found.rows.to_string(max_rows=20)}\n{RENEW}"
 

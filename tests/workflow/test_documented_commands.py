@@ -12,7 +12,7 @@ import pytest
 from projects import dry_run, environment
 
 import facegear.__main__ as command_line
-from facegear.compare.answers import stored
+from facegear.compare.answers import answer_names
 
 ROOT = Path(__file__).parents[2]
 DOCS = (ROOT / "docs" / part for part in (".", "tutorials", "how_to", "explanation", "reference"))
@@ -84,7 +84,7 @@ def test_stored_answers_that_pages_and_help_name_exist():
     parsers = command_line.parser()._subparsers._group_actions[0].choices.values()
     texts = [*pages, *(" ".join(parser.format_help().split()) for parser in parsers)]
     named = {name for text in texts for name in re.findall(r"\b((?:current|\d+\.\d+\.\d+)/[a-z]+)\b", text)}
-    assert "current/quick" in named and named <= set(stored())
+    assert "current/quick" in named and named <= set(answer_names())
 
 
 def test_no_message_names_a_package_index():

@@ -157,14 +157,14 @@ def measure(design: PairDesign, level: Level, materials: tuple[Material, Materia
             rest = half.system, condensed_bodies, plan.refinement, *dof_per_body, plan.element
             solutions.append(watch.time("compliance_s", coupled_compliance, *rest))
         bodies.append(GearFlank(side, watch.time("compliance_s", whole, solutions)))
-        dof += int(np.count_nonzero(~system.held))
+        dof += int(np.count_nonzero(~system.is_held))
     model = contact_model(design, *bodies)
     loaded_contact(model, [0.3], plan.torques, plan.options)
     run = model, even_positions(plan.positions), plan.torques, plan.options
     results = watch.time("contact_s", loaded_contact, *run)
     costs = {
         "dof": dof,
-        "flank_nodes": sum(len(body.compliance.own) for body in bodies),
+        "flank_nodes": sum(len(body.compliance.loaded_tooth) for body in bodies),
         **watch.seconds,
         "total_s": sum(watch.seconds.values()),
         "contact_s_per_position_and_load": watch.seconds["contact_s"] / len(results),
@@ -314,7 +314,7 @@ def shortcuts(design: PairDesign, base: Level, materials: tuple[Material, Materi
         sector = Sector(teeth, teeth, ends)
         cases[f"{teeth}-tooth sectors, {ends} cut faces"] = replace(base, plan=replace(plan, sector=sector))
     for name, options in (
-        ("no coupling between neighbours", replace(plain, coupled=False)),
+        ("no coupling between neighbours", replace(plain, is_coupled=False)),
         ("no fillet contact", replace(plain, fillet=False)),
         ("no loads on tip edges", replace(plain, edges=False)),
         ("contact on the pitch section's path only", replace(plain, path_only=True)),

@@ -126,7 +126,7 @@ def own_answer(request: PairRequest) -> Answer:
     )
     cuts = request.refinement
     flanks = flank_pair(pair.design, (pinion.side, gear.side), (cuts, cuts), request.element != "hex27")
-    blocks = ({(0, 0): body.compliance.own} for body in (pinion, gear))
+    blocks = ({(0, 0): body.compliance.loaded_tooth} for body in (pinion, gear))
     result = SectorPair(flanks, *blocks).solve(pair.position, (request.torque,))[0]
     (spot,) = result.spots
     pressure, _ = flank_pressure([result], flanks, pair.materials).loads[0].largest()
@@ -144,10 +144,10 @@ def own_answer(request: PairRequest) -> Answer:
 def _own_body(request: PairRequest, tooth: FeTooth, material: Material) -> _OwnBody:
     elastic, side = elastic_tooth(request.pair.design, tooth, material)
     gauges, rows = root_gauges(tooth, material)
-    is_fixed = elastic.held.copy()
+    is_fixed = elastic.is_held.copy()
     nowhere = np.zeros(0, dtype=np.int64)
     is_fixed[np.union1d(elastic.left, elastic.right)] = True
-    cut_out = replace(elastic, held=is_fixed, left=nowhere, right=nowhere)
+    cut_out = replace(elastic, is_held=is_fixed, left=nowhere, right=nowhere)
     compliance = flank_compliance(cut_out, request.refinement, element=request.element, gauges=rows)
     return _OwnBody(side, compliance, gauges)
 

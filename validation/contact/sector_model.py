@@ -71,7 +71,7 @@ class _SectorAtPosition:
 
     sectors: SectorPair
     position: float
-    unloaded = 0.0
+    unloaded_error = 0.0
 
     @property
     def base_radius(self) -> float:

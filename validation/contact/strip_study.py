@@ -65,7 +65,7 @@ def strip_at(
     at = int(np.nanargmax(loads.pressure))
     row = loads.line[at]
     y0 = lines.y[loads.plane[at]]
-    on = (loads.line == row) & (loads.where == INSIDE) & (np.abs(lines.y[loads.plane] - y0) <= half_length)
+    on = (loads.line == row) & (loads.edge == INSIDE) & (np.abs(lines.y[loads.plane] - y0) <= half_length)
     planes, width = loads.plane[on], loads.half_width[at]
     our_pressure = lines.y[planes]
     arcs = 0.5 * design.pinion_base_radius * lines.roll[row, planes] ** 2

@@ -85,12 +85,12 @@ def twin_model(
     for design, size, material in zip((pinion_design, gear_design), sizes, materials, strict=True):
         tooth = slab_tooth(design, size)
         elastic, side = elastic_tooth(design, tooth, material, "right")
-        is_fixed = elastic.held.copy()
+        is_fixed = elastic.is_held.copy()
         is_fixed[:, 1] = True
         number = teeth or design.pinion.teeth
-        compliances.append(flank_compliance(replace(elastic, held=is_fixed), layer, number, 2, ends))
+        compliances.append(flank_compliance(replace(elastic, is_held=is_fixed), layer, number, 2, ends))
         sides.append(side)
-    gear = replace(compliances[1], others=compliances[1].others[::-1])
+    gear = replace(compliances[1], neighbour_blocks=compliances[1].neighbour_blocks[::-1])
     return TwinModel(
         pinion=pinion_design,
         gear=gear_design,
@@ -175,7 +175,7 @@ class _TwinAtPosition:
 
     model: TwinModel
     position: float
-    unloaded = 0.0
+    unloaded_error = 0.0
 
     @property
     def base_radius(self) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.continuation import Branch, ContinuationSettings, follow, turned
+from facegear.dynamics.branches.continuation import Branch, ContinuationSettings, follow, reverse_tangent
 from facegear.dynamics.branches.explore import crossings
 from facegear.dynamics.branches.family import Family, speed_family
 from facegear.dynamics.branches.period_map import PeriodMap
@@ -102,7 +102,7 @@ def machine_case(machine: Machine, speed_rpm: float) -> Case:
     return Case(
         "machine",
         speed_family(model),
-        lambda period_map: at_parameter(period_map, period_map.weighted(state, u), u),
+        lambda period_map: at_parameter(period_map, period_map.to_weighted(state, u), u),
         ContinuationSettings(0.9 * speed_rpm, 1.3 * speed_rpm),
         1.05 * speed_rpm,
     )
@@ -261,8 +261,10 @@ def _orbits(model: Model, speed_rpm: float) -> dict[float, State]:
         Family("damping_factor", lambda factor: (_scale_damping(system, factor), frequency)), 1, TOLERANCE
     )
     state = steady_state(system, frequency, Settings(tolerance=TOLERANCE), static_start(model)).state
-    start = at_parameter(period_map, period_map.weighted(state, 0.0), 0.0)
-    branch = follow(period_map, turned(start), ContinuationSettings(0.99 * DAMPING[-1], 1.0), both=False)
+    start = at_parameter(period_map, period_map.to_weighted(state, 0.0), 0.0)
+    branch = follow(
+        period_map, reverse_tangent(start), ContinuationSettings(0.99 * DAMPING[-1], 1.0), both_ways=False
+    )
     states = {1.0: state}
     for factor in DAMPING[1:]:
         for point in crossings(branch, factor)[:1]:
@@ -273,7 +275,7 @@ def _orbits(model: Model, speed_rpm: float) -> dict[float, State]:
 def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[str, float | bool]:
     period_map = PeriodMap(speed_family(model), 1, TOLERANCE)
     u = float(np.log(speed_rpm))
-    start = at_parameter(period_map, period_map.weighted(state, u), u)
+    start = at_parameter(period_map, period_map.to_weighted(state, u), u)
     begin = time.process_time()
     branch = follow(period_map, start, ContinuationSettings(0.98 * speed_rpm, 1.02 * speed_rpm))
     point_seconds = (time.process_time() - begin) / len(branch.points)

@@ -11,7 +11,7 @@ from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.steady_state.simulate import Model
-from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, tighter
+from facegear.dynamics.sweeps.sweep import Piece, collect, join_pieces, run_speeds, tighter
 
 MAX_CHANGE = 1e-3
 """Relative change of the RMS up to which a speed counts as converged."""
@@ -53,7 +53,7 @@ def rerun(model: Model, piece: Piece, settings: Settings, step: Callable[[], Non
         finer = exact(settings) if period else tighter(settings)
         responses = run_speeds(model, piece.speeds[i : i + 1], finer, piece.state(i), step)
         again.append(collect(model, (sampled_response(response) for response in responses)))
-    return joined(again)
+    return join_pieces(again)
 
 
 def exact(settings: Settings) -> Settings:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.dynamics.sweeps.plan import SweepPlan

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import MIN_CLEARANCE, TAU
+from facegear.dynamics.integrator.kernel_system import MIN_CLEARANCE, TAU
 from facegear.dynamics.integrator.system import System
 from facegear.mesh_law.linear import LinearLaw
 from facegear.mesh_law.load_dependent import LoadDependentLaw

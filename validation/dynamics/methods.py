@@ -13,8 +13,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.side_by_side import WIDTH, run_many
 from facegear.dynamics.steady_state.orbits import monodromy
 from validation.dynamics import heyoka_peer

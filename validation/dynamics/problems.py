@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.mesh_law.linear import LinearLaw
 

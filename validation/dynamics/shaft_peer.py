@@ -17,7 +17,7 @@ from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.harmonics.series import Harmonics
 from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, CondensedShaft, Shaft, condensed
+from facegear.shafts.condensed_shaft import Bearing, CondensedShaft, Shaft, condense_shaft
 from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
@@ -192,7 +192,7 @@ def _linear(pinion: Body, shaft: CondensedShaft) -> LinearModel:
         np.array([5e-5]),
         Damping(0.0, 0.0, 0.0),
     )
-    return DriveLine(layout, {0: Seat(shaft, DIAMETRAL)}, {})(machine.lumped)
+    return DriveLine(layout, {0: Seat(shaft, DIAMETRAL)}, {})(machine.lumped_model)
 
 
 def condensed_shaft(shaft: dict[str, Any]) -> CondensedShaft:
@@ -213,7 +213,7 @@ def condensed_shaft(shaft: dict[str, Any]) -> CondensedShaft:
         for position, radial, axial in shaft["bearings"]
     )
     segments = tuple(Segment(*segment) for segment in shaft["segments"])
-    return condensed(Shaft(segments, Elasticity(YOUNG, POISSON), bearings, shaft["pinion"]))
+    return condense_shaft(Shaft(segments, Elasticity(YOUNG, POISSON), bearings, shaft["pinion"]))
 
 
 def _solve(folder: Path) -> dict[str, Any]:

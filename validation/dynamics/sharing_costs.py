@@ -63,7 +63,7 @@ def random_machines(machine: Machine, count: int, seed: int = 1) -> Iterator[Ran
             machine,
             torques=torque * machine.torques,
             half_backlash=backlash * machine.half_backlash,
-            error=machine.error.scaled(error),
+            error=machine.error.scale(error),
         )
         yield RandomMachine(variant, random.uniform(1e3, 15e3), torque, backlash, error)
 

@@ -377,7 +377,7 @@ def fourier(gear: Gear, layer: Layer | None, mesh: BodyMesh) -> Array:
     """
     body = body_matrices(gear.section(layer), mesh)
     orders = range(LAST_ORDER + 1)
-    return np.array([order_modes(body, order, np.inf, expected=1).frequencies[0] for order in orders])
+    return np.array([order_modes(body, order, np.inf, expected_count=1).frequencies[0] for order in orders])
 
 
 def peer_table(gears: Sequence[Gear], finenesses: Sequence[float]) -> pd.DataFrame:

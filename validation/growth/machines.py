@@ -8,10 +8,10 @@ import numpy as np
 
 from facegear.config.load import load_config
 from facegear.config.machines import MachineInputs
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.imperfections import perfect

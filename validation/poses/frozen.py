@@ -71,7 +71,7 @@ def frozen_reactions(
 
 def _displace_pinion(model: ContactModel, name: str, step: float) -> ContactModel:
     errors: AssemblyErrors = model.design.assembly
-    return model.assembled(replace(errors, **{name: getattr(errors, name) + step}))
+    return model.with_assembly(replace(errors, **{name: getattr(errors, name) + step}))
 
 
 def _candidates(
@@ -79,7 +79,7 @@ def _candidates(
 ) -> list[Candidates]:
     """Find the candidates of the teeth that are loaded at a position, one for each of its spots."""
     teeth = np.array([spot.tooth for spot in result.spots])
-    limit = FARTHER * (result.ste - result.unloaded) / model.design.pinion_base_radius
+    limit = FARTHER * (result.ste - result.unloaded_error) / model.design.pinion_base_radius
     pairs = find_candidates(model.flanks, placement, teeth, limit, options)
     by_tooth = {pair.tooth: pair for pair in pairs}
     return [by_tooth[spot.tooth] for spot in result.spots]
@@ -111,7 +111,7 @@ def _energies(
     force = np.concatenate(forces)
     assert force.sum() > 0.99 * sum(spot.force.sum() for spot in result.spots)
     gap = np.concatenate([pair.gap for pair in pairs])
-    matrix = influence_matrix(pairs, model.pinion, model.gear, options.coupled)
+    matrix = influence_matrix(pairs, model.pinion, model.gear, options.is_coupled)
     return np.array([gap @ force, 0.5 * force @ matrix @ force])
 
 

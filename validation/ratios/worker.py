@@ -64,7 +64,7 @@ def _stage(request: dict[str, Any], inputs: str) -> Callable[[], Any]:
     gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
     stage = STAGES[request["stage"]]
     arguments = Chain(gearbox.values, Store(partial=PartialResults(Path(inputs)))).arguments(stage.name)
-    return lambda: call(stage, arguments, **stage.typed(request["wildcards"])).content
+    return lambda: call(stage, arguments, **stage.typed_wildcards(request["wildcards"])).content
 
 
 def _calls(request: dict[str, Any]) -> Callable[[], Any]:
@@ -105,7 +105,7 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
     speed = gearbox.values["dynamics"]["speed_rpm"]
     frequency = 2.0 * np.pi * mesh_frequency(model.machine.layout, speed)
     integrator = Integrator(model.system, frequency, STEP_TOLERANCE)
-    random, basis, linear = np.random.default_rng(1), model.reduced.basis, model.machine.linear
+    random, basis, linear = np.random.default_rng(1), model.reduction.basis, model.machine.linear
 
     def aside(size: float) -> Any:
         """A random state (2, n) by phase whose largest mesh deflection is `size` length scales."""

@@ -4,8 +4,8 @@ import pandas as pd
 
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
-from facegear.dynamics.sweeps.sweep import joined
+from facegear.dynamics.sweeps.chunk_arrays import SHAPES, from_arrays
+from facegear.dynamics.sweeps.sweep import join_pieces
 from facegear.dynamics.symmetries import mesh_images
 from facegear.io import arrays, tables
 from facegear.pipeline.run import machine_inputs
@@ -28,7 +28,7 @@ with stage(snakemake) as run:
     progress = Progress("finer sweep", len(plan.directions) * plan.points)
     frames = []
     for name in plan.directions:
-        piece = joined([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
+        piece = join_pieces([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
         again = rerun(model, piece, plan.settings, progress.step)
         longer = watched_longer(model, piece, again, plan.settings)
         frames.append(convergence_table(name, piece, again, longer, mesh_images(model.system)))

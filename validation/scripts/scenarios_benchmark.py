@@ -1,6 +1,6 @@
 """Cost of samples, and the error of their statistics against their number."""
 
-from facegear.contact.gear_flank import STORED
+from facegear.contact.gear_flank import ARRAY_SHAPES
 from facegear.io import arrays, tables
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
@@ -11,7 +11,7 @@ from validation.scenarios.errors import statistics_errors
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    flanks = [arrays.read(path, STORED) for path in snakemake.input.flanks]
+    flanks = [arrays.read(path, ARRAY_SHAPES) for path in snakemake.input.flanks]
     sampled_machine = SampledMachine.of_stage(harmonics=harmonics, flanks=flanks, **params.chunk)
     table = costs(sampled_machine, params.samples)
     tables.write(snakemake.output.costs, table)

@@ -9,8 +9,8 @@ from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.transmission.layout import Side
 from facegear.transmission.machine import FlankTables, mesh_frequency

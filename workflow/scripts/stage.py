@@ -6,7 +6,7 @@ from pathlib import Path
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
 
-from facegear.provenance.stage import job, parts_of, recorded
+from facegear.provenance.stage import job, parts_of, record_part
 
 with job(snakemake):
     from facegear.pipeline.run import call, read_all, write_stage
@@ -16,11 +16,11 @@ with job(snakemake):
     row, code = stages[snakemake.params.stage], snakemake.params.code
     wildcards = {name: snakemake.wildcards[name] for name in row.wildcards}
     for part in parts_of(snakemake):
-        with recorded(part) as run:
+        with record_part(part) as run:
             arguments = {**read_all(row.upstream, part.input, stages), **part.params["needs"]}
             partial = Path(part.output[row.resumable]).with_suffix(".partial") if row.resumable else None
             resume_options = {"partial": partial, "code": code} if partial else {}
-            outcome = call(row, arguments, **row.typed(wildcards), **resume_options)
+            outcome = call(row, arguments, **row.typed_wildcards(wildcards), **resume_options)
             write_stage(row, outcome.content, part.output)
             if partial:
                 partial.unlink()

@@ -20,14 +20,32 @@ def elements_of(
     mesh: MeshHex2,
     elements: Integers,
     cell: Integers,
-    moved: sp.csr_matrix,
+    transformation: sp.csr_matrix,
     material: Material,
     element: Element = "hex27",
 ) -> Part:
-    """Stiffness, N/m, of the elements (m,) of a mesh, in cells (m,).
+    """Return the stiffness of some elements of a mesh as a part of a large matrix.
 
-    moved (3 q, n): displacements of the mesh's q nodes by the unknowns; dof 3 k + i is the displacement of
-    node k along axis i. `element` other than hex27 puts linear elements on the same nodes.
+    Parameters
+    ----------
+    mesh : MeshHex2
+        Mesh with q nodes.
+    elements : (m,) array of int
+        Numbers of the elements.
+    cell : (m,) array of int
+        Cell of each element.
+    transformation : (3 q, n) sparse matrix
+        Displacements of the mesh's nodes by the unknowns; dof 3 k + i is the displacement of node k along
+        axis i.
+    material : Material
+        Of the elements.
+    element : Element
+        Other elements than hex27 are linear elements on the same nodes, for comparison.
+
+    Returns
+    -------
+    Part
+        Stiffness, N/m.
     """
     finer = mesh_of(mesh, element)
     copies, whole = finer.nelements // mesh.nelements, mesh.nelements
@@ -38,4 +56,4 @@ def elements_of(
         return isoparametric_stiffness(finer.doflocs.T[nodes[members]], element, material)
 
     rows = (3 * nodes[:, None, :] + np.arange(3)[:, None]).reshape(len(nodes), -1)
-    return Part(matrices, rows, moved, np.tile(cell, copies))
+    return Part(matrices, rows, transformation, np.tile(cell, copies))

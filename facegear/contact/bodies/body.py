@@ -9,7 +9,7 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.geometry.design import Material
 
 ROUNDING = 1e-12
-"""Of positions over the largest, and of unit vectors."""
+"""Rounding error of positions over the largest, and of unit vectors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +27,7 @@ class ElasticBody:
         Nodes of the contact surface, axis 0 across the profile and axis 1 along the width.
     normals : (2 a + 1, 2 b + 1, 3)
         Out of the body there.
-    held : (n, 3)
+    is_held : (n, 3)
         Marks dof kept at zero.
     left, right : (s,)
         Nodes of the two cut faces, in corresponding order; both empty for a body that does not repeat.
@@ -42,7 +42,7 @@ class ElasticBody:
     material: Material
     flank: Integers
     normals: Array
-    held: Mask
+    is_held: Mask
     left: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     right: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     turn: Array = field(default_factory=lambda: np.eye(3))
@@ -59,13 +59,13 @@ class ElasticBody:
             raise ValueError("the body is not its own mirror image")
 
     def _is_symmetric(self) -> bool:
-        """Whether nodes, what is held and the flank stand behind the middle plane as before it."""
+        """Whether nodes, held dof and the flank are the same behind the middle plane as before it."""
         image = self.points * np.array([1.0, -1.0, 1.0])
         image[:, 1] += self.points[:, 1].min() + self.points[:, 1].max()
         apart = np.abs(self.points[self.mirror] - image).max()
         return bool(
             apart <= ROUNDING * np.abs(self.points).max()
-            and (self.held[self.mirror] == self.held).all()
+            and (self.is_held[self.mirror] == self.is_held).all()
             and (self.mirror[self.flank] == self.flank[:, ::-1]).all()
             and np.abs(self.normals[:, ::-1] * np.array([1.0, -1.0, 1.0]) - self.normals).max() <= ROUNDING
         )

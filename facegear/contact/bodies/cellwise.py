@@ -1,4 +1,4 @@
-"""A large symmetric matrix as the sum of small ones, each of a cell of a mesh: it is never put together."""
+"""A large symmetric matrix as the sum of small ones, each of a cell of a mesh; it is never assembled."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -10,67 +10,121 @@ import scipy.sparse as sp
 from facegear.arrays import Array, Integers
 
 AT_ONCE = 128
-"""Small matrices that are made together."""
+"""Number of small matrices that are computed together."""
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Of the large matrix: the sum of moved[r].T @ s @ moved[r] over m small matrices s.
+    """Part of the large matrix: the sum of transformation[r].T @ s @ transformation[r] over m small matrices
+    s.
 
     Attributes
     ----------
     matrices
         Gives the small matrices (k, a, a) of numbers (k,) below m.
-    rows : (m, a)
-        Rows r of `moved` for each small matrix.
-    moved : (q, n)
-        What its rows and columns stand for by the n rows and columns of the large one.
-    cell : (m,)
-        To which cell each belongs.
+    rows : (m, a) array of int
+        Rows r of `transformation` for each small matrix.
+    transformation : (q, n) sparse matrix
+        Rows and columns of the small matrices by the n rows and columns of the large one.
+    cell : (m,) array of int
+        Cell of each small matrix.
     """
 
     matrices: Callable[[Integers], Array]
     rows: Integers
-    moved: sp.csr_matrix
+    transformation: sp.csr_matrix
     cell: Integers
 
-    def chosen(self, members: Integers, weights: Array, cell: Integers) -> "Part":
-        """Some of the small matrices, with weights (k,), in other cells (k,)."""
+    def select(self, members: Integers, weights: Array, cell: Integers) -> "Part":
+        """Return some of the small matrices, with weights, in other cells.
 
-        def weighted(numbers: Integers) -> Array:
+        Parameters
+        ----------
+        members : (k,) array of int
+            Numbers of the small matrices.
+        weights : (k,) array
+            Dimensionless factors.
+        cell : (k,) array of int
+            New cell of each.
+
+        Returns
+        -------
+        Part
+            Weighted small matrices.
+        """
+
+        def weighted_matrices(numbers: Integers) -> Array:
             return weights[numbers][:, None, None] * self.matrices(members[numbers])
 
-        return Part(weighted, self.rows[members], self.moved, cell)
+        return Part(weighted_matrices, self.rows[members], self.transformation, cell)
 
     def seen_by(self, turn: sp.csr_matrix) -> "Part":
-        """The same, with the unknowns of the large matrix given by `turn` (n, l) times l others."""
-        moved = (self.moved @ turn).tocsr()
-        moved.eliminate_zeros()
-        return replace(self, moved=moved)
+        """Return the part in other unknowns.
+
+        Parameters
+        ----------
+        turn : (n, l) sparse matrix
+            Unknowns of the large matrix by the l new ones.
+
+        Returns
+        -------
+        Part
+            Part of an (l, l) matrix.
+        """
+        transformation = (self.transformation @ turn).tocsr()
+        transformation.eliminate_zeros()
+        return replace(self, transformation=transformation)
 
 
-def coupled(parts: Sequence[Part], cells: int) -> sp.csr_matrix:
-    """Matrix (cells, n) with an entry for each unknown on which a cell depends."""
-    total = sp.csr_matrix((cells, parts[0].moved.shape[1]))
+def cell_unknowns(parts: Sequence[Part], cells: int) -> sp.csr_matrix:
+    """Return a matrix with an entry for each unknown on which a cell depends.
+
+    Parameters
+    ----------
+    parts : Sequence[Part]
+        Parts of a matrix with n unknowns.
+    cells : int
+        Number of cells.
+
+    Returns
+    -------
+    (cells, n) sparse matrix
+        Only its pattern has a meaning.
+    """
+    total = sp.csr_matrix((cells, parts[0].transformation.shape[1]))
     for part in parts:
         at = np.repeat(part.cell, part.rows.shape[1]), part.rows.ravel()
-        inside = sp.csr_matrix((np.ones(part.rows.size), at), shape=(cells, part.moved.shape[0]))
-        total += inside @ abs(part.moved)
+        inside = sp.csr_matrix((np.ones(part.rows.size), at), shape=(cells, part.transformation.shape[0]))
+        total += inside @ abs(part.transformation)
     return total.tocsr()
 
 
 def in_turn(part: Part, group: Integers, count: int) -> Iterator[tuple[Array, Integers]]:
-    """Small matrices (k, a, a) and their rows (k, a), of group 0, then 1, to `count` of them.
+    """Yield the small matrices group by group.
 
-    group: which of them each cell is in. Each small matrix is made once, AT_ONCE or more together.
+    Each small matrix is computed once, AT_ONCE or more together.
+
+    Parameters
+    ----------
+    part : Part
+        Part of a matrix.
+    group : (cells,) array of int
+        Group of each cell.
+    count : int
+        Number of groups.
+
+    Yields
+    ------
+    tuple of arrays
+        Small matrices (k, a, a), N/m, and their rows (k, a).
     """
     number = group[part.cell]
     order = np.argsort(number, kind="stable")
     ends = np.searchsorted(number[order], np.arange(count + 1))
     start = stop = 0
-    made = np.zeros((0, 0, 0))
+    batch = np.zeros((0, 0, 0))
     for first, last in pairwise(ends):
         if last > stop:
             start, stop = first, max(last, ends[np.searchsorted(ends, first + AT_ONCE, side="right") - 1])
-            made = part.matrices(order[start:stop])
-        yield made[first - start : last - start], part.rows[order[first:last]]
+            batch = part.matrices(order[start:stop])
+        yield batch[first - start : last - start], part.rows[order[first:last]]

@@ -9,7 +9,7 @@ from facegear.arrays import AnyArray, Array, Arrays, Integers
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.dense import backward, cholesky, forward, plus_square
 from facegear.contact.bodies.layer import TiedSystem, tied_system
-from facegear.contact.bodies.mirror import halves, unfolded
+from facegear.contact.bodies.mirror import halves, unfold_matrix
 from facegear.contact.bodies.ring import LEFT, RIGHT, moved_faces, rest_stiffness
 from facegear.contact.bodies.substructure import Superelement, condense
 from facegear.contact.options import Element, Ends, Refinement
@@ -25,26 +25,27 @@ class FlankCompliance:
 
     Attributes
     ----------
-    own : (n, n)
+    loaded_tooth : (n, n) array
         On the loaded tooth, nodes of the refined lattice `shape`.
-    others : (2 d + 1, c, c)
-        On the tooth t - d further along, nodes of the lattice before refinement `coarse_shape` (the field of
-        a neighbour is smooth); the middle block repeats the own tooth and is not used.
+    neighbour_blocks : (2 d + 1, c, c) array
+        On the tooth t - d further along, nodes of the lattice before refinement `coarse_shape` (the field
+        of a neighbour is smooth); the middle block repeats the loaded tooth and is not used.
     shape, coarse_shape
         Of the two lattices.
     refinement
         Relates the two lattices.
     linear
         Whether displacements are linear between nodes, not quadratic over elements.
-    readings : (2 d + 1, g, c)
-        What g gauges on the tooth t - d further along show by unit normal forces on the nodes of the lattice
-        before refinement; empty without gauges.
+    readings : (2 d + 1, g, c) array
+        Readings of g gauges on the tooth t - d further along by unit normal forces on the nodes of the
+        lattice before refinement; empty without gauges.
     scale
-        What the displacements are times `own` and `others`: another Young's modulus needs no copies of them.
+        Factor of the displacements in `loaded_tooth` and `neighbour_blocks`: another Young's modulus needs
+        no copies of them.
     """
 
-    own: Array
-    others: Array
+    loaded_tooth: Array
+    neighbour_blocks: Array
     shape: tuple[int, int]
     coarse_shape: tuple[int, int]
     refinement: Refinement
@@ -52,10 +53,21 @@ class FlankCompliance:
     readings: Array = field(default_factory=lambda: np.zeros((0, 0, 0)))
     scale: float = 1.0
 
-    def block(self, places: int) -> Array | None:
-        """Coarse block, not scaled, for a tooth `places` further than the loaded one; None beyond."""
-        reach = len(self.others) // 2
-        return self.others[places + reach] if abs(places) <= reach else None
+    def block(self, tooth_offset: int) -> Array | None:
+        """Return the coarse block, not scaled, for a tooth at an offset from the loaded one.
+
+        Parameters
+        ----------
+        tooth_offset : int
+            Number of teeth further along.
+
+        Returns
+        -------
+        (c, c) array, optional
+            m/N; None beyond the neighbours that are kept.
+        """
+        reach = len(self.neighbour_blocks) // 2
+        return self.neighbour_blocks[tooth_offset + reach] if abs(tooth_offset) <= reach else None
 
 
 def flank_compliance(
@@ -67,39 +79,80 @@ def flank_compliance(
     element: Element = "hex27",
     gauges: sp.csr_matrix | None = None,
 ) -> FlankCompliance:
-    """Compliance of `teeth` copies of a body with cut faces; `neighbours` of the loaded one on each side are
-    kept.
+    """Compute the flank compliance of `teeth` copies of a body with cut faces.
 
-    `gauges` (g, 3 n): readings by the displacements of the body's nodes, which must lie on its surface.
-    All teeth are refined alike, so that one factorisation serves the loaded tooth and its neighbours. A body
-    without cut faces stands for itself.
-    Raises FacegearError if the body is not held, ValueError if there are too few teeth.
+    All teeth have the same refinement, so that one factorisation serves the loaded tooth and its
+    neighbours. A body without cut faces is a gear of its own.
+
+    Parameters
+    ----------
+    body : ElasticBody
+        One tooth, or any body with a flank.
+    refinement : Refinement
+        Refinement of the flank layer.
+    teeth : int
+        Number of copies.
+    neighbours : int
+        Number of neighbours on each side of the loaded tooth whose compliance is kept.
+    ends : Ends
+        Kind of ends of a row of teeth, or ring.
+    element : Element
+        Other elements than hex27 are linear elements on the same nodes, for comparison.
+    gauges : (g, 3 n) sparse matrix, optional
+        Readings by the displacements of the body's n nodes, which must lie on its surface.
+
+    Returns
+    -------
+    FlankCompliance
+        Compliance, m/N.
+
+    Raises
+    ------
+    FacegearError
+        If the body is not held.
+    ValueError
+        If there are too few teeth.
     """
     system = tied_system(body, refinement, element)
     if gauges is not None:
-        gauges = (gauges @ sp.kron(system.followed(body, refinement), sp.eye(3), format="csr")).tocsr()
-    several = halves(system)
-    progress = Progress("flank compliance", total=len(several) * sum(SHARES))
-    solved = []
-    for half in several:
+        gauges = (
+            gauges @ sp.kron(system.node_displacements(body, refinement), sp.eye(3), format="csr")
+        ).tocsr()
+    half_systems = halves(system)
+    progress = Progress("flank compliance", total=len(half_systems) * sum(SHARES))
+    compliances = []
+    for half in half_systems:
         tooth = condense(half.system, None if gauges is None else (gauges @ half.fold).tocsr())
         progress.step(SHARES[0])
-        solved.append(coupled_compliance(half.system, tooth, refinement, teeth, neighbours, ends, element))
+        compliances.append(
+            coupled_compliance(half.system, tooth, refinement, teeth, neighbours, ends, element)
+        )
         progress.step(SHARES[1])
-    return whole(solved)
+    return whole(compliances)
 
 
-def whole(solved: list[FlankCompliance]) -> FlankCompliance:
-    """The compliance of a body from that of its even and odd half; that of a body without halves as it is."""
-    if len(solved) == 1:
-        return solved[0]
-    even, odd = solved
+def whole(compliances: list[FlankCompliance]) -> FlankCompliance:
+    """Join the compliances of the even and the odd half of a body.
+
+    Parameters
+    ----------
+    compliances : list[FlankCompliance]
+        Those of both halves, or that of a body without halves.
+
+    Returns
+    -------
+    FlankCompliance
+        Compliance of the body, m/N.
+    """
+    if len(compliances) == 1:
+        return compliances[0]
+    even, odd = compliances
     shape, coarse = even.shape, even.coarse_shape
     return replace(
         even,
-        own=unfolded(even.own, odd.own, shape),
-        others=unfolded(even.others, odd.others, coarse),
-        readings=unfolded(even.readings, odd.readings, coarse, rows=False),
+        loaded_tooth=unfold_matrix(even.loaded_tooth, odd.loaded_tooth, shape),
+        neighbour_blocks=unfold_matrix(even.neighbour_blocks, odd.neighbour_blocks, coarse),
+        readings=unfold_matrix(even.readings, odd.readings, coarse, rows=False),
         shape=(shape[0], 2 * shape[1] - 1),
         coarse_shape=(coarse[0], 2 * coarse[1] - 1),
     )
@@ -114,20 +167,45 @@ def coupled_compliance(
     ends: Ends,
     element: Element,
 ) -> FlankCompliance:
-    """Copies of a condensed tooth, or of one of its halves, joined to a ring or sector.
+    """Join copies of a condensed tooth, or of one of its halves, to a ring or sector.
 
-    Raises ValueError if there are too few teeth.
+    Parameters
+    ----------
+    system : TiedSystem
+        System of the tooth.
+    tooth : Superelement
+        Condensed tooth.
+    refinement : Refinement
+        Refinement of the flank layer.
+    teeth : int
+        Number of copies.
+    neighbours : int
+        Number of neighbours on each side that are kept.
+    ends : Ends
+        Kind of ends.
+    element : Element
+        Kind of elements.
+
+    Returns
+    -------
+    FlankCompliance
+        Compliance, m/N.
+
+    Raises
+    ------
+    ValueError
+        If there are too few teeth.
     """
     shape = system.surface.shape[:2]
     nodes = np.arange(shape[0] * shape[1]).reshape(shape)[:: refinement.profile, :: refinement.width]
     coarse = nodes.ravel()
-    own, others = tooth.flank, np.zeros((1, coarse.size, coarse.size))
+    loaded_tooth, neighbour_blocks = tooth.flank, np.zeros((1, coarse.size, coarse.size))
     readings = tooth.gauge_flank[None, :, coarse]
     if system.left.size:
-        own, others, readings = _among_others(tooth, coarse, teeth, neighbours, ends)
+        loaded_tooth, neighbour_blocks, readings = _among_others(tooth, coarse, teeth, neighbours, ends)
     return FlankCompliance(
-        own=own,
-        others=others,
+        loaded_tooth=loaded_tooth,
+        neighbour_blocks=neighbour_blocks,
         shape=shape,
         coarse_shape=nodes.shape,
         refinement=refinement,
@@ -139,34 +217,46 @@ def coupled_compliance(
 def _among_others(
     tooth: Superelement, coarse: Integers, teeth: int, neighbours: int, ends: Ends
 ) -> tuple[Array, Array, Array]:
-    """`own`, `others` and `readings` of a FlankCompliance, for nodes `coarse` (c,) of the refined lattice.
+    """Return the arrays of a FlankCompliance, for nodes `coarse` (c,) of the refined lattice.
 
-    In a ring one tooth moves another as it is moved by it, so that one side stands for both.
+    They are `loaded_tooth`, `neighbour_blocks` and `readings`. In a ring one tooth moves another as it is
+    moved by it, so that one side stands for both.
     """
     rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
     around = cholesky(tooth.faces + rests[0][0], overwrite=True)
     half = forward(around, tooth.influence.T)
-    own = plus_square(tooth.flank, half)
+    loaded_tooth = plus_square(tooth.flank, half)
     half = half[:, coarse]
-    seen, moved = tooth.influence[coarse], backward(around, half)
-    after = moved_faces(tooth.faces, rests, moved, RIGHT)
-    further = [seen @ faces for faces in after]
+    coarse_influence, face_displacement = tooth.influence[coarse], backward(around, half)
+    after = moved_faces(tooth.faces, rests, face_displacement, RIGHT)
+    further = [coarse_influence @ faces for faces in after]
     if ends == "ring" and not len(tooth.gauge_faces):
-        others = np.stack([*(each.T for each in further[::-1]), half.T @ half, *further])
-        return own, others, np.zeros((len(others), 0, coarse.size))
-    before = moved_faces(tooth.faces, rests, moved, LEFT)[::-1]
-    others = np.stack([*(seen @ faces for faces in before), half.T @ half, *further])
-    readings = np.stack([-(tooth.gauge_faces @ faces) for faces in (*before, moved, *after)])
+        neighbour_blocks = np.stack([*(block.T for block in further[::-1]), half.T @ half, *further])
+        return loaded_tooth, neighbour_blocks, np.zeros((len(neighbour_blocks), 0, coarse.size))
+    before = moved_faces(tooth.faces, rests, face_displacement, LEFT)[::-1]
+    neighbour_blocks = np.stack([*(coarse_influence @ faces for faces in before), half.T @ half, *further])
+    readings = np.stack([-(tooth.gauge_faces @ faces) for faces in (*before, face_displacement, *after)])
     readings[neighbours] += tooth.gauge_flank[:, coarse]
-    return own, others, readings
+    return loaded_tooth, neighbour_blocks, readings
 
 
 def to_arrays(compliance: FlankCompliance) -> dict[str, AnyArray]:
-    """Named arrays from which `from_arrays` rebuilds the compliance."""
+    """Return named arrays from which `from_arrays` rebuilds the compliance.
+
+    Parameters
+    ----------
+    compliance : FlankCompliance
+        Compliance to store.
+
+    Returns
+    -------
+    dict of arrays
+        Arrays with the (...) shapes of ARRAY_SHAPES.
+    """
     cuts = compliance.refinement
     return {
-        "own_m_per_n": compliance.scale * compliance.own,
-        "others_m_per_n": compliance.scale * compliance.others,
+        "own_m_per_n": compliance.scale * compliance.loaded_tooth,
+        "others_m_per_n": compliance.scale * compliance.neighbour_blocks,
         "shape": np.array(compliance.shape),
         "coarse_shape": np.array(compliance.coarse_shape),
         "refinement": np.array([cuts.profile, cuts.width, cuts.depth, cuts.grading], dtype=float),
@@ -175,7 +265,7 @@ def to_arrays(compliance: FlankCompliance) -> dict[str, AnyArray]:
     }
 
 
-STORED = {
+ARRAY_SHAPES = {
     "own_m_per_n": (None, None),
     "others_m_per_n": (None, None, None),
     "shape": (2,),
@@ -188,12 +278,23 @@ STORED = {
 
 
 def from_arrays(arrays: Arrays) -> FlankCompliance:
-    """Inverse of `to_arrays`."""
+    """Rebuild a compliance from the arrays of `to_arrays`.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as ARRAY_SHAPES.
+
+    Returns
+    -------
+    FlankCompliance
+        Compliance, m/N.
+    """
     profile, width, depth, grading = arrays["refinement"]
     (rows, columns), (coarse_rows, coarse_columns) = arrays["shape"], arrays["coarse_shape"]
     return FlankCompliance(
-        own=arrays["own_m_per_n"],
-        others=arrays["others_m_per_n"],
+        loaded_tooth=arrays["own_m_per_n"],
+        neighbour_blocks=arrays["others_m_per_n"],
         shape=(int(rows), int(columns)),
         coarse_shape=(int(coarse_rows), int(coarse_columns)),
         refinement=Refinement(int(profile), int(width), int(depth), float(grading)),

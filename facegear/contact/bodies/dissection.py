@@ -14,9 +14,9 @@ from facegear.arrays import Array, Integers, Mask
 LEAF = 300
 """Dof to be eliminated at once, below which a part is not cut further."""
 SMALLEST = 0.02
-"""Part of the dof that the smaller half has at least."""
+"""Fraction of the dof that the smaller half has at least."""
 BALANCE = 0.5
-"""Power of that part over which the dof on a plane are weighed."""
+"""Power of that fraction by which the number of dof on a plane is divided."""
 DIRECTIONS = np.array([(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 0, -1)]) / np.sqrt(
     [[1], [1], [1], [2], [2]]
 )
@@ -35,31 +35,44 @@ class Front:
     cells: Integers
 
 
-def dissection(cells: sp.csr_matrix, centres: Array, kept: Integers) -> list[Front]:
-    """Fronts that eliminate all dof but `kept`, each after those it needs; the last one may be empty.
+def dissection(cells: sp.csr_matrix, centres: Array, kept_dof: Integers) -> list[Front]:
+    """Return the fronts that eliminate all dof but the kept ones, each after those it needs.
 
-    Row i of `cells` (m, n) has an entry for each dof of a cell around `centres` (m, 3). Dof that share no
-    cell are not coupled.
+    Dof that share no cell are not coupled. The last front may be empty.
+
+    Parameters
+    ----------
+    cells : (m, n) sparse matrix
+        Entries in row i for each dof of cell i.
+    centres : (m, 3) array
+        Positions of the cells, m.
+    kept_dof : (k,) array of int
+        Numbers of the dof that are not eliminated.
+
+    Returns
+    -------
+    list[Front]
+        Fronts in the order of elimination.
     """
-    alike = _Alike(cells, kept)
-    groups = _Cells(alike, centres)
-    taken = np.zeros(len(alike.size), dtype=bool)
+    dof_groups = _DofGroups(cells, kept_dof)
+    groups = _Cells(dof_groups, centres)
+    is_eliminated = np.zeros(len(dof_groups.size), dtype=bool)
     fronts: list[Front] = []
-    _dissect(groups, np.arange(cells.shape[0]), taken, fronts)
-    return [replace(front, dof=alike.members(front.dof)) for front in fronts]
+    _dissect(groups, np.arange(cells.shape[0]), is_eliminated, fronts)
+    return [replace(front, dof=dof_groups.members(front.dof)) for front in fronts]
 
 
-class _Alike:
-    """Groups of dof that belong to the same cells, as the three of a node do, but for those that are kept.
+class _DofGroups:
+    """Groups of dof that belong to the same cells, as the three of a node do, without the kept dof.
 
-    `cells` (m, g) are the cells by groups, `size` (g,) says how many dof a group has.
+    `cells` (m, g) are the cells by groups, `size` (g,) is the number of dof of each group.
     """
 
-    def __init__(self, cells: sp.csr_matrix, kept: Integers) -> None:
+    def __init__(self, cells: sp.csr_matrix, kept_dof: Integers) -> None:
         names = np.random.default_rng(0).integers(2**62, size=cells.shape[0])
         of_dof = sp.csr_matrix((np.ones(cells.nnz, np.int64), cells.indices, cells.indptr), cells.shape).T
         free = np.ones(cells.shape[1], dtype=bool)
-        free[kept] = False
+        free[kept_dof] = False
         dof = np.flatnonzero(free)
         _, first, group, self.size = np.unique(
             (of_dof @ names)[dof], return_index=True, return_inverse=True, return_counts=True
@@ -69,28 +82,30 @@ class _Alike:
         self.cells = cells[:, dof[first]]
 
     def members(self, groups: Integers) -> Integers:
-        """The dof of some groups, ascending."""
+        """Return the dof of some groups, ascending."""
         return np.sort(self._dof[_runs(self._ends[groups] - self.size[groups], self.size[groups])])
 
 
 class _Cells:
-    """Cells by groups of dof, with room to note where each group first and last occurs."""
+    """Cells by groups of dof, with buffers for the positions where each group first and last occurs."""
 
-    def __init__(self, alike: _Alike, centres: Array) -> None:
+    def __init__(self, dof_groups: _DofGroups, centres: Array) -> None:
         self.along = centres @ DIRECTIONS.T
-        self.size = alike.size
-        self.start, self.indices = alike.cells.indptr[:-1].astype(np.int64), alike.cells.indices
-        self.count = np.diff(alike.cells.indptr)
+        self.size = dof_groups.size
+        self.start, self.indices = dof_groups.cells.indptr[:-1].astype(np.int64), dof_groups.cells.indices
+        self.count = np.diff(dof_groups.cells.indptr)
         self.first, self.last = (np.empty(len(self.size), dtype=np.int64) for _ in range(2))
 
-    def entries(self, members: Integers, taken: Mask) -> tuple[Integers, Integers]:
-        """Groups of all members one after the other but for those taken, and the member of each."""
+    def entries(self, members: Integers, is_eliminated: Mask) -> tuple[Integers, Integers]:
+        """Return the groups of all members in order without those already eliminated, and the
+        member of each.
+        """
         groups = self.indices[_runs(self.start[members], self.count[members])]
-        free = ~taken[groups]
+        free = ~is_eliminated[groups]
         return groups[free], np.repeat(np.arange(len(members)), self.count[members])[free]
 
     def ends(self, groups: Integers, position: Integers) -> tuple[Integers, Integers, Integers]:
-        """The groups, each once, with the smallest and the largest of their ascending positions."""
+        """Return the groups, each once, with the smallest and the largest of their ascending positions."""
         self.first[groups[::-1]] = position[::-1]
         self.last[groups] = position
         once = groups[self.first[groups] == position]
@@ -98,48 +113,53 @@ class _Cells:
 
 
 def _runs(start: Integers, size: Integers) -> Integers:
-    """Numbers from each start on, as many as `size` says, one run after the other."""
+    """Return numbers from each start on, as many as `size` says, one run after the other."""
     ends = np.cumsum(size)
     return np.arange(size.sum()) + np.repeat(start - ends + size, size)
 
 
-def _dissect(cells: _Cells, members: Integers, taken: Mask, fronts: list[Front]) -> int:
+def _dissect(cells: _Cells, members: Integers, is_eliminated: Mask, fronts: list[Front]) -> int:
     """Append the fronts of some cells, and return the number of the last one."""
-    inside = np.unique(cells.entries(members, taken)[0])
+    inside = np.unique(cells.entries(members, is_eliminated)[0])
     large = cells.size[inside].sum() > LEAF and members.size > 1
-    halves = _halves(cells, members, taken) if large else None
+    halves = _halves(cells, members, is_eliminated) if large else None
     if halves is None:
-        taken[inside] = True
+        is_eliminated[inside] = True
         fronts.append(Front(inside, (), members))
         return len(fronts) - 1
-    first, second, shared = halves
-    taken[shared] = True
-    before = tuple(_dissect(cells, half, taken, fronts) for half in (first, second))
-    fronts.append(Front(shared, before, members[:0]))
+    first, second, separator = halves
+    is_eliminated[separator] = True
+    before = tuple(_dissect(cells, half, is_eliminated, fronts) for half in (first, second))
+    fronts.append(Front(separator, before, members[:0]))
     return len(fronts) - 1
 
 
-def _halves(cells: _Cells, members: Integers, taken: Mask) -> tuple[Integers, Integers, Integers] | None:
-    """Two halves and the groups they share, by the plane with fewest dof for how evenly it cuts.
+def _halves(
+    cells: _Cells, members: Integers, is_eliminated: Mask
+) -> tuple[Integers, Integers, Integers] | None:
+    """Return two halves and the groups they share, by the plane with the lowest ratio of shared dof to
+    balance.
 
-    None if all are one.
+    None if no plane separates the cells.
     """
     best: tuple[float, Integers, int] | None = None
     for along in cells.along.T:
         order = members[np.argsort(along[members], kind="stable")]
-        once, low, high = cells.ends(*cells.entries(order, taken))
+        once, low, high = cells.ends(*cells.entries(order, is_eliminated))
         # dof that begin, and that end, with each cell in this order
-        begun, ended = (np.cumsum(np.bincount(end, cells.size[once], len(order)))[:-1] for end in (low, high))
+        dof_begun, dof_ended = (
+            np.cumsum(np.bincount(end, cells.size[once], len(order)))[:-1] for end in (low, high)
+        )
         whole = cells.size[once].sum()
-        smaller = np.minimum(ended, whole - begun) / (ended + whole - begun)
+        smaller = np.minimum(dof_ended, whole - dof_begun) / (dof_ended + whole - dof_begun)
         even = smaller >= SMALLEST
         cost = np.full(len(even), np.inf)
-        cost[even] = (begun - ended)[even] / smaller[even] ** BALANCE
+        cost[even] = (dof_begun - dof_ended)[even] / smaller[even] ** BALANCE
         at = int(np.argmin(cost))
         if np.isfinite(cost[at]) and (best is None or cost[at] < best[0]):
             best = float(cost[at]), order, at + 1
     if best is None:
         return None
     _, order, cut = best
-    once, low, high = cells.ends(*cells.entries(order, taken))
+    once, low, high = cells.ends(*cells.entries(order, is_eliminated))
     return order[:cut], order[cut:], np.sort(once[(low < cut) & (high >= cut)])

@@ -13,9 +13,22 @@ KINDS = {"hex27": (ElementHex2, 5), "hex8": (ElementHex1, 3), "tet4": (ElementTe
 
 
 def mesh_of(mesh: MeshHex2, element: Element) -> Mesh:
-    """The mesh as it is, its hexahedra cut into eight 8-node ones each, or those into six tetrahedra each.
+    """Return the mesh with other elements: hexahedra, eight 8-node ones for each, or six tetrahedra for each
+    of those.
 
     Nodes keep their numbers. Part c of hexahedron e of m is element e + c m.
+
+    Parameters
+    ----------
+    mesh : MeshHex2
+        Mesh of m 27-node hexahedra.
+    element : Element
+        Kind of element.
+
+    Returns
+    -------
+    Mesh
+        Mesh on the same nodes.
     """
     if element == "hex27":
         return mesh
@@ -24,19 +37,31 @@ def mesh_of(mesh: MeshHex2, element: Element) -> Mesh:
 
 
 def _from_the_middle(cubes: MeshHex1) -> MeshHex1:
-    """The eight cubes of each hexahedron mirrored, so that their tetrahedra meet in its middle.
+    """Return the eight cubes of each hexahedron mirrored, so that their tetrahedra meet in its middle.
 
-    scikit-fem's tetrahedra stand around the diagonal from corner 3 to corner 4. If it runs from the middle to
-    a corner of the hexahedron, all its faces are divided alike and neighbours match, however they are turned.
+    scikit-fem's tetrahedra stand around the diagonal from corner 3 to corner 4. If it runs from the middle
+    to a corner of the hexahedron, all its faces are divided in the same way and neighbours match, whatever
+    their orientation.
     """
     bits = ElementHex1.doflocs.astype(np.int64) @ np.array([4, 2, 1])
-    mirrored = np.argsort(bits)[bits[:, None] ^ bits[3] ^ bits]
+    corner_order = np.argsort(bits)[bits[:, None] ^ bits[3] ^ bits]
     corners = cubes.t.reshape(8, 8, -1)
-    turned = np.take_along_axis(corners, mirrored[:, :, None], axis=0)
-    return replace(cubes, t=np.ascontiguousarray(turned.reshape(8, -1)))
+    reordered_corners = np.take_along_axis(corners, corner_order[:, :, None], axis=0)
+    return replace(cubes, t=np.ascontiguousarray(reordered_corners.reshape(8, -1)))
 
 
 def hex_values(local: Array) -> Array:
-    """Values (n, 27) of the triquadratic functions at local positions (n, 3) in the unit cube."""
+    """Evaluate the triquadratic functions of the unit cube.
+
+    Parameters
+    ----------
+    local : (n, 3) array
+        Positions in the unit cube, dimensionless.
+
+    Returns
+    -------
+    (n, 27) array
+        Values, dimensionless.
+    """
     element = ElementHex2()
     return np.stack([element.lbasis(local.T, i)[0] for i in range(len(element.doflocs))], axis=1)

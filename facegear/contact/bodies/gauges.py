@@ -35,19 +35,44 @@ class Gauges:
 
 
 def gauge_coordinates(nodes: int) -> Array:
-    """Lattice coordinates of the gauges along a line of `nodes` nodes, two an element."""
+    """Return the coordinates of the gauges along a line of nodes, two an element.
+
+    Parameters
+    ----------
+    nodes : int
+        Number of nodes.
+
+    Returns
+    -------
+    (gauges,) array
+        Lattice coordinates, dimensionless.
+    """
     middle = np.arange(1.0, nodes, 2.0)
     return np.stack([middle - GAUSS, middle + GAUSS], axis=1).ravel()
 
 
 def gauges_on(points: Array, nodes: Integers, material: Material) -> Gauges:
-    """Gauges on the faces of 27-node hexahedra with the nodes (nu, nv) of a body with `points` (n, 3), m.
+    """Place gauges on the faces of 27-node hexahedra.
 
     The lines that gauges stand across are those of constant first index.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Positions of the body's nodes, m.
+    nodes : (nu, nv) array of int
+        Nodes of the faces.
+    material : Material
+        Of the body.
+
+    Returns
+    -------
+    Gauges
+        Gauges (a, b), in m and Pa/m.
     """
     shape = nodes.shape
-    places = np.meshgrid(*map(gauge_coordinates, shape), indexing="ij")
-    at = np.stack(places, axis=-1).reshape(-1, 2)
+    coordinates = np.meshgrid(*map(gauge_coordinates, shape), indexing="ij")
+    at = np.stack(coordinates, axis=-1).reshape(-1, 2)
     local, values, gradients = face_functions(at, shape)
     corner = points[nodes.ravel()[local]]
     base = np.einsum("qad,qai->qdi", gradients, corner)
@@ -68,7 +93,7 @@ def gauges_on(points: Array, nodes: Integers, material: Material) -> Gauges:
         young / (2.0 * (1.0 + ratio)) * shear,
     )
     normal, axial, shear = (_rows(nodes.ravel()[local], part, len(points)) for part in parts)
-    grid = places[0].shape
+    grid = coordinates[0].shape
     return Gauges(
         position=np.einsum("qa,qai->qi", values, corner).reshape(*grid, 3),
         across=across.reshape(*grid, 3),
@@ -80,7 +105,7 @@ def gauges_on(points: Array, nodes: Integers, material: Material) -> Gauges:
 
 
 def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
-    """Matrix (q, 3 count) with values (q, a, 3) at the dof of nodes (q, a)."""
+    """Return a matrix (q, 3 count) with values (q, a, 3) at the dof of nodes (q, a)."""
     dof = 3 * nodes[:, :, None] + np.arange(3)
     pointer = np.arange(0, values.size + 1, values[0].size)
     return sp.csr_matrix((values.ravel(), dof.ravel(), pointer), shape=(len(nodes), 3 * count))

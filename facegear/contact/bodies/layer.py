@@ -26,22 +26,23 @@ ROUNDING = 1e-12
 class TiedSystem:
     """Stiffness of a body with refined flank layer, on its free (master) nodes.
 
-    The stiffness (3n, 3n) in N/m on the masters at `points` (n, 3), of which `held` (n, 3) stay at zero, is
-    the sum of `parts`, whose cells are the elements of the body around `centres` (m, 3), whole or cut.
-    `coarse` maps a node of the body to its master, -1 if it was refined away. The refined surface has nodes
-    `surface` (nu, nv, 3) with normals `normals` of that shape; its normal displacement is `spread` (nu nv, k)
-    times that of the master nodes `loaded` (k,), whose normals are `loaded_normals` (k, 3). `left` and
-    `right` (s,) are the masters of the cut faces and `turn` takes the first to the others, `mirror` (n,) is
-    the master behind the middle plane of each: as in `ElasticBody`.
+    The stiffness (3n, 3n) in N/m on the masters at `points` (n, 3), of which `is_held` (n, 3) marks dof
+    kept at zero, is the sum of `parts`, whose cells are the elements of the body around `centres` (m, 3),
+    whole or cut. `coarse` maps a node of the body to its master, -1 if it was refined away. The refined
+    surface has nodes `surface` (nu, nv, 3) with normals `normals` of that shape; its normal displacement
+    is `spread` (nu nv, k) times that of the master nodes `loaded_nodes` (k,), whose normals are
+    `loaded_normals` (k, 3). `left` and `right` (s,) are the masters of the cut faces, and `turn` rotates
+    the left ones to the right ones. `mirror` (n,) is the master behind the middle plane of each master.
+    All three are defined as in `ElasticBody`.
     """
 
     parts: tuple[Part, ...]
     points: Array
-    held: Mask
+    is_held: Mask
     coarse: Integers
     surface: Array
     normals: Array
-    loaded: Integers
+    loaded_nodes: Integers
     loaded_normals: Array
     spread: sp.csr_matrix
     centres: Array
@@ -50,19 +51,31 @@ class TiedSystem:
     turn: Array
     mirror: Integers
 
-    def followed(self, body: ElasticBody, refinement: Refinement) -> sp.csr_matrix:
-        """Displacements (m, n) of the body's m nodes by those of the n masters, for nodes on its surfaces.
+    def node_displacements(self, body: ElasticBody, refinement: Refinement) -> sp.csr_matrix:
+        """Return the displacements of the body's nodes by those of the masters, for nodes on its surfaces.
 
         Nodes of the flank that were refined away follow the refined surface; those inside get no row.
+
+        Parameters
+        ----------
+        body : ElasticBody
+            Body of the system, with m nodes.
+        refinement : Refinement
+            Refinement of its flank layer.
+
+        Returns
+        -------
+        (m, n) sparse matrix
+            Dimensionless weights of the n masters.
         """
-        kept = np.flatnonzero(self.coarse >= 0)
+        coarse_nodes = np.flatnonzero(self.coarse >= 0)
         lattice = np.arange(self.spread.shape[0]).reshape(self.surface.shape[:2])
         surface = self.spread[lattice[:: refinement.profile, :: refinement.width].ravel()].tocoo()
-        nodes, gone = body.flank.ravel(), self.coarse[body.flank.ravel()] < 0
-        on = gone[surface.row]
-        rows = np.concatenate([kept, nodes[surface.row[on]]])
-        columns = np.concatenate([self.coarse[kept], self.loaded[surface.col[on]]])
-        values = np.concatenate([np.ones(kept.size), surface.data[on]])
+        nodes, is_refined_away = body.flank.ravel(), self.coarse[body.flank.ravel()] < 0
+        on = is_refined_away[surface.row]
+        rows = np.concatenate([coarse_nodes, nodes[surface.row[on]]])
+        columns = np.concatenate([self.coarse[coarse_nodes], self.loaded_nodes[surface.col[on]]])
+        values = np.concatenate([np.ones(coarse_nodes.size), surface.data[on]])
         return sp.csr_matrix((values, (rows, columns)), shape=(len(body.points), len(self.points)))
 
 
@@ -106,9 +119,22 @@ class Layer:
 
 
 def flank_elements(body: ElasticBody) -> FlankElements:
-    """Elements under the flank.
+    """Find the elements under the flank.
 
-    Raises ValueError where a facet of the flank is not the face of one element.
+    Parameters
+    ----------
+    body : ElasticBody
+        Body with its flank.
+
+    Returns
+    -------
+    FlankElements
+        Elements and the flank's directions in them.
+
+    Raises
+    ------
+    ValueError
+        Where a facet of the flank is not the face of one element.
     """
     dofs, flank = body.mesh.dofs, body.flank
     facets = flank[1::2, 1::2] - dofs.facet_dofs[0, 0]
@@ -117,10 +143,10 @@ def flank_elements(body: ElasticBody) -> FlankElements:
     elements = body.mesh.f2t[0, facets].astype(np.int64)
 
     def local(nodes: Integers) -> Array:
-        same = dofs.element_dofs[:, elements] == nodes
-        if not same.any(axis=0).all():
+        is_same_node = dofs.element_dofs[:, elements] == nodes
+        if not is_same_node.any(axis=0).all():
             raise ValueError("a flank facet is not the face of one element")
-        return ElementHex2.doflocs[same.argmax(axis=0)]
+        return ElementHex2.doflocs[is_same_node.argmax(axis=0)]
 
     corner = local(flank[:-1:2, :-1:2])
     profile, width = local(flank[2::2, :-1:2]) - corner, local(flank[:-1:2, 2::2]) - corner
@@ -129,7 +155,18 @@ def flank_elements(body: ElasticBody) -> FlankElements:
 
 
 def depth_stations(refinement: Refinement) -> Array:
-    """Positions 0..1 of the 2 depth + 1 node planes, elements growing by `grading` away from the surface."""
+    """Return the positions of the 2 depth + 1 node planes; elements grow by `grading` away from the surface.
+
+    Parameters
+    ----------
+    refinement : Refinement
+        Cuts in depth and their grading.
+
+    Returns
+    -------
+    (2 depth + 1,) array
+        Depth as a fraction of the layer, 0 at the surface.
+    """
     sizes = refinement.grading ** np.arange(refinement.depth)
     ends = np.concatenate([[0.0], np.cumsum(sizes) / sizes.sum()])
     stations = np.empty(2 * refinement.depth + 1)
@@ -139,7 +176,22 @@ def depth_stations(refinement: Refinement) -> Array:
 
 
 def refined_layer(body: ElasticBody, under: FlankElements, refinement: Refinement) -> Layer:
-    """Cut the elements under the flank."""
+    """Cut the elements under the flank.
+
+    Parameters
+    ----------
+    body : ElasticBody
+        Body with its flank.
+    under : FlankElements
+        Elements under the flank.
+    refinement : Refinement
+        Number of cuts in each direction.
+
+    Returns
+    -------
+    Layer
+        Mesh of the layer.
+    """
     cuts = np.array([refinement.profile, refinement.width, refinement.depth])
     shape = 2 * cuts * np.array([*under.elements.shape, 1]) + 1
     mesh = MeshHex2.from_mesh(MeshHex1.init_tensor(*(np.arange(0.0, count, 2.0) for count in shape)))
@@ -164,9 +216,21 @@ def refined_layer(body: ElasticBody, under: FlankElements, refinement: Refinemen
 
 
 def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "hex27") -> TiedSystem:
-    """Assemble a body whose flank layer is cut by `refinement`.
+    """Assemble a body whose flank layer is cut.
 
-    `element` other than hex27 puts linear elements on the same nodes, for comparison.
+    Parameters
+    ----------
+    body : ElasticBody
+        Body with its flank.
+    refinement : Refinement
+        Number of cuts in each direction.
+    element : Element
+        Other elements than hex27 are linear elements on the same nodes, for comparison.
+
+    Returns
+    -------
+    TiedSystem
+        Stiffness on the master nodes.
     """
     under = flank_elements(body)
     layer = refined_layer(body, under, refinement)
@@ -174,17 +238,17 @@ def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "h
 
     stays = np.ones(body.mesh.nelements, dtype=bool)
     stays[under.elements] = False
-    used = np.zeros(len(body.points), dtype=bool)
-    used[body.mesh.dofs.element_dofs[:, stays]] = True
-    coarse = np.where(used, np.cumsum(used) - 1, -1)
-    tied = _tied_nodes(layer, used)
-    fine = np.where(tied, -1, used.sum() + np.cumsum(~tied) - 1)
+    is_used = np.zeros(len(body.points), dtype=bool)
+    is_used[body.mesh.dofs.element_dofs[:, stays]] = True
+    coarse = np.where(is_used, np.cumsum(is_used) - 1, -1)
+    is_tied = _tied_nodes(layer, is_used)
+    fine = np.where(is_tied, -1, is_used.sum() + np.cumsum(~is_tied) - 1)
 
     free = sp.csr_matrix(
-        (np.ones((~tied).sum()), (np.flatnonzero(~tied), fine[~tied])),
-        shape=(tied.size, used.sum() + (~tied).sum()),
+        (np.ones((~is_tied).sum()), (np.flatnonzero(~is_tied), fine[~is_tied])),
+        shape=(is_tied.size, is_used.sum() + (~is_tied).sum()),
     )
-    rows, slots = np.nonzero(np.where(tied[:, None], weights, 0.0))
+    rows, slots = np.nonzero(np.where(is_tied[:, None], weights, 0.0))
     tie = sp.csr_matrix((weights[rows, slots], (rows, coarse[parents[rows, slots]])), shape=free.shape)
     follow = (free + tie).tocsr()
     top, shape = layer.surface, layer.number.shape[:2]
@@ -192,29 +256,29 @@ def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "h
     all_normals[body.flank] = body.normals
     normals = np.einsum("na,nai->ni", weights[top], all_normals[parents[top]])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    loaded = np.unique(follow[top].indices)
+    loaded_nodes = np.unique(follow[top].indices)
     loaded_normals = np.zeros((follow.shape[1], 3))
     loaded_normals[coarse[body.flank]] = body.normals
-    own = ~tied[top]
-    loaded_normals[fine[top[own]]] = normals[own]
-    held = np.concatenate(
-        [body.held[used], (body.held[parents] | (weights == 0.0)[..., None]).all(axis=1)[~tied]]
+    is_free_surface = ~is_tied[top]
+    loaded_normals[fine[top[is_free_surface]]] = normals[is_free_surface]
+    is_held = np.concatenate(
+        [body.is_held[is_used], (body.is_held[parents] | (weights == 0.0)[..., None]).all(axis=1)[~is_tied]]
     )
     return TiedSystem(
         parts=_parts(body, under, np.flatnonzero(stays), coarse, layer, follow, refinement, element),
-        points=np.concatenate([body.points[used], layer.points[~tied]]),
-        held=held,
+        points=np.concatenate([body.points[is_used], layer.points[~is_tied]]),
+        is_held=is_held,
         coarse=coarse,
         surface=layer.points[top].reshape(*shape, 3),
         normals=normals.reshape(*shape, 3),
-        loaded=loaded,
-        loaded_normals=loaded_normals[loaded],
-        spread=follow[top][:, loaded].tocsr(),
+        loaded_nodes=loaded_nodes,
+        loaded_normals=loaded_normals[loaded_nodes],
+        spread=follow[top][:, loaded_nodes].tocsr(),
         centres=_centres(body)[np.concatenate([np.flatnonzero(stays), under.elements.ravel()])],
         left=coarse[body.left],
         right=coarse[body.right],
         turn=body.turn,
-        mirror=_mirrored(body, layer, coarse, fine),
+        mirror=_mirror_masters(body, layer, coarse, fine),
     )
 
 
@@ -228,39 +292,48 @@ def _parts(
     refinement: Refinement,
     element: Element,
 ) -> tuple[Part, Part]:
-    """Elements that stay, each a cell; and those of the layer, in the cells of which they were cut."""
+    """Return the elements that stay, each a cell, and the elements of the layer, in the cells from which they
+    were cut.
+    """
     members = layer.mesh.dofs.element_dofs.T
     cuts = 2 * np.array([refinement.profile, refinement.width])
     row, column = (layer.lattice[members, :2].min(axis=1) // cuts).T
     cell = len(stays) + row * under.elements.shape[1] + column
-    used = np.flatnonzero(coarse >= 0)
-    own = sp.csr_matrix((np.ones(used.size), (used, coarse[used])), shape=(len(body.points), follow.shape[1]))
-    whole, cut = (sp.kron(nodes, sp.eye(3), format="csr") for nodes in (own, follow))
+    coarse_nodes = np.flatnonzero(coarse >= 0)
+    coarse_map = sp.csr_matrix(
+        (np.ones(coarse_nodes.size), (coarse_nodes, coarse[coarse_nodes])),
+        shape=(len(body.points), follow.shape[1]),
+    )
+    whole, cut = (sp.kron(nodes, sp.eye(3), format="csr") for nodes in (coarse_map, follow))
     return (
         elements_of(body.mesh, stays, np.arange(len(stays)), whole, body.material, element),
         elements_of(layer.mesh, np.arange(len(members)), cell, cut, body.material, element),
     )
 
 
-def _mirrored(body: ElasticBody, layer: Layer, coarse: Integers, fine: Integers) -> Integers:
-    """Master (n,) behind the middle plane of each master; empty for a body without one."""
+def _mirror_masters(body: ElasticBody, layer: Layer, coarse: Integers, fine: Integers) -> Integers:
+    """Return the master (n,) behind the middle plane of each master; empty for a body without such
+    a plane.
+    """
     if not body.mirror.size:
         return body.mirror
     mirror = np.full(max(coarse.max(), fine.max()) + 1, -1)
-    used, behind = np.flatnonzero(coarse >= 0), np.flatnonzero(fine >= 0)
-    mirror[coarse[used]] = coarse[body.mirror[used]]
+    coarse_nodes, behind = np.flatnonzero(coarse >= 0), np.flatnonzero(fine >= 0)
+    mirror[coarse[coarse_nodes]] = coarse[body.mirror[coarse_nodes]]
     across, along, deep = layer.lattice[behind].T
     mirror[fine[behind]] = fine[layer.number[across, layer.number.shape[1] - 1 - along, deep]]
     return mirror
 
 
 def _centres(body: ElasticBody) -> Array:
-    """Of the body's elements (m, 3)."""
+    """Return the centres (m, 3) of the body's elements."""
     return body.points[body.mesh.dofs.element_dofs].mean(axis=0)
 
 
-def _tied_nodes(layer: Layer, used: Mask) -> Mask:
-    """Fine nodes on the boundary of the layer whose coarse parents all belong to elements that stay."""
+def _tied_nodes(layer: Layer, is_used: Mask) -> Mask:
+    """Mark the fine nodes on the boundary of the layer whose coarse parents all belong to elements
+    that stay.
+    """
     at, ends = layer.lattice, np.array(layer.number.shape) - 1
     edge = (at[:, :2] == 0).any(axis=1) | (at == ends).any(axis=1)
-    return edge & (used[layer.parents] | (layer.weights == 0.0)).all(axis=1)
+    return edge & (is_used[layer.parents] | (layer.weights == 0.0)).all(axis=1)

@@ -8,7 +8,7 @@ of teeth. Matrices (2s, 2s) hold the left face first, then the right one.
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.contact.bodies.dense import cholesky, forward, inverse, plus_square, solved
+from facegear.contact.bodies.dense import cholesky, forward, inverse, plus_square, solve_factored
 from facegear.contact.options import Ends
 
 APART = 3e-9
@@ -16,8 +16,21 @@ APART = 3e-9
 LEFT, RIGHT = 0, 1
 
 
-def joined(first: Array, second: Array) -> Array:
-    """Stiffness (2s, 2s) of two chains in series, right face of the first on the left face of the second."""
+def join_chains(first: Array, second: Array) -> Array:
+    """Join two chains in series, right face of the first on the left face of the second.
+
+    Parameters
+    ----------
+    first : (2s, 2s) array
+        Stiffness of the first chain, N/m.
+    second : (2s, 2s) array
+        Stiffness of the second chain, N/m.
+
+    Returns
+    -------
+    (2s, 2s) array
+        Stiffness of the joined chain, N/m.
+    """
     s = len(first) // 2
     coupling, ends = np.empty((s, 2 * s), order="F"), np.zeros((2 * s, 2 * s), order="F")
     coupling[:, :s], coupling[:, s:] = first[:s, s:].T, second[:s, s:]
@@ -27,25 +40,48 @@ def joined(first: Array, second: Array) -> Array:
 
 
 def chain(faces: Array, teeth: int) -> Array:
-    """Stiffness (2s, 2s) of `teeth` >= 1 equal teeth in series, by binary powers.
+    """Compute the stiffness of equal teeth in series, by binary powers.
 
-    What the ends of a chain twice as long feel of each other, and what they feel of its length, is of the
-    second order in what those of a power do: once that is rounding, all longer chains have the power's ends.
+    The coupling between the ends of a chain twice as long, and its influence on either end, is of the
+    second order in that of a power. Once that is rounding, all longer chains have the power's ends.
+
+    Parameters
+    ----------
+    faces : (2s, 2s) array
+        Stiffness of one tooth, N/m.
+    teeth : int
+        Number of teeth, at least 1.
+
+    Returns
+    -------
+    (2s, 2s) array
+        Stiffness of the chain, N/m.
     """
     powers = [faces]
     while 2 ** len(powers) <= teeth:
         if _almost_apart(powers[-1]):
             return _ends(powers[-1])
-        powers.append(joined(powers[-1], powers[-1]))
+        powers.append(join_chains(powers[-1], powers[-1]))
     result = powers[-1]
     for doublings in range(len(powers) - 1):
         if teeth >> doublings & 1:
-            result = joined(result, powers[doublings])
+            result = join_chains(result, powers[doublings])
     return result
 
 
 def apart(stiffness: Array) -> bool:
-    """Whether the two ends of a chain do not feel each other, as those of a long one."""
+    """Whether the two ends of a chain are not coupled, as those of a long one.
+
+    Parameters
+    ----------
+    stiffness : (2s, 2s) array
+        Stiffness of the chain, N/m.
+
+    Returns
+    -------
+    bool
+        True without coupling.
+    """
     s = len(stiffness) // 2
     return not stiffness[:s, s:].any()
 
@@ -56,7 +92,7 @@ def _almost_apart(stiffness: Array) -> bool:
 
 
 def _ends(stiffness: Array) -> Array:
-    """The stiffness without what its ends feel of each other."""
+    """Return the stiffness without the coupling between its ends."""
     s = len(stiffness) // 2
     alone = np.zeros_like(stiffness)
     alone[:s, :s], alone[s:, s:] = stiffness[:s, :s], stiffness[s:, s:]
@@ -64,10 +100,31 @@ def _ends(stiffness: Array) -> Array:
 
 
 def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> list[tuple[Array, Array]]:
-    """What the faces of 1 + k adjoining teeth feel from the others, k = 0..neighbours.
+    """Compute the stiffness that the other teeth give to the faces of 1 + k adjoining teeth, k =
+    0..neighbours.
 
-    For k further teeth to the left, and for k to the right, the stiffness (2s, 2s) that joins the row's left
-    and right face from outside. Raises ValueError if no tooth would be left outside.
+    It joins the row's left and right face from outside.
+
+    Parameters
+    ----------
+    faces : (2s, 2s) array
+        Stiffness of one tooth, N/m.
+    neighbours : int
+        Largest number k of neighbours.
+    teeth : int
+        Number of teeth of the ring or sector.
+    ends : Ends
+        Kind of ends.
+
+    Returns
+    -------
+    list of tuples of (2s, 2s) arrays
+        For k further teeth to the left, and for k to the right, N/m.
+
+    Raises
+    ------
+    ValueError
+        If no tooth would be left outside.
     """
     s = len(faces) // 2
     if teeth < 2 * neighbours + 3:
@@ -79,7 +136,7 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
         rests.append((around, around))
         for _ in range(neighbours):
             if not apart(outside):
-                outside = joined(faces, outside)
+                outside = join_chains(faces, outside)
                 around = _from_outside(outside)
             rests.append((around, around))
         return rests[::-1]
@@ -97,41 +154,66 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
 
 
 def _from_outside(chain: Array) -> Array:
-    """The stiffness of a chain whose right face is another row's left one, and the other way round."""
+    """Return the stiffness of a chain whose right face is another row's left one, and the other way round."""
     s = len(chain) // 2
     return np.roll(chain, (s, s), axis=(0, 1))
 
 
-def moved_faces(faces: Array, rests: list[tuple[Array, Array]], held: Array, side: int) -> list[Array]:
-    """Displacements (2s, m) of the cut faces of each of n teeth on one side of a tooth, from it outwards.
+def moved_faces(faces: Array, rests: list[tuple[Array, Array]], tooth_faces: Array, side: int) -> list[Array]:
+    """Compute the displacements of the cut faces of the teeth on one side of a tooth, from it outwards.
 
-    `faces` (2s, 2s) is one tooth's stiffness, `rests` from `rest_stiffness` for n neighbours on each side,
-    `held` (2s, m) the displacements of the tooth's own faces. Nothing else is loaded.
+    Only the displacements of the tooth's own faces are prescribed. Nothing else is loaded.
+
+    Parameters
+    ----------
+    faces : (2s, 2s) array
+        Stiffness of one tooth, N/m.
+    rests : list of tuples of (2s, 2s) arrays
+        Result of `rest_stiffness` for n neighbours on each side, N/m.
+    tooth_faces : (2s, m) array
+        Displacements of the tooth's own faces, m.
+    side : int
+        LEFT or RIGHT.
+
+    Returns
+    -------
+    list of (2s, m) arrays
+        Displacements for each of the n teeth, m.
     """
     s = len(faces) // 2
     halves = slice(0, s), slice(s, None)
     near, far = halves[1 - side], halves[side]
-    planes = [held[far]]
+    planes = [tooth_faces[far]]
     for rest in (sides[side] for sides in rests[1:]):
         push = -faces[far, near] @ planes[-1]
         if not apart(rest):
-            push -= rest[far, near] @ held[near]
+            push -= rest[far, near] @ tooth_faces[near]
         middle = cholesky(faces[far, far] + rest[far, far], overwrite=True)
-        planes.append(solved(middle, np.asfortranarray(push), overwrite=True))
+        planes.append(solve_factored(middle, np.asfortranarray(push), overwrite=True))
     order = slice(None) if side == RIGHT else slice(None, None, -1)
     return [np.concatenate(planes[tooth : tooth + 2][order]) for tooth in range(len(planes) - 1)]
 
 
 def plane_compliance(faces: Array, teeth: int) -> Array:
-    """Displacements of all cut planes of `teeth` teeth in a row, ends free, by forces on them.
+    """Compute the displacements of all cut planes of teeth in a row, ends free, by forces on them.
 
-    Shape ((teeth + 1) s, (teeth + 1) s), m/N, planes from the left end to the right.
+    Parameters
+    ----------
+    faces : (2s, 2s) array
+        Stiffness of one tooth, N/m.
+    teeth : int
+        Number of teeth.
+
+    Returns
+    -------
+    ((teeth + 1) s, (teeth + 1) s) array
+        m/N, planes from the left end to the right.
     """
     s = len(faces) // 2
     stiffness = np.zeros(((teeth + 1) * s, (teeth + 1) * s))
     for tooth in range(teeth):
-        own = slice(tooth * s, (tooth + 2) * s)
-        stiffness[own, own] += faces
+        face_dof = slice(tooth * s, (tooth + 2) * s)
+        stiffness[face_dof, face_dof] += faces
     return inverse(cholesky(stiffness))
 
 
@@ -139,5 +221,5 @@ def _seen_from_end(stiffness: Array, near: slice, far: slice, ends: Ends) -> Arr
     """Stiffness (s, s) of a chain at its near end, the far one free or clamped."""
     if ends == "clamped":
         return stiffness[near, near]
-    follow = solved(cholesky(stiffness[far, far]), stiffness[far, near])
+    follow = solve_factored(cholesky(stiffness[far, far]), stiffness[far, near])
     return stiffness[near, near] - stiffness[near, far] @ follow

@@ -1,4 +1,6 @@
-"""One tooth of a gear condensed onto what is loaded and what is shared with its neighbours (Guyan 1965)."""
+"""Static condensation (Guyan 1965) of one tooth onto its loaded nodes and the faces shared with its
+neighbours.
+"""
 
 from dataclasses import dataclass, field
 
@@ -6,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.bodies.dense import mirrored
+from facegear.contact.bodies.dense import fill_upper_triangle
 from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.layer import TiedSystem
 
@@ -30,13 +32,28 @@ class Superelement:
 
 
 def condense(system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superelement:
-    """Eliminate everything but the cut faces, and read the normal displacements of the flank.
+    """Eliminate everything but the cut faces, and compute the normal displacements of the flank.
 
-    `gauges` (g, 3 n): readings by the displacements of the system's masters; they cost as much as so many
-    more flank nodes.
-    Raises FacegearError if the body is not held, ValueError if the flank touches a held or a cut face.
+    Parameters
+    ----------
+    system : TiedSystem
+        System of the tooth, with n masters.
+    gauges : (g, 3 n) sparse matrix, optional
+        Readings by the displacements of the masters; they cost as much as so many more flank nodes.
+
+    Returns
+    -------
+    Superelement
+        Condensed tooth, in SI units.
+
+    Raises
+    ------
+    FacegearError
+        If the body is not held.
+    ValueError
+        If the flank touches a held or a cut face.
     """
-    turn, flank, faces = _turned(system)
+    turn, flank, faces = _rotate_dof(system)
     parts = [part.seen_by(turn.T) for part in system.parts]
     normal = (np.ones(flank.size), (np.arange(flank.size), flank))
     read = (system.spread @ sp.csr_matrix(normal, (flank.size, turn.shape[0]))).tocsr()
@@ -46,21 +63,37 @@ def condense(system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superel
     schur = schur_complement(parts, faces, system.centres, read)
     loads, beyond = slice(faces.size, last), slice(last, None)
     return Superelement(
-        flank=mirrored(np.negative(schur[loads, loads])),
+        flank=fill_upper_triangle(np.negative(schur[loads, loads])),
         influence=np.negative(schur[loads, : faces.size]),
-        faces=mirrored(schur[: faces.size, : faces.size].copy(order="F")),
+        faces=fill_upper_triangle(schur[: faces.size, : faces.size].copy(order="F")),
         gauge_flank=np.negative(schur[beyond, loads]),
         gauge_faces=schur[beyond, : faces.size].copy(),
     )
 
 
-def frames_of(normals: Array, held: Mask) -> Array:
-    """Orthonormal rows (n, 3, 3): the unit normal (n, 3), then the held axes (n, 3) of a node that has any.
+def frames_of(normals: Array, is_held: Mask) -> Array:
+    """Return orthonormal frames of flank nodes: the unit normal first, then the held axes of a node that has
+    any.
 
-    Raises ValueError if a held axis is not tangential.
+    Parameters
+    ----------
+    normals : (n, 3) array
+        Unit normals, dimensionless.
+    is_held : (n, 3) array of bool
+        Whether each displacement is kept at zero.
+
+    Returns
+    -------
+    (n, 3, 3) array
+        Rows of each frame, dimensionless.
+
+    Raises
+    ------
+    ValueError
+        If a held axis is not tangential.
     """
-    axis = np.where(held.any(axis=1), np.argmax(held, axis=1), np.argmin(np.abs(normals), axis=1))
-    if np.abs(normals[held]).max(initial=0.0) > 1e-12:
+    axis = np.where(is_held.any(axis=1), np.argmax(is_held, axis=1), np.argmin(np.abs(normals), axis=1))
+    if np.abs(normals[is_held]).max(initial=0.0) > 1e-12:
         raise ValueError("a flank node is held along its normal: it cannot follow a load")
     along = np.eye(3)[axis]
     first = along - normals * np.sum(along * normals, axis=1)[:, None]
@@ -68,29 +101,31 @@ def frames_of(normals: Array, held: Mask) -> Array:
     return np.stack([normals, first, np.cross(normals, first)], axis=1)
 
 
-def _turned(system: TiedSystem) -> tuple[sp.csr_matrix, Integers, Integers]:
-    """Turn of the displacements to the free dof (f, 3 n): those of flank nodes along their normals and axes
-    across, those of right faces in the left's frame.
+def _rotate_dof(system: TiedSystem) -> tuple[sp.csr_matrix, Integers, Integers]:
+    """Return the rotation of the displacements to the free dof (f, 3 n), and the positions of flank and face
+    dof in it.
 
-    Also the positions of the flank's normal dof and of the faces' dof (left, then right) in it.
+    Displacements of flank nodes are along their normals and axes across, those of right faces in the
+    left's frame. The positions are those of the flank's normal dof, and of the faces' dof (left, then
+    right).
     """
     count = len(system.points)
     frames = np.tile(np.eye(3), (count, 1, 1))
-    held = system.held.copy()
-    frames[system.loaded] = frames_of(system.loaded_normals, held[system.loaded])
-    held[system.loaded] = held[system.loaded].sum(axis=1)[:, None] > np.array([3, 0, 1])
+    is_held = system.is_held.copy()
+    frames[system.loaded_nodes] = frames_of(system.loaded_normals, is_held[system.loaded_nodes])
+    is_held[system.loaded_nodes] = is_held[system.loaded_nodes].sum(axis=1)[:, None] > np.array([3, 0, 1])
     frames[system.right] = system.turn.T
     turn = sp.bsr_matrix((frames, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count))
-    free = ~held.ravel()
+    free = ~is_held.ravel()
     turn = turn.tocsr()[free]
     turn.eliminate_zeros()
     position = np.cumsum(free) - 1
     faces = np.concatenate(
         [(3 * face[:, None] + np.arange(3)).ravel() for face in (system.left, system.right)]
     )
-    if np.intersect1d(3 * system.loaded, faces).size:
+    if np.intersect1d(3 * system.loaded_nodes, faces).size:
         raise ValueError("a flank node lies on a cut face")
     left_free, right_free = np.split(free[faces], 2)
     if not np.array_equal(left_free, right_free):
         raise ValueError("the two cut faces are not held alike")
-    return turn, position[3 * system.loaded], position[faces[free[faces]]]
+    return turn, position[3 * system.loaded_nodes], position[faces[free[faces]]]

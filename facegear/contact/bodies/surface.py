@@ -2,10 +2,10 @@
 both.
 
 The displacement lives on a lattice of nodes (nu, nv), two nodes an element both ways: the faces of 27-node
-hexahedra (`ElementQuad2`). The pressure is a sum of bilinear hats, one a node (`ElementQuad1` between nodes),
-so that a hat's nodal loads, its mean gap and its mean displacement follow from one matrix. Lattice
-coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along the width; node (i, j) has the number
-i nv + j.
+hexahedra (`ElementQuad2`). The pressure is a sum of bilinear basis functions (hats), one a node
+(`ElementQuad1` between nodes), so that the nodal loads, the mean gap and the mean displacement of a basis
+function follow from one matrix. Lattice coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along
+the width; node (i, j) has the number i nv + j.
 """
 
 from functools import lru_cache
@@ -17,7 +17,7 @@ from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, Me
 from facegear.arrays import Array, Integers
 
 TWO_POINTS = 3
-"""Degree that two Gauss points integrate exactly."""
+"""Polynomial degree that two Gauss points integrate exactly."""
 
 LINEAR_STEPS, QUADRATIC_STEPS = (
     np.rint(size * kind.doflocs).astype(np.int64) for size, kind in ((1, ElementQuad1()), (2, ElementQuad2()))
@@ -28,10 +28,25 @@ LINEAR_STEPS, QUADRATIC_STEPS = (
 def face_functions(
     coordinates: Array, shape: tuple[int, int], linear: bool = False
 ) -> tuple[Integers, Array, Array]:
-    """Nodes (n, a) of the faces at lattice coordinates (n, 2), values (n, a) and gradients (n, a, 2) there.
+    """Evaluate the functions of element faces at lattice coordinates.
 
-    Biquadratic over faces of hexahedra; with `linear` bilinear between neighbouring nodes, as 8-node
-    hexahedra on the same nodes are. Gradients are by lattice coordinate.
+    They are biquadratic over faces of hexahedra; with `linear` bilinear between neighbouring nodes, as
+    those of 8-node hexahedra on the same nodes.
+
+    Parameters
+    ----------
+    coordinates : (n, 2) array
+        Lattice coordinates, dimensionless.
+    shape : tuple[int, int]
+        Of the lattice.
+    linear : bool
+        Whether the functions are bilinear.
+
+    Returns
+    -------
+    tuple of arrays
+        Nodes (n, a) of the faces, values (n, a), and gradients (n, a, 2) by lattice coordinate;
+        dimensionless.
     """
     size, steps = (1, LINEAR_STEPS) if linear else (2, QUADRATIC_STEPS)
     last = (np.array(shape) - 1 - size) // size
@@ -57,40 +72,110 @@ def _interval_functions(x: Array, linear: bool) -> tuple[Array, Array]:
 
 
 def interpolation(coordinates: Array, shape: tuple[int, int], linear: bool = False) -> sp.csr_matrix:
-    """Interpolation (n, nu nv) from lattice nodes to lattice coordinates (n, 2), see `face_functions`."""
+    """Return the interpolation from lattice nodes to lattice coordinates, see `face_functions`.
+
+    Parameters
+    ----------
+    coordinates : (n, 2) array
+        Lattice coordinates, dimensionless.
+    shape : tuple[int, int]
+        Of the lattice.
+    linear : bool
+        Whether the functions are bilinear.
+
+    Returns
+    -------
+    (n, nu nv) sparse matrix
+        Dimensionless weights.
+    """
     nodes, values, _ = face_functions(coordinates, shape, linear)
     return _rows(nodes, values, shape[0] * shape[1])
 
 
 @lru_cache(maxsize=8)
 def pressure_basis(shape: tuple[int, int]) -> Basis:
-    """Bilinear hats in lattice coordinates with 2 x 2 Gauss points in each cell between nodes: shared."""
+    """Return bilinear functions in lattice coordinates with 2 x 2 Gauss points in each cell between nodes.
+
+    The object is shared by all callers.
+
+    Parameters
+    ----------
+    shape : tuple[int, int]
+        Of the lattice.
+
+    Returns
+    -------
+    Basis
+        Basis of scikit-fem.
+    """
     mesh = MeshQuad.init_tensor(*(np.arange(float(count)) for count in shape))
     return Basis(mesh, ElementQuad1(), intorder=TWO_POINTS)
 
 
 def cell_points(basis: Basis) -> Array:
-    """Lattice coordinates (q, 2) of a pressure basis' Gauss points, cell by cell."""
+    """Return the Gauss points of a pressure basis, cell by cell.
+
+    Parameters
+    ----------
+    basis : Basis
+        Result of `pressure_basis`.
+
+    Returns
+    -------
+    (q, 2) array
+        Lattice coordinates, dimensionless.
+    """
     return np.asarray(basis.global_coordinates()).reshape(2, -1).T.copy()
 
 
 def hat_values(basis: Basis) -> sp.csr_matrix:
-    """Bilinear hats (q, nu nv) of a pressure basis at its Gauss points, four a point."""
+    """Return the values of a pressure basis' functions at its Gauss points, four a point.
+
+    Parameters
+    ----------
+    basis : Basis
+        Result of `pressure_basis`.
+
+    Returns
+    -------
+    (q, nu nv) sparse matrix
+        Dimensionless values.
+    """
     return _rows(*_by_point(basis), basis.N)
 
 
 @lru_cache(maxsize=16)
 def edge_hats(nodes: int) -> tuple[Array, Integers, Array]:
-    """Two Gauss points (q,) in each interval between `nodes` nodes on a line, and the two hats there.
+    """Return two Gauss points in each interval between nodes on a line, and the two linear functions there.
 
-    Hats (q, 2) by their nodes, and their values (q, 2).
+    Parameters
+    ----------
+    nodes : int
+        Number of nodes.
+
+    Returns
+    -------
+    tuple of arrays
+        Points (q,) in node spacings, nodes of both functions (q, 2), and their values (q, 2);
+        dimensionless.
     """
     basis = Basis(MeshLine(np.arange(float(nodes))), ElementLineP1(), intorder=TWO_POINTS)
     return np.asarray(basis.global_coordinates()).ravel(), *_by_point(basis)
 
 
 def cell_areas(surface: Array) -> Array:
-    """Area (m2) that each Gauss point of the pressure basis stands for, surface nodes (nu, nv, 3)."""
+    """Compute the area that each Gauss point of the pressure basis stands for.
+
+    Parameters
+    ----------
+    surface : (nu, nv, 3) array
+        Positions of the surface nodes, m.
+
+    Returns
+    -------
+    (q,) array
+        m2.
+    """
     rows, columns, _ = surface.shape
     across, along, weights = _slopes_at_cell_points((rows, columns))
     positions = surface.reshape(-1, 3)
@@ -110,7 +195,7 @@ def _slopes_at_cell_points(shape: tuple[int, int]) -> tuple[sp.csr_matrix, sp.cs
 
 
 def _by_point(basis: Basis) -> tuple[Integers, Array]:
-    """Nodes (q, a) and values (q, a) of a scalar basis' functions at all its quadrature points."""
+    """Return nodes (q, a) and values (q, a) of a scalar basis' functions at all its quadrature points."""
     values = np.stack([np.asarray(function[0]).ravel() for function in basis.basis], axis=1)
     return np.repeat(basis.element_dofs.T, basis.X.shape[1], axis=0).astype(np.int64), values
 

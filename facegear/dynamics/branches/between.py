@@ -1,10 +1,10 @@
-"""Where the stability of a branch may change and change back between two neighbouring points.
+"""Find where the stability of a branch may change and change back between two neighbouring points.
 
-Two multipliers that meet on the unit circle may leave it and come back within one step, and the more they
-turn in it the narrower such a band is beside the step. The matrix of the map itself changes smoothly along a
-branch, also where multipliers meet. It is interpolated by cubics through the matrices and their slopes at
-both ends, on stretches over which no multiplier near the circle turns far. What the multipliers of the
-interpolated matrices suggest is then looked at on the branch itself.
+Two multipliers that meet on the unit circle may leave it and come back within one step. The more they turn
+in the step, the narrower is such a band. The matrix of the map itself changes smoothly along a branch, also
+where multipliers meet. It is interpolated by cubics through the matrices and their slopes at both ends, on
+stretches over which no multiplier near the circle turns far. Where the multipliers of the interpolated
+matrices suggest a change, the branch itself is then examined.
 """
 
 import numpy as np
@@ -23,23 +23,52 @@ closer looks tell no more."""
 CUBIC_ERROR = 1.0 / 384.0
 """Error of a Hermite cubic over a stretch, in the fourth power of the angle that a multiplier turns."""
 MIN_LOOKS, MAX_LOOKS = 4, 32
-"""Matrices interpolated in a stretch."""
+"""Smallest and largest number of matrices that are interpolated in a stretch."""
 SHORTEST_LENGTH = 1e-3
-"""Shorter stretches, in length scales, are not looked through: ten times the step of the slopes."""
+"""Shorter stretches, in length scales, are not examined: ten times the step of the slopes."""
 TRUSTED = 0.25
-"""Part of the way by which a multiplier comes nearer to the circle than at the ends that may be an error."""
+"""Fraction of a multiplier's approach to the circle, beyond that at the ends, that may be an error."""
 STEEP = 3.0
-"""A slope of the matrix this many times that of the chord and the other end is a graze's, and left out."""
+"""Ratio of a matrix slope to the chord and the other end's slope above which it belongs to a graze and
+is left out.
+"""
 
 
 def may_change(segment: Segment, low: float, high: float) -> bool:
-    """Whether a stretch is long enough, and a multiplier at its ends near enough, to pass the circle."""
+    """Whether a stretch is long enough, and a multiplier at its ends near enough, to pass the unit circle.
+
+    Parameters
+    ----------
+    segment : Segment
+        Stretch of a branch between two points.
+    low, high : float
+        Ends of the stretch, as fractions of the chord.
+
+    Returns
+    -------
+    bool
+        False if the stretch need not be examined.
+    """
     closest = min(_distance(segment.at(fraction)) for fraction in (low, high))
     return segment.length * (high - low) >= SHORTEST_LENGTH and closest <= NEAR_CIRCLE
 
 
 def is_damped(segment: Segment, low: float, high: float) -> bool:
-    """Whether an end of a stretch has no multiplier on the circle itself, as undamped motions have."""
+    """Whether an end of a stretch has no multiplier on the unit circle; undamped motions have all of them
+    there.
+
+    Parameters
+    ----------
+    segment : Segment
+        Stretch of a branch between two points.
+    low, high : float
+        Ends of the stretch, as fractions of the chord.
+
+    Returns
+    -------
+    bool
+        True if the largest distance from the circle is above UNDAMPED.
+    """
     return max(_distance(segment.at(fraction)) for fraction in (low, high)) > UNDAMPED
 
 
@@ -49,7 +78,20 @@ def _distance(point: BranchPoint) -> float:
 
 
 def hidden_change(segment: Segment, low: float, high: float) -> float | None:
-    """Fraction at which to look for changes of stability that the ends of a stretch do not show, or None."""
+    """Find where stability may change in a stretch although its ends do not show it.
+
+    Parameters
+    ----------
+    segment : Segment
+        Stretch of a branch between two points.
+    low, high : float
+        Ends of the stretch, as fractions of the chord.
+
+    Returns
+    -------
+    float or None
+        Position, as a fraction of the chord, to examine, or None.
+    """
     if not may_change(segment, low, high):
         return None
     ends, stretch = (segment.at(low), segment.at(high)), high - low
@@ -62,7 +104,7 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
     # A band in which multipliers reach the circle is at least as wide, in their angle, as they were off it.
     count = int(np.clip(np.ceil(turn / max(max(distances), 1e-3)), MIN_LOOKS, MAX_LOOKS))
     looks = np.arange(1, count + 1) / (count + 1.0)
-    matrices = _interpolated([point.linear.matrix for point in ends], [start, end], looks)
+    matrices = _interpolate([point.linear.matrix for point in ends], [start, end], looks)
     values = without_neutral(np.linalg.eigvals(matrices), neutral)
     error = CUBIC_ERROR * turn**4
     outside = [np.array([point.outside]) for point in ends]
@@ -86,20 +128,20 @@ def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
     """Largest change of a multiplier near the unit circle, by the change (2 n, 2 n) of the matrix."""
     values, vectors = np.linalg.eig(point.linear.matrix)
     try:
-        moved = np.abs(np.einsum("ij,jk,ki->i", np.linalg.inv(vectors), change, vectors))
+        multiplier_changes = np.abs(np.einsum("ij,jk,ki->i", np.linalg.inv(vectors), change, vectors))
     except np.linalg.LinAlgError:
         return np.inf
     off = np.abs(values - 1.0)
-    kept = np.argsort(off)[neutral:]
-    near = kept[np.abs(np.abs(values[kept]) - 1.0) <= NEAR_CIRCLE]
-    return float(moved[near].max(initial=0.0))
+    indices = np.argsort(off)[neutral:]
+    near = indices[np.abs(np.abs(values[indices]) - 1.0) <= NEAR_CIRCLE]
+    return float(multiplier_changes[near].max(initial=0.0))
 
 
-def _interpolated(matrices: list[Array], changes: list[Array], looks: Array) -> Array:
+def _interpolate(matrices: list[Array], changes: list[Array], looks: Array) -> Array:
     """Matrices (K, 2 n, 2 n) at shares (K,) of a stretch, from those at its ends and their slopes there."""
     step = matrices[1] - matrices[0]
     start, end = changes
-    sizes = [float(np.linalg.norm(each)) for each in (start, end, step)]
+    sizes = [float(np.linalg.norm(slope)) for slope in (start, end, step)]
     if sizes[0] > STEEP * max(sizes[1:]):
         start = 2.0 * step - end
     elif sizes[1] > STEEP * max(sizes[0], sizes[2]):
@@ -109,7 +151,7 @@ def _interpolated(matrices: list[Array], changes: list[Array], looks: Array) -> 
 
 
 def _outside(values: ComplexArray, margin: float) -> Integers:
-    """BranchPoint.outside of multipliers (K, m), but beyond 1 + margin, shape (K, 3)."""
+    """Count multipliers (K, m) as BranchPoint.outside does, but beyond 1 + margin, shape (K, 3)."""
     size = np.abs(values)
     beyond, real = size > 1.0 + margin, np.abs(values.imag) <= REAL_PAIR
     classes = (real & (values.real > 0.0), real & (values.real < 0.0), ~real & (values.imag > 0.0))
@@ -117,9 +159,10 @@ def _outside(values: ComplexArray, margin: float) -> Integers:
 
 
 def _returning(surely: Integers, perhaps: Integers) -> int | None:
-    """Number of the look, without the ends, at which a count goes against the change from end to end.
+    """Return the number of the first look at which a count goes against the change from end to end, or None.
 
-    surely, perhaps: the counts (K + 2, 3) outside by more than, and up to, the error of the matrices.
+    `surely` and `perhaps` are the counts (K + 2, 3) outside by more than, and up to, the error of the
+    matrices.
     """
     for sure, possible in zip(surely.T, perhaps.T, strict=True):
         lower, upper = sorted((sure[0], sure[-1]))
@@ -137,8 +180,9 @@ def _returning(surely: Integers, perhaps: Integers) -> int | None:
 
 
 def _approaching(values: ComplexArray, ends: list[float], looks: Array, error: float) -> int | None:
-    """The look at which multipliers come so near to the circle, from as far as `ends`, that they may pass
-    it, or None.
+    """Return the look at which multipliers come so near to the circle that they may pass it, or None.
+
+    `ends` are their distances at both ends of the stretch.
     """
     nearest = np.abs(np.abs(values) - 1.0).min(axis=1)
     before = ends[0] + looks * (ends[1] - ends[0])

@@ -1,4 +1,4 @@
-"""Columns of the tables of branches, apart from what computes them, so that readers need no solver."""
+"""Columns of the branches stage's tables, apart from the code that computes them: readers need no solver."""
 
 BRANCH_COLUMNS = (
     "branch",
@@ -20,7 +20,7 @@ BRANCH_COLUMNS = (
     "back_fraction",
 )
 BRANCH_FINITE = tuple(name for name in BRANCH_COLUMNS if "multiplier" not in name)
-"""Those whose numbers are finite in every row."""
+"""Columns whose numbers are finite in every row."""
 SPECIAL_COLUMNS = (
     "branch",
     "period",

@@ -1,7 +1,7 @@
-"""Following a branch of periodic motions through folds until it ends.
+"""Follow a branch of periodic motions through folds until it ends.
 
-Pseudo-arclength continuation (Keller 1977): the parameter is an unknown like the state, a step goes along the
-tangent of the branch, and Newton's method comes back to the branch across it (points.py).
+Pseudo-arclength continuation (Keller 1977): the parameter is an unknown like the state. A step goes along the
+tangent of the branch, and Newton's method returns to the branch in the plane across the tangent (points.py).
 """
 
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.locate import Located, locate, locate_grazes
+from facegear.dynamics.branches.locate import DividedStep, locate, locate_grazes
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint, solve_point
 from facegear.dynamics.branches.segment import reversal
@@ -23,7 +23,7 @@ JUNCTION = 1e-6
 """Logarithms of the parameter that differ by less belong to one junction of branches."""
 NEAR_JUNCTION = 3.0
 """Fold and branch point of a junction lie within this many steps."""
-PASSED = (Kind.GRAZE, Kind.NEUTRAL)
+NON_LIMITING_KINDS = (Kind.GRAZE, Kind.NEUTRAL)
 """Special points at which a motion neither ends nor changes its stability."""
 
 
@@ -31,7 +31,7 @@ class BranchEnd(StrEnum):
     """Why a branch ends."""
 
     LIMIT = "limit of the parameter"
-    CLOSED = "closed"
+    CLOSED_LOOP = "closed"
     START = "where it was begun"
     DOUBLING = "period doubling of another branch"
     SYMMETRY = "branch point"
@@ -43,20 +43,22 @@ class BranchEnd(StrEnum):
 
 @dataclass(frozen=True)
 class ContinuationSettings:
-    """How a branch is followed; steps are lengths in weighted states and logarithms.
+    """Settings of the continuation; step lengths are measured in weighted states and logarithms of the
+    parameter.
 
     Attributes
     ----------
-    p_min, p_max
+    p_min, p_max : float
         Range of the parameter.
-    first, ds_min, ds_max
-        Step lengths.
-    max_points
+    first, ds_min, ds_max : float
+        First, smallest and largest step length.
+    max_points : int
         Maximum number of points in each direction.
-    bound
-        Largest weighted state.
-    to_first
-        End at the first special point that is no graze.
+    bound : float
+        Largest component of a weighted state; beyond it the branch ends as a pole.
+    to_first : bool
+        Whether to end at the first special point at which stability may change (not a graze or a neutral
+        body).
     """
 
     p_min: float
@@ -71,30 +73,30 @@ class ContinuationSettings:
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """Points in their order along the branch, what was met between them, and why it ends on both sides.
+    """A branch of periodic motions: its points in order, the special points between them, and why it ends.
 
     Attributes
     ----------
-    period_map
-        The map whose fixed points they are.
-    points
-        Neighbours a step apart.
-    specials
-        Sorted by `after`, the index of the point before them plus their fraction of the way to the next.
-    ends
-        Why it ends before the first and behind the last point.
-    tried
-        What was tried where steps became too short.
-    image_of
+    period_map : PeriodMap
+        The map whose fixed points the points are.
+    points : list of BranchPoint
+        Points along the branch, neighbours one step apart.
+    specials : list of Special
+        Special points sorted by `after`: index of the point before plus the fraction of the way to the next.
+    ends : tuple of BranchEnd
+        Why the branch ends before the first and behind the last point.
+    failed_attempts : str
+        What was tried where steps became too short; empty elsewhere.
+    image_of : int or None
         Number of the branch, in the list that holds both, of which this one is the image under a symmetry of
-        the system; None of a branch that was followed.
+        the system. None for a branch that was followed.
     """
 
     period_map: PeriodMap
     points: list[BranchPoint]
     specials: list[Special]
     ends: tuple[BranchEnd, BranchEnd]
-    tried: str = ""
+    failed_attempts: str = ""
     image_of: int | None = None
 
     @property
@@ -108,9 +110,20 @@ class Branch:
         """Parameter of the points, shape (points,)."""
         return np.array([point.value for point in self.points])
 
-    def of(self, *chosen: str) -> list[Special]:
-        """Special points of some kinds, in their order along the branch."""
-        return [special for special in self.specials if special.kind in chosen]
+    def of(self, *kinds: str) -> list[Special]:
+        """Return the special points of given kinds, in their order along the branch.
+
+        Parameters
+        ----------
+        *kinds : str
+            Values of Kind.
+
+        Returns
+        -------
+        list of Special
+            Special points.
+        """
+        return [special for special in self.specials if special.kind in kinds]
 
 
 @dataclass(eq=False)
@@ -118,32 +131,62 @@ class _Track:
     points: list[BranchPoint]
     specials: list[Special] = field(default_factory=list)
     end: BranchEnd = BranchEnd.POINTS
-    tried: str = ""
+    failed_attempts: str = ""
 
 
 def follow(
     period_map: PeriodMap,
     start: BranchPoint,
     run: ContinuationSettings,
-    both: bool = True,
+    both_ways: bool = True,
     progress: Callable[[BranchPoint], None] = lambda point: None,
 ) -> Branch:
-    """The branch through `start`, along its tangent and (with `both`) against it."""
+    """Follow the branch through a point.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    start : BranchPoint
+        First point; its tangent gives the direction.
+    run : ContinuationSettings
+        Range of the parameter and step lengths.
+    both_ways : bool
+        Whether the branch is followed against the tangent, too.
+    progress : callable
+        Called with each new point.
+
+    Returns
+    -------
+    Branch
+        Points and special points in order along the tangent.
+    """
     ahead = _track(period_map, start, run, progress)
-    if not both or ahead.end is BranchEnd.CLOSED:
-        first = BranchEnd.CLOSED if ahead.end is BranchEnd.CLOSED else BranchEnd.START
-        return Branch(period_map, ahead.points, ahead.specials, (first, ahead.end), ahead.tried)
-    behind = _track(period_map, turned(start), run, progress)
+    if not both_ways or ahead.end is BranchEnd.CLOSED_LOOP:
+        first = BranchEnd.CLOSED_LOOP if ahead.end is BranchEnd.CLOSED_LOOP else BranchEnd.START
+        return Branch(period_map, ahead.points, ahead.specials, (first, ahead.end), ahead.failed_attempts)
+    behind = _track(period_map, reverse_tangent(start), run, progress)
     count = len(behind.points) - 1
-    points = [turned(point) for point in behind.points[:0:-1]] + ahead.points
+    points = [reverse_tangent(point) for point in behind.points[:0:-1]] + ahead.points
     specials = [replace(s, after=count - s.after) for s in behind.specials[::-1]]
     specials += [replace(s, after=count + s.after) for s in ahead.specials]
-    tried = "; ".join(text for text in (behind.tried, ahead.tried) if text)
-    return Branch(period_map, points, specials, (behind.end, ahead.end), tried)
+    failed_attempts = "; ".join(text for text in (behind.failed_attempts, ahead.failed_attempts) if text)
+    return Branch(period_map, points, specials, (behind.end, ahead.end), failed_attempts)
 
 
-def turned(point: BranchPoint) -> BranchPoint:
-    """The same point looking the other way."""
+def reverse_tangent(point: BranchPoint) -> BranchPoint:
+    """Return the same point with the opposite tangent and parity.
+
+    Parameters
+    ----------
+    point : BranchPoint
+        Point of a branch.
+
+    Returns
+    -------
+    BranchPoint
+        Point whose tangent has the other sign.
+    """
     return replace(point, tangent=-point.tangent, parity=-point.parity)
 
 
@@ -161,20 +204,22 @@ def _track(
         return track
     images = _images(period_map, start)
     while len(track.points) < run.max_points:
-        here = track.points[-1]
+        current_point = track.points[-1]
         try:
-            there, end = _next(period_map, here, before, step, run, images if len(track.points) > 2 else [])
-            located, last, junction = _between_points(period_map, here, there)
+            next_point, end = _next(
+                period_map, current_point, before, step, run, images if len(track.points) > 2 else []
+            )
+            division, last, junction = _between_points(period_map, current_point, next_point)
         except (NotConverged, np.linalg.LinAlgError) as error:
             step *= 0.4
             if step < run.ds_min:
-                track.end, track.tried = BranchEnd.STEP, f"{error}; steps down to {run.ds_min:g}"
+                track.end, track.failed_attempts = BranchEnd.STEP, f"{error}; steps down to {run.ds_min:g}"
                 return track
             continue
         base = len(track.points) - 1
-        track.specials += [replace(special, after=base + special.after) for special in located.specials]
-        track.points += [*located.inner, *last]
-        progress(there)
+        track.specials += [replace(special, after=base + special.after) for special in division.specials]
+        track.points += [*division.inner, *last]
+        progress(next_point)
         if _cut_at_junction(track, base):
             junction = BranchEnd.SYMMETRY
         if junction is not None:
@@ -182,101 +227,117 @@ def _track(
         if end is not None:
             track.end = end
             return track
-        if run.to_first and any(special.kind not in PASSED for special in located.specials):
+        if run.to_first and any(special.kind not in NON_LIMITING_KINDS for special in division.specials):
             track.end = BranchEnd.SPECIAL
             return track
-        step = min(next_length(step, before, here, there), run.ds_max)
-        before = here
+        step = min(next_length(step, before, current_point, next_point), run.ds_max)
+        before = current_point
     return track
 
 
 def _outward(start: BranchPoint, run: ContinuationSettings) -> bool:
-    """Whether a point at a limit of the parameter looks beyond it."""
+    """Whether a point at a limit of the parameter has a tangent that leads beyond it."""
     upper = abs(start.u - np.log(run.p_max)) < abs(start.u - np.log(run.p_min))
     return bool(start.tangent[-1] > 0.0) == upper
 
 
 def _next(
     period_map: PeriodMap,
-    here: BranchPoint,
+    current_point: BranchPoint,
     before: BranchPoint | None,
     step: float,
     run: ContinuationSettings,
     images: list[Array],
 ) -> tuple[BranchPoint, BranchEnd | None]:
-    """The next point, and why the branch ends there if it does. Raises NotConverged if a step is refused."""
-    there = step_along(period_map, here, before, step)
+    """Compute the next point, and why the branch ends there if it does. Raises NotConverged if a step is
+    refused.
+    """
+    next_point = step_along(period_map, current_point, before, step)
     limits = np.log([run.p_min, run.p_max])
     end = None
-    if not limits[0] <= there.u <= limits[1]:
-        there, end = _onto_limit(period_map, here, there, limits[int(there.u > here.u)]), BranchEnd.LIMIT
-    closing = _closing(period_map, images, here, there)
-    if closing is not None:
-        return closing, BranchEnd.CLOSED
-    if np.abs(there.z).max() > run.bound:
+    if not limits[0] <= next_point.u <= limits[1]:
+        next_point, end = (
+            _onto_limit(period_map, current_point, next_point, limits[int(next_point.u > current_point.u)]),
+            BranchEnd.LIMIT,
+        )
+    closing_point = _closing_point(period_map, images, current_point, next_point)
+    if closing_point is not None:
+        return closing_point, BranchEnd.CLOSED_LOOP
+    if np.abs(next_point.z).max() > run.bound:
         end = BranchEnd.POLE
-    return there, end
+    return next_point, end
 
 
-def _onto_limit(period_map: PeriodMap, here: BranchPoint, there: BranchPoint, limit: float) -> BranchPoint:
-    """The point at a limit of the parameter between two points."""
-    fraction = (limit - here.u) / (there.u - here.u)
-    guess = here.x + fraction * (there.x - here.x)
+def _onto_limit(
+    period_map: PeriodMap, current_point: BranchPoint, next_point: BranchPoint, limit: float
+) -> BranchPoint:
+    """Return the point at a limit of the parameter between two points."""
+    fraction = (limit - current_point.u) / (next_point.u - current_point.u)
+    guess = current_point.x + fraction * (next_point.x - current_point.x)
     guess[-1] = limit
     row = np.zeros(guess.size)
     row[-1] = 1.0
-    return solve_point(period_map, guess, row, here.tangent, here.linear)
+    return solve_point(period_map, guess, row, current_point.tangent, current_point.linear)
 
 
 def _images(period_map: PeriodMap, start: BranchPoint) -> list[Array]:
     return [np.append(z, start.u) for z in period_map.images(start.z, start.u)]
 
 
-def _closing(
-    period_map: PeriodMap, images: list[Array], here: BranchPoint, there: BranchPoint
+def _closing_point(
+    period_map: PeriodMap, images: list[Array], current_point: BranchPoint, next_point: BranchPoint
 ) -> BranchPoint | None:
-    """The point at which the branch comes back to where it began, at any of its mesh periods."""
-    chord = there.x - here.x
+    """Return the point at which the branch comes back to its start, at any of the start's mesh periods,
+    or None.
+    """
+    chord = next_point.x - current_point.x
     length = np.linalg.norm(chord)
     for image in images:
-        fraction = (image - here.x) @ chord / length**2
-        off = np.linalg.norm(image - here.x - fraction * chord)
+        fraction = (image - current_point.x) @ chord / length**2
+        off = np.linalg.norm(image - current_point.x - fraction * chord)
         if not 0.0 < fraction <= 1.0 or off > 0.2 * length:
             continue
         try:
             point = solve_point(
-                period_map, here.x + fraction * chord, chord / length, here.tangent, here.linear
+                period_map,
+                current_point.x + fraction * chord,
+                chord / length,
+                current_point.tangent,
+                current_point.linear,
             )
         except (NotConverged, np.linalg.LinAlgError):
             continue
         row = chord / length
-        target = solve_point(period_map, image, row, here.tangent, here.linear)
+        target = solve_point(period_map, image, row, current_point.tangent, current_point.linear)
         if np.linalg.norm(point.x - target.x) < 1e-6 + 1e-3 * off:
             return target
     return None
 
 
 def _between_points(
-    period_map: PeriodMap, here: BranchPoint, there: BranchPoint
-) -> tuple[Located, list[BranchPoint], BranchEnd | None]:
-    """Special points on the way and the points after them; where the branch runs into its own image, its last
-    points and that end.
+    period_map: PeriodMap, current_point: BranchPoint, next_point: BranchPoint
+) -> tuple[DividedStep, list[BranchPoint], BranchEnd | None]:
+    """Find the special points between two points, and the points that follow the current one.
+
+    Where the branch runs into its own image, the points are its last ones and the third value is that end.
     """
-    meeting = reversal(period_map, here, there)
+    meeting = reversal(period_map, current_point, next_point)
     if meeting is None:
-        return locate(period_map, here, there), [there], None
-    located = locate(period_map, here, meeting[0])
-    count = len(located.inner) + 1
-    specials = [special for special in located.specials if not _at(special, meeting[1])]
+        return locate(period_map, current_point, next_point), [next_point], None
+    division = locate(period_map, current_point, meeting[0])
+    count = len(division.inner) + 1
+    specials = [special for special in division.specials if not _at(special, meeting[1])]
     grazes = locate_grazes(period_map, *meeting, meeting[0].linear)
     specials += [replace(special, after=count + special.after) for special in grazes]
-    return Located(specials, located.inner), list(meeting), BranchEnd.DOUBLING
+    return DividedStep(specials, division.inner), list(meeting), BranchEnd.DOUBLING
 
 
 def _cut_at_junction(track: _Track, begin: int) -> bool:
-    """Whether the track has just met a branch point at which it turns round: it ends there, where the other
-    branch goes through, and what follows is its own mirror image. `begin`: number of the point from which the
-    last step went; points that were put inside it do not count as steps.
+    """Cut the track at a branch point at which it turns round, and return whether there was one.
+
+    The branch ends where the other branch goes through; what follows is its own mirror image. `begin` is the
+    number of the point from which the last step went. Points that were put inside that step do not count as
+    steps.
     """
     late = [special for special in track.specials if special.after > begin + 1 - NEAR_JUNCTION]
     for special in late:

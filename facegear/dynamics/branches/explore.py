@@ -1,4 +1,6 @@
-"""Which motions exist at a speed: random starts, the fraction of them that ends on each, and what is new."""
+"""Find which motions exist at a speed: random starts, the fraction of them that ends on each, and what
+is new.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -17,35 +19,35 @@ from facegear.errors import NotConverged
 
 NEAR = 1e-4
 """A run this close to a stable orbit, in length scales, that comes closer still, ends there."""
-SAME = 1e-4
+SAME_ORBIT = 1e-4
 """States of one orbit differ by less, in length scales."""
 ALONG = 0.2
 """Greatest distance from a branch's chord at which Newton's method is tried from it."""
 REAL = 1e-9
 """Rounding of the fraction of a chord."""
 BLOCK = 8
-"""Mesh periods after which a run is held against the known orbits."""
+"""Number of mesh periods after which a run is compared with the known orbits."""
 PATIENCE = 40
-"""Blocks for which it may come to one of them."""
+"""Number of blocks in which a run may come to a known orbit."""
 ROUND = 4
-"""Blocks after which runs that have come to one make room."""
+"""Number of blocks after which runs that have come to an orbit are taken out."""
 
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that starts ended on.
+    """A motion on which starts have ended.
 
     Attributes
     ----------
-    label, period
+    label, period : str, int
         Class of motion, and its mesh periods.
-    z : (2 n,)
-        A weighted state of it.
-    point
+    z : (2 n,) array
+        A weighted state on it.
+    point : BranchPoint or None
         The orbit if it is periodic.
-    count, fraction
-        Of the starts.
-    error
+    count, fraction : int, float
+        Number and fraction of the starts that end on it.
+    error : float
         Standard error sqrt(p (1 - p) / N) of the fraction.
     """
 
@@ -65,23 +67,41 @@ def explore(
     settings: Settings,
     step: Callable[[], None] = lambda: None,
 ) -> list[SettledMotion]:
-    """The motions at a parameter on which starts (S, 2 n), weighted states, end; the most frequent first.
+    """Run starts at one value of the parameter and return the motions on which they end.
 
-    Motions that are not periodic count by their class.
+    Motions that are not periodic are told apart by their class alone.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    value : float
+        The parameter, in its unit.
+    starts : (S, 2 n) array
+        Weighted states, dimensionless.
+    settings : Settings
+        Settings of the run.
+    step : callable
+        Called without arguments after each start.
+
+    Returns
+    -------
+    list of SettledMotion
+        Motions, the most frequent first.
     """
     runs = _Runs(period_map, float(np.log(value)), settings)
     paths = [[start] for start in starts]
     while paths:
         runs.go_on(paths)
-        waiting = []
+        unfinished_paths = []
         for path in paths:
-            index = runs.reached(path)
+            index = runs.nearby_motion(path)
             if index is None:
-                waiting.append(path)
+                unfinished_paths.append(path)
             else:
                 runs.add(index)
                 step()
-        paths = waiting
+        paths = unfinished_paths
         if paths and len(paths[0]) > runs.patience:
             runs.add(runs.settle(paths.pop(0)[-1]))
             step()
@@ -96,10 +116,10 @@ def explore(
 
 @dataclass(eq=False)
 class _Runs:
-    """Runs at one parameter's logarithm u, and the motions that they have come to.
+    """Runs at one value of the parameter, and the motions to which they have come.
 
-    A path holds the weighted states (2 n,) of a run at the ends of blocks of periods, the start first.
-    images: states of stable orbits, each with the number of its motion.
+    A path holds the weighted states (2 n,) of a run at the ends of blocks of periods, the start first. `u` is
+    the parameter's logarithm. `images` are states of stable orbits, each with the number of its motion.
     """
 
     period_map: PeriodMap
@@ -110,7 +130,7 @@ class _Runs:
 
     @property
     def patience(self) -> int:
-        """Blocks for which a run may come to a known orbit."""
+        """Number of blocks in which a run may come to a known orbit."""
         return PATIENCE if self.images else 1
 
     def go_on(self, paths: list[list[Array]]) -> None:
@@ -123,8 +143,10 @@ class _Runs:
         for path, ends in zip(running, self.period_map.ends(states, self.u, BLOCK * blocks), strict=True):
             path.extend(ends[BLOCK - 1 :: BLOCK])
 
-    def reached(self, path: list[Array]) -> int | None:
-        """The motion whose orbit a path comes near to, and nearer still."""
+    def nearby_motion(self, path: list[Array]) -> int | None:
+        """Number of the motion whose orbit a path comes near to, and then nearer still; None if there is
+        none.
+        """
         if not self.images:
             return None
         apart = np.array([[np.abs(z - image).max() for _, image in self.images] for z in path[1:]])
@@ -133,10 +155,10 @@ class _Runs:
         return self.images[close[0, 1]][0] if len(close) else None
 
     def settle(self, z: Array) -> int:
-        """The motion that a run comes to by itself."""
-        motion = _settled(self.period_map, self.u, z, self.settings)
-        for number, other in enumerate(self.motions):
-            if _same(self.period_map, self.u, motion, other):
+        """Run a state until it settles by itself, and return the number of its motion."""
+        motion = _run_until_settled(self.period_map, self.u, z, self.settings)
+        for number, earlier_motion in enumerate(self.motions):
+            if _is_same_motion(self.period_map, self.u, motion, earlier_motion):
                 return number
         self.motions.append(motion)
         number = len(self.motions) - 1
@@ -150,32 +172,38 @@ class _Runs:
         self.motions[number] = replace(self.motions[number], count=self.motions[number].count + 1)
 
 
-def _settled(period_map: PeriodMap, u: float, z: Array, settings: Settings) -> SettledMotion:
+def _run_until_settled(period_map: PeriodMap, u: float, z: Array, settings: Settings) -> SettledMotion:
     system, frequency = period_map.family.at(float(np.exp(u)))
     response = steady_state(system, frequency, settings, period_map.state(z, u))
-    there = period_map.weighted(response.state, u)
+    end_state = period_map.to_weighted(response.state, u)
     point = None
     if response.motion is Motion.PERIODIC:
         try:
-            point = at_parameter(period_map.over(response.period), there, u)
-            there = point.z
+            point = at_parameter(period_map.over(response.period), end_state, u)
+            end_state = point.z
         except NotConverged:
             point = None
-    return SettledMotion(response.label, response.period, there, point, 0, 0.0, 0.0)
+    return SettledMotion(response.label, response.period, end_state, point, 0, 0.0, 0.0)
 
 
-def _same(period_map: PeriodMap, u: float, motion: SettledMotion, other: SettledMotion) -> bool:
-    if motion.label != other.label:
+def _is_same_motion(
+    period_map: PeriodMap, u: float, motion: SettledMotion, other_motion: SettledMotion
+) -> bool:
+    """Whether two motions have the same class and, where periodic, the same orbit."""
+    if motion.label != other_motion.label:
         return False
-    if motion.point is None or other.point is None:
-        return motion.point is other.point
-    loose = motion.point.linear.neutral, other.point.linear.neutral
-    return _apart(motion.z, period_map.over(other.period).images(other.z, u), loose) < SAME
+    if motion.point is None or other_motion.point is None:
+        return motion.point is other_motion.point
+    loose = motion.point.linear.neutral, other_motion.point.linear.neutral
+    return (
+        _apart(motion.z, period_map.over(other_motion.period).images(other_motion.z, u), loose) < SAME_ORBIT
+    )
 
 
 def _apart(z: Array, images: Sequence[Array], loose: tuple[Array, Array]) -> float:
-    """Largest difference of a state from the nearest image of another but for shifts along neutral
-    directions, in the orbit with more of them.
+    """Largest difference of a state from the nearest image of another.
+
+    Shifts along neutral directions do not count; they are those of the orbit with more of them.
     """
     neutral = max(loose, key=lambda shifts: shifts.shape[1])
     apart = np.array(images) - z
@@ -183,7 +211,20 @@ def _apart(z: Array, images: Sequence[Array], loose: tuple[Array, Array]) -> flo
 
 
 def crossings(branch: Branch, value: float) -> list[BranchPoint]:
-    """The branch's orbits at a parameter, one for each passage."""
+    """Return the orbits of a branch at a value of the parameter, one for each passage.
+
+    Parameters
+    ----------
+    branch : Branch
+        Branch to search.
+    value : float
+        The parameter, in its unit.
+
+    Returns
+    -------
+    list of BranchPoint
+        Orbits in order along the branch.
+    """
     u, points = float(np.log(value)), []
     for guess, reach, _ in _passages(branch, u):
         try:
@@ -196,14 +237,44 @@ def crossings(branch: Branch, value: float) -> list[BranchPoint]:
 
 
 def lies_on(branch: Branch, orbit: BranchPoint, period: int) -> bool:
-    """Whether an orbit of a period belongs to a branch."""
-    return distance(branch, orbit, period) < SAME
+    """Whether an orbit belongs to a branch.
+
+    Parameters
+    ----------
+    branch : Branch
+        Branch to search.
+    orbit : BranchPoint
+        The orbit.
+    period : int
+        Its number of mesh periods.
+
+    Returns
+    -------
+    bool
+        Whether its distance() from the branch is less than SAME_ORBIT.
+    """
+    return distance(branch, orbit, period) < SAME_ORBIT
 
 
 def distance(branch: Branch, orbit: BranchPoint, period: int) -> float:
-    """How far, in length scales, an orbit of a period lies from the nearest one of a branch at the same
-    parameter; infinite if none is near. Where bodies float in either orbit, their place is free and not
-    compared: along a branch such a body is left where it is until a mesh pushes it.
+    """Distance of an orbit from the nearest one of a branch at the same parameter.
+
+    Where bodies float in either orbit, their position is free and not compared: along a branch such a body
+    stays where it is until a mesh pushes it.
+
+    Parameters
+    ----------
+    branch : Branch
+        Branch to search.
+    orbit : BranchPoint
+        The orbit.
+    period : int
+        Its number of mesh periods.
+
+    Returns
+    -------
+    float
+        Distance in length scales, dimensionless; infinite if no orbit of the branch is near.
     """
     values, u = branch.values, orbit.u
     if branch.period_map.period != period or not values.min() <= orbit.value <= values.max():
@@ -218,23 +289,25 @@ def distance(branch: Branch, orbit: BranchPoint, period: int) -> float:
         except (NotConverged, np.linalg.LinAlgError):
             continue
         nearest = min(nearest, _apart(point.z, images, (loose, point.linear.neutral)))
-        if nearest < SAME:
+        if nearest < SAME_ORBIT:
             break
     return nearest
 
 
 def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float, Array]]:
-    """States at which a branch passes a parameter's logarithm, on the cubics between its points, with the
-    lengths of their chords and shifts along neutral directions.
+    """Yield the states at which a branch passes a parameter's logarithm, with chord lengths and neutral
+    directions.
+
+    The states lie on the cubics between the branch's points.
     """
-    for here, there in pairwise(branch.points):
-        turns = here.tangent[-1] * there.tangent[-1] < 0.0
-        if not turns and not min(here.u, there.u) <= u <= max(here.u, there.u):
+    for start_point, end_point in pairwise(branch.points):
+        turns = start_point.tangent[-1] * end_point.tangent[-1] < 0.0
+        if not turns and not min(start_point.u, end_point.u) <= u <= max(start_point.u, end_point.u):
             continue
-        coefficients = cubic(here, there)
+        coefficients = cubic(start_point, end_point)
         roots = np.polynomial.Polynomial(coefficients[:, -1] - [u, 0.0, 0.0, 0.0]).roots()
-        reach = float(np.linalg.norm(there.x - here.x))
+        reach = float(np.linalg.norm(end_point.x - start_point.x))
         for fraction in roots[np.abs(roots.imag) < REAL].real:
             # A point at which two cubics meet belongs to the first of them.
-            if REAL < fraction <= 1.0 + REAL or (abs(fraction) <= REAL and here is branch.points[0]):
-                yield (fraction ** np.arange(4) @ coefficients)[:-1], reach, here.linear.neutral
+            if REAL < fraction <= 1.0 + REAL or (abs(fraction) <= REAL and start_point is branch.points[0]):
+                yield (fraction ** np.arange(4) @ coefficients)[:-1], reach, start_point.linear.neutral

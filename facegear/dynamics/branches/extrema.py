@@ -6,12 +6,30 @@ from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 
 MAX_EXTREMA = 64
-"""Extrema of a mesh kept for each mesh period."""
+"""Number of extrema of a mesh that are stored for each mesh period."""
 
 
 def extrema(integrator: Integrator, state: Array, periods: int) -> Array:
-    """Maxima and minima (m, 2, most) of each deflection over a run from a state (2, n), each falling, and
-    minus infinity where there are fewer. Raises NotConverged where a step fails.
+    """Maxima and minima of each mesh deflection over a run.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    state : (2, n) array
+        State by phase at the start, m and m/rad.
+    periods : int
+        Number of mesh periods.
+
+    Returns
+    -------
+    (m, 2, most) array
+        Maxima, then minima of each mesh in falling order, m; minus infinity fills the rows that have fewer.
+
+    Raises
+    ------
+    NotConverged
+        If a step fails.
     """
     values, counts = integrator.extrema(state, periods, MAX_EXTREMA * periods)
     return -np.sort(-values[:, :, : min(counts.max(), values.shape[2])])

@@ -1,4 +1,4 @@
-"""Grazes between two neighbouring points of a branch: extremes of mesh deflections that pass an edge."""
+"""Find grazes between two neighbouring points of a branch: extrema of mesh deflections that pass an edge."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -11,19 +11,32 @@ from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.segment import Segment
 
 EDGES = (-1, 1)
+"""Number of each backlash edge: -1 lower, 1 upper."""
 LOOKED_AT = np.linspace(0.0, 1.0, 33)[1:-1]
-"""Shares of a stretch at which a cubic is looked at."""
+"""Fractions of a stretch at which a cubic is evaluated."""
 SYMMETRY_TOLERANCE = 1e-7
 """Distance of extremes, in length scales, up to which symmetry moves their meshes alike; they differ by
 rounding, while grazes that lie together by chance differ by more (free choice, as orbits are known to 1e-9).
 """
 ALMOST = 0.1
-"""Part of the lesser distance at the ends to which a cubic that comes as near is looked at."""
+"""A cubic is examined where it comes this near to an edge, as a fraction of the lesser distance at the
+ends.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Graze:
-    """test: how far an extreme of `meshes`, which symmetry moves alike, lies above an edge (-1 or +1)."""
+    """An extremum that passes an edge.
+
+    Attributes
+    ----------
+    test : callable
+        Height of the extremum above the edge, from PeriodMap.extrema().
+    meshes : tuple of int
+        Meshes that symmetry moves in the same way.
+    edge : int
+        Edge: -1 lower, 1 upper.
+    """
 
     test: Callable[[Array], float]
     meshes: tuple[int, ...]
@@ -31,19 +44,33 @@ class Graze:
 
 
 def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[Graze], bool]:
-    """Extremes that have passed an edge; True if some cannot be distinguished yet.
+    """Find the extrema that have passed an edge between two points.
 
-    Maxima less minima above an edge count its passages. A maximum and a minimum that are born together change
-    none. Meshes that symmetry moves alike make one graze.
+    The number of maxima less that of minima above an edge gives its passages. A maximum and a minimum that
+    are born together change neither. Meshes that symmetry moves in the same way make one graze.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    first, second : BranchPoint
+        Points of a branch.
+
+    Returns
+    -------
+    list of Graze
+        Grazes between the points.
+    bool
+        Whether some of them cannot be told apart yet.
     """
     graze_ends: list[tuple[Array, Graze]] = []
-    mixed = False
+    is_ambiguous = False
     levels = _levels(period_map, first.u)
     before, after = (_above(point.extrema, levels) for point in (first, second))
     for side, mesh in np.argwhere(np.isfinite(levels) & (np.diff(after - before)[..., 0] != 0)):
         changes = (after - before)[side, mesh]
         kind = int(changes[0] == 0)
-        mixed = mixed or bool(changes.all()) or abs(changes[kind]) > 1
+        is_ambiguous = is_ambiguous or bool(changes.all()) or abs(changes[kind]) > 1
         rank = int(min(before[side, mesh, kind], after[side, mesh, kind]))
         test = _distance(float(levels[side, mesh]), int(mesh), kind, rank)
         ends = np.array([side, kind, *(test(point.extrema) for point in (first, second))])
@@ -60,7 +87,7 @@ def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tu
         else:
             graze = graze_ends[index][1]
             graze_ends[index] = ends, Graze(test, (*graze.meshes, int(mesh)), graze.edge)
-    return [graze for _, graze in graze_ends], mixed
+    return [graze for _, graze in graze_ends], is_ambiguous
 
 
 def _levels(period_map: PeriodMap, u: float) -> Array:
@@ -70,12 +97,12 @@ def _levels(period_map: PeriodMap, u: float) -> Array:
 
 
 def _above(extrema: Array, levels: Array) -> Integers:
-    """How many maxima and minima lie above each edge, shape (2, m, 2)."""
+    """Number of maxima and minima above each edge, shape (2, m, 2)."""
     return (extrema > levels[:, :, None, None]).sum(axis=-1)
 
 
 def _distance(level: float, mesh: int, kind: int, rank: int) -> Callable[[Array], float]:
-    """How far the extreme of a rank, counted from the largest, lies above a level."""
+    """Test function: height above a level of the extremum of a rank, counted from the largest."""
 
     def test(extrema: Array) -> float:
         value = extrema[mesh, kind, rank] if rank < extrema.shape[2] else -np.inf
@@ -85,10 +112,22 @@ def _distance(level: float, mesh: int, kind: int, rank: int) -> Callable[[Array]
 
 
 def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
-    """Share of a stretch at which the passages of an edge go against their change from end to end.
+    """Find where the passages of an edge go against their change from end to end of a stretch.
 
-    Looked for where cubics through the extremes with their slopes along the branch come close to an edge, or
-    come back over one that they pass.
+    Cubics through the extrema with their slopes along the branch show where to look: where they come close to
+    an edge, or come back over one that they pass.
+
+    Parameters
+    ----------
+    segment : Segment
+        Stretch of a branch between two points.
+    low, high : float
+        Ends of the stretch, as fractions of the chord.
+
+    Returns
+    -------
+    float or None
+        Position as a fraction of the chord, or None.
     """
     points = segment.at(low), segment.at(high)
     reach = float(np.linalg.norm(points[1].x - points[0].x))
@@ -107,8 +146,8 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     before, after = (_passages(point.extrema, levels) for point in points)
     for looks in dict.fromkeys(looks_of):
         fractions = [low + look * (high - low) for look in looks]
-        passed = [before, *(_passages(segment.extrema(fraction), levels) for fraction in fractions), after]
-        steps = np.diff(passed, axis=0)
+        passages = [before, *(_passages(segment.extrema(fraction), levels) for fraction in fractions), after]
+        steps = np.diff(passages, axis=0)
         if ((steps > 0).any(axis=0) & (steps < 0).any(axis=0)).any():
             return fractions[0]
     return None
@@ -120,7 +159,7 @@ def _passages(extrema: Array, levels: Array) -> Integers:
 
 
 def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
-    """Extremes that at one end of a stretch are no farther from an edge than `reach`."""
+    """Extrema that at one end of a stretch are no farther from an edge than `reach`."""
     first_gap, second_gap = first - level[:, None, None], second - level[:, None, None]
     finite = np.isfinite(first_gap) & np.isfinite(second_gap)
     return finite & (np.minimum(abs(first_gap), abs(second_gap)) < reach)
@@ -129,15 +168,16 @@ def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
 def _dips(
     extrema: list[Array], slopes: list[Array], levels: Array, near: list[Mask]
 ) -> Iterator[tuple[float, ...]]:
-    """Where cubics through the extremes come closest to an edge that both ends lie on one side of, or before
-    and after they come back over an edge that they pass.
+    """Yield where cubics through the extrema come closest to an edge that both ends lie on one side of.
+
+    Where the ends lie on both sides, yield the fractions before and after the cubic comes back over the edge.
     """
     t = LOOKED_AT
     for level, few in zip(levels, near, strict=True):
-        where = np.nonzero(few)
-        first_height, second_height = (values[where] - level[where[0]] for values in extrema)
+        indices = np.nonzero(few)
+        first_height, second_height = (values[indices] - level[indices[0]] for values in extrema)
         sign = np.sign(first_height)
-        first, last = (slope[where] for slope in slopes)
+        first, last = (slope[indices] for slope in slopes)
         bend = np.array(
             [
                 first_height,
@@ -161,17 +201,19 @@ def _dips(
 def _ripples(
     extrema: list[Array], slopes: list[Array], levels: Array, counts: list[Integers], born: Integers
 ) -> Iterator[tuple[float]]:
-    """Where only one of a maximum and a minimum that are born in a stretch may lie above an edge that both
-    are above at one end: between the places at which straight lines through them meet the edge.
+    """Yield where one of a maximum and a minimum that are born in a stretch may lie above an edge alone.
+
+    At one end both are above the edge. The place is the middle of the points at which straight lines through
+    them meet the edge.
     """
     for side, mesh in born:
         ranks = np.minimum(counts[0][side, mesh], counts[1][side, mesh])
         end = int((counts[1] > counts[0])[side, mesh, 0])
-        places = []
+        zeros = []
         for kind, rank in enumerate(ranks):
             height = extrema[end][mesh, kind, rank] - levels[side, mesh]
             slope = slopes[end][mesh, kind, rank]
-            places.append(end - height / slope if slope != 0.0 else np.nan)
-        look = float(np.mean(places))
+            zeros.append(end - height / slope if slope != 0.0 else np.nan)
+        look = float(np.mean(zeros))
         if 0.0 < look < 1.0:
             yield (look,)

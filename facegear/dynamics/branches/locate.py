@@ -1,4 +1,4 @@
-"""Special points between two neighbouring points of a branch, each bracketed along the arc."""
+"""Locate the special points between two neighbouring points of a branch, each bracketed along the arc."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -19,14 +19,18 @@ LEVEL = 1e-7
 SHORTEST = 1e-10
 """Part of a step down to which points that lie together are distinguished."""
 DEEPEST = 7
-"""How often a stretch is halved on the mere chance that stability or contact changes twice in it."""
+"""Maximum number of halvings of a stretch on the mere chance that stability or contact changes twice in
+it.
+"""
 DEEPEST_UNDAMPED = 2
-"""The same where all multipliers lie on the unit circle, where closer looks only tell rounding."""
+"""Maximum number of halvings where all multipliers lie on the unit circle: there, closer looks see
+rounding only.
+"""
 APART = 1e-6
 """Special points that lie closer on a step share the stretch between two points of the branch."""
 ASIDE = 1e-6
 """Part of a stretch by which a graze has to lie off its ends to divide it."""
-TOUCHING = 1e-4
+TOUCH_DISTANCE = 1e-4
 """An extreme this near an edge, in length scales, may touch it there; grazes are located to far less."""
 STABILITY = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 """Special points at which multipliers pass the unit circle."""
@@ -34,7 +38,7 @@ STABILITY = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 
 @dataclass(frozen=True, eq=False)
 class _Event:
-    """test: of a Point, at a graze of its extrema."""
+    """Change between two points. `test` is a function of a BranchPoint, at a graze of its extrema."""
 
     kind: Kind
     test: Callable[..., float]
@@ -43,49 +47,79 @@ class _Event:
 
 
 @dataclass(frozen=True, eq=False)
-class Located:
-    """Special points on a step, and what the step is divided into by them.
+class DividedStep:
+    """Special points on a step, and the inner points that divide the step between them.
 
     Attributes
     ----------
-    specials
-        In order; `after` counts stretches between the divided step's points, from its first point.
-    inner
+    specials : list of Special
+        Special points in order. `after` counts the stretches between the divided step's points, from its
+        first.
+    inner : list of BranchPoint
         Points of the branch between neighbouring special points at which stability changes, so that each
-        stretch has one of these at most.
+        stretch contains at most one of those.
     """
 
     specials: list[Special]
     inner: list[BranchPoint]
 
 
-def locate(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> Located:
-    """All special points between two neighbours, and the points of the branch that lie between them."""
-    segment = Segment(period_map, here, there)
+def locate(period_map: PeriodMap, start_point: BranchPoint, end_point: BranchPoint) -> DividedStep:
+    """Find all special points between two neighbours, and points of the branch that separate them.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    start_point, end_point : BranchPoint
+        Neighbours on the branch.
+
+    Returns
+    -------
+    DividedStep
+        Special points, and inner points of the branch.
+    """
+    segment = Segment(period_map, start_point, end_point)
     specials = sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
     changes = [special.after for special in specials if special.kind in STABILITY]
     cuts = [_cut(segment, *pair) for pair in pairwise(changes) if pair[1] - pair[0] > APART]
     marks = np.array([0.0, *cuts, 1.0])
     steps = np.arange(marks.size, dtype=float)
-    placed = [replace(special, after=float(np.interp(special.after, marks, steps))) for special in specials]
-    return Located(placed, [segment.at(cut) for cut in cuts])
+    special_points = [
+        replace(special, after=float(np.interp(special.after, marks, steps))) for special in specials
+    ]
+    return DividedStep(special_points, [segment.at(cut) for cut in cuts])
 
 
 def locate_grazes(
-    period_map: PeriodMap, here: BranchPoint, there: BranchPoint, linear: Linear
+    period_map: PeriodMap, start_point: BranchPoint, end_point: BranchPoint, linear: Linear
 ) -> list[Special]:
-    """Grazes between two neighbours of which one is a junction: multipliers lie on the circle there.
+    """Find the grazes between two neighbours one of which is a junction, where multipliers lie on the unit
+    circle.
 
-    linear: the map at the other one, with which orbits are corrected: at a junction its matrix is singular.
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    start_point, end_point : BranchPoint
+        Neighbours on the branch.
+    linear : Linear
+        Linearised map at the neighbour that is no junction. Orbits are corrected with it, because the matrix
+        at a junction is singular.
+
+    Returns
+    -------
+    list of Special
+        Grazes in order along the branch.
     """
-    segment = Segment(period_map, replace(here, linear=linear), replace(there, linear=linear))
+    segment = Segment(period_map, replace(start_point, linear=linear), replace(end_point, linear=linear))
     return sorted(_grazes_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
 
 def _cut(segment: Segment, low: float, high: float) -> float:
-    """Fraction of a point between two special points, a known one if there is any."""
+    """Fraction of a point between two special points; a known point if there is one."""
     middle = 0.5 * (low + high)
-    inside = [fraction for fraction in segment.known if low < fraction < high]
+    inside = [fraction for fraction in segment.points_by_fraction if low < fraction < high]
     margin = 0.1 * (high - low)
     inside = [fraction for fraction in inside if low + margin < fraction < high - margin]
     return min(inside, key=lambda fraction: abs(fraction - middle), default=middle)
@@ -95,15 +129,15 @@ def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[
     first, second = segment.at(low), segment.at(high)
     if first.linear.neutral.shape != second.linear.neutral.shape:
         return _loosening(segment, low, high, depth)
-    events, mixed = _events(segment.period_map, first, second)
+    events, is_ambiguous = _events(segment.period_map, first, second)
     between = None
     may_halve = depth < (DEEPEST if is_damped(segment, low, high) else DEEPEST_UNDAMPED)
-    if mixed and high - low > SHORTEST:
+    if is_ambiguous and high - low > SHORTEST:
         between = 0.5 * (low + high)
     elif may_halve:
         between = _hidden(segment, low, high)
     if between is None:
-        specials = [_refined(segment, low, high, event) for event in events]
+        specials = [_refine(segment, low, high, event) for event in events]
         if may_halve:
             between = _leap(segment.period_map, specials, low, high)
             if between is None and may_change(segment, low, high):
@@ -153,7 +187,7 @@ def _leap(period_map: PeriodMap, specials: list[Special], low: float, high: floa
         levels = np.array(period_map.edges(special.point.u))[:, special.meshes[0]]
         level = levels[int(special.edge > 0)]
         off = np.abs(special.point.extrema[special.meshes[0]] - level).min()
-        if off > TOUCHING:
+        if off > TOUCH_DISTANCE:
             inside = low < special.after < high
             return special.after if inside else 0.5 * (low + high)
     return None
@@ -168,14 +202,14 @@ def _hidden(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
-    events, mixed = _grazing(segment.period_map, segment.at(low), segment.at(high))
+    events, is_ambiguous = _grazing(segment.period_map, segment.at(low), segment.at(high))
     between = None
-    if mixed and high - low > SHORTEST:
+    if is_ambiguous and high - low > SHORTEST:
         between = 0.5 * (low + high)
     elif depth < DEEPEST:
         between = hidden_graze(segment, low, high)
     if between is None:
-        specials = [_refined(segment, low, high, event) for event in events]
+        specials = [_refine(segment, low, high, event) for event in events]
         if depth < DEEPEST:
             between = _leap(segment.period_map, specials, low, high)
     if between is None:
@@ -185,39 +219,41 @@ def _grazes_between(segment: Segment, low: float, high: float, depth: int = 0) -
 
 
 def _grazing(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
-    touched, mixed = grazes(period_map, first, second)
-    return [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in touched], mixed
+    graze_list, is_ambiguous = grazes(period_map, first, second)
+    return [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in graze_list], is_ambiguous
 
 
 def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
-    """Changes between two points; True if more than one of a kind is among them."""
-    events, mixed = _grazing(period_map, first, second)
-    ones, minus, pairs = np.subtract(second.outside, first.outside)
+    """Changes between two points, and whether more than one of a kind is among them."""
+    events, is_ambiguous = _grazing(period_map, first, second)
+    plus_ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)
     if folds:
         events.append(_Event(Kind.FOLD, lambda point: point.tangent[-1]))
     crossing = first.parity != second.parity
-    mixed = mixed or (folds and crossing)
-    collided = (abs(ones) == 2 or abs(minus) == 2) and 2 * pairs == -(ones + minus)
+    is_ambiguous = is_ambiguous or (folds and crossing)
+    collided = (abs(plus_ones) == 2 or abs(minus) == 2) and 2 * pairs == -(plus_ones + minus)
     if collided:
-        return events, mixed
-    if crossing or (not folds and ones != 0) or abs(ones) > 1:
+        return events, is_ambiguous
+    if crossing or (not folds and plus_ones != 0) or abs(plus_ones) > 1:
         rank = min(first.outside[0], second.outside[0])
-        if crossing and ones == 0:
-            mixed = True
-        events.append(_Event(Kind.BRANCH, lambda point: _ranked(point.real[::-1], rank) - 1.0))
+        if crossing and plus_ones == 0:
+            is_ambiguous = True
+        events.append(_Event(Kind.BRANCH, lambda point: _value_at_rank(point.real[::-1], rank) - 1.0))
     if minus != 0:
         rank = min(first.outside[1], second.outside[1])
-        events.append(_Event(Kind.DOUBLING, lambda point: _ranked(-point.real, rank) - 1.0))
+        events.append(_Event(Kind.DOUBLING, lambda point: _value_at_rank(-point.real, rank) - 1.0))
     if pairs != 0:
         rank = min(first.outside[2], second.outside[2])
-        events.append(_Event(Kind.TORUS, lambda point: _ranked(np.abs(point.pairs), rank) - 1.0))
-    mixed = mixed or abs(ones) > 1 or abs(minus) > 1 or abs(pairs) > 1 or (minus != 0 and pairs != 0)
-    return events, bool(mixed)
+        events.append(_Event(Kind.TORUS, lambda point: _value_at_rank(np.abs(point.pairs), rank) - 1.0))
+    is_ambiguous = (
+        is_ambiguous or abs(plus_ones) > 1 or abs(minus) > 1 or abs(pairs) > 1 or (minus != 0 and pairs != 0)
+    )
+    return events, bool(is_ambiguous)
 
 
-def _ranked(values: Array, rank: int, missing: float = 0.0) -> float:
-    return float(values[rank]) if rank < values.size else missing
+def _value_at_rank(values: Array, rank: int, default: float = 0.0) -> float:
+    return float(values[rank]) if rank < values.size else default
 
 
 def _turns(first: BranchPoint, second: BranchPoint) -> bool:
@@ -226,7 +262,7 @@ def _turns(first: BranchPoint, second: BranchPoint) -> bool:
 
 
 def _loosening(segment: Segment, low: float, high: float, depth: int) -> list[Special]:
-    """A body comes loose or is caught: halve until the parameter is known; events before and after it."""
+    """Locate where a body comes loose or is caught, by halving, and the events before and after it."""
     start, end = low, high
     while high - low > 1e-9:
         middle = 0.5 * (low + high)
@@ -239,10 +275,10 @@ def _loosening(segment: Segment, low: float, high: float, depth: int) -> list[Sp
     special = Special(Kind.NEUTRAL, segment.at(high), 1.0 + 0.0j, proof, high)
     beside = _between(segment, start, low, depth) + _between(segment, high, end, depth)
     # The last contact that a body loses is a graze of the same place.
-    return [special, *(other for other in beside if abs(other.after - high) > APART)]
+    return [special, *(candidate for candidate in beside if abs(candidate.after - high) > APART)]
 
 
-def _refined(segment: Segment, low: float, high: float, event: _Event) -> Special:
+def _refine(segment: Segment, low: float, high: float, event: _Event) -> Special:
     def test(fraction: float) -> float:
         if event.kind is Kind.GRAZE:
             return event.test(segment.extrema(fraction))

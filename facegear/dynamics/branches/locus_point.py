@@ -1,6 +1,6 @@
-"""A point of a locus of folds or period doublings in the plane of two parameters, by Newton's method.
+"""Find a point of a locus of folds or period doublings in the plane of two parameters, by Newton's method.
 
-The test that vanishes on the locus is the last unknown of a bordered system (Govaerts 2000).
+The test function that vanishes on the locus is the last unknown of a bordered system (Govaerts 2000).
 """
 
 from dataclasses import dataclass, replace
@@ -15,26 +15,61 @@ from facegear.dynamics.branches.special import Kind
 from facegear.errors import NotConverged
 
 DIFFERENCE = 1e-5
-"""Step of the differences that tell how the test changes along the family of orbits."""
+"""Step of the differences that give the change of the test function along the family of orbits."""
 SHARP = 2e-5
-"""Step of the central differences at a corner."""
+"""Step of the central differences at a corner of the locus."""
 NEWTON_STEPS = 8
+"""Maximum number of Newton steps."""
 
 
 @dataclass(frozen=True, eq=False)
 class LocusProblem:
-    """The map in the plane at one tolerance, and whether folds or doublings are followed."""
+    """Problem whose solutions are the points of a locus.
+
+    Attributes
+    ----------
+    kind : Kind
+        Fold or period doubling.
+    plane : Plane
+        Systems, by two parameters.
+    period_map : PeriodMap
+        Map with the tolerance and the number of mesh periods.
+    """
 
     kind: Kind
     plane: Plane
     period_map: PeriodMap
 
     def at(self, v: float) -> PeriodMap:
-        """The map at a logarithm of the second parameter."""
+        """Return the period map at a value of the second parameter.
+
+        Parameters
+        ----------
+        v : float
+            Logarithm of the second parameter, dimensionless.
+
+        Returns
+        -------
+        PeriodMap
+            Map over the first parameter.
+        """
         return replace(self.period_map, family=self.plane.line(float(np.exp(v))))
 
     def matrix(self, linear: Linear) -> Array:
-        """What is singular on the locus: M + I, or M - I without shifts along neutral directions."""
+        """Return the matrix that is singular on the locus.
+
+        It is M + I for period doublings, and for folds M - I bordered by the neutral directions.
+
+        Parameters
+        ----------
+        linear : Linear
+            Linearised map with the matrix M and k neutral directions.
+
+        Returns
+        -------
+        (2 n + k, 2 n + k) array
+            The matrix, without the border for period doublings; dimensionless.
+        """
         size = len(linear.matrix)
         if self.kind is Kind.DOUBLING:
             return linear.matrix + np.eye(size)
@@ -47,13 +82,31 @@ class LocusProblem:
 
 @dataclass(frozen=True, eq=False)
 class Borders:
-    """Row and column that border a singular matrix."""
+    """Column `left` and row `right`, each (size,), that border a singular matrix."""
 
     left: Array
     right: Array
 
     def test(self, matrix: Array) -> float:
-        """Zero where the matrix is singular: g of [matrix, left; right^T, 0] [w; g] = [0; 1]."""
+        """Compute the test function that is zero where the matrix is singular.
+
+        It is g of [matrix, left; right^T, 0] [w; g] = [0; 1].
+
+        Parameters
+        ----------
+        matrix : (size, size) array
+            Matrix of LocusProblem.matrix(), dimensionless.
+
+        Returns
+        -------
+        float
+            Test function, dimensionless.
+
+        Raises
+        ------
+        NotConverged
+            If the matrix has another size than the borders, because a body comes loose or is caught.
+        """
         size = len(matrix)
         if self.left.size != size:
             raise NotConverged("branches", "a locus", "a body comes loose or is caught")
@@ -66,10 +119,20 @@ class Borders:
 
 @dataclass(frozen=True, eq=False)
 class LocusPoint:
-    """x (2 n + 2,): weighted state, logarithms of both parameters. tangent (2 n + 2,) of the locus.
+    """Point of a locus.
 
-    bend: how the test changes along the orbits' own null direction, which vanishes at a cusp. gradient (2 n +
-    2,): the same along the surface of orbits.
+    Attributes
+    ----------
+    x : (2 n + 2,) array
+        Weighted state, logarithms of both parameters.
+    tangent : (2 n + 2,) array
+        Unit tangent of the locus.
+    bend : float
+        Change of the test function along the null direction of the orbits, which vanishes at a cusp.
+    borders : Borders
+        Borders of the singular matrix.
+    gradient : (2 n + 2,) array
+        Change of the test function along the surface of orbits.
     """
 
     x: Array
@@ -84,13 +147,37 @@ class LocusPoint:
         return float(np.exp(self.x[-2])), float(np.exp(self.x[-1]))
 
 
-def turned(point: LocusPoint) -> LocusPoint:
-    """The same point looking the other way."""
+def reverse_tangent(point: LocusPoint) -> LocusPoint:
+    """Return the same point with the opposite tangent.
+
+    Parameters
+    ----------
+    point : LocusPoint
+        Point of a locus.
+
+    Returns
+    -------
+    LocusPoint
+        Point whose tangent has the other sign.
+    """
     return replace(point, tangent=-point.tangent)
 
 
 def borders_of(matrix: Array, before: Borders | None) -> Borders:
-    """Singular vectors of the smallest singular value, with the signs of those before."""
+    """Singular vectors of the smallest singular value, with the signs of the previous borders.
+
+    Parameters
+    ----------
+    matrix : (size, size) array
+        Matrix to border, dimensionless.
+    before : Borders or None
+        Previous borders along the locus.
+
+    Returns
+    -------
+    Borders
+        Left and right singular vector (size,).
+    """
     left, _, right = np.linalg.svd(matrix)
     left_border, two = left[:, -1], right[-1]
     if before is not None and before.left.shape == left_border.shape:
@@ -108,10 +195,37 @@ def solve_on_locus(
     forward: Array,
     sharp: bool = False,
 ) -> LocusPoint:
-    """The point of the locus next to `guess` with row . (x - guess) = 0.
+    """Find the point of the locus next to a guess with row . (x - guess) = 0.
 
-    The change of the test along the orbits comes from differences of the matrix, once for each point. Raises
-    NotConverged naming the two parameters.
+    The change of the test function along the orbits comes from differences of the matrix. It is computed once
+    for each point, and again where the test does not fall.
+
+    Parameters
+    ----------
+    problem : LocusProblem
+        The locus.
+    guess : (2 n + 2,) array
+        Weighted state and logarithms of both parameters, dimensionless.
+    row : (2 n + 2,) array
+        Condition that selects the point, dimensionless.
+    borders : Borders
+        Borders of a point nearby.
+    gradient : (2 n + 2,) array or None
+        Change of the test function at a point nearby, dimensionless.
+    forward : (2 n + 2,) array
+        Direction along which the tangent points, dimensionless.
+    sharp : bool
+        Whether to use central differences of the step SHARP, as at corners.
+
+    Returns
+    -------
+    LocusPoint
+        Point of the locus.
+
+    Raises
+    ------
+    NotConverged
+        If Newton's method fails; the message names both parameters.
     """
     x, goal = guess.copy(), max(0.1 * problem.period_map.step_tolerance, 2e-13)
     before = np.inf
@@ -129,14 +243,14 @@ def solve_on_locus(
         x = x + step
         if np.abs(step).max() <= max(1e3 * goal, 1e-10):
             return _point(problem, x, borders, forward, sharp)
-    where = " and ".join(
+    location = " and ".join(
         f"{n} = {np.exp(value):.6g}" for n, value in zip(problem.plane.names, guess[-2:], strict=True)
     )
-    raise NotConverged("branches", where, f"Newton's method on the locus of a {problem.kind}")
+    raise NotConverged("branches", location, f"Newton's method on the locus of a {problem.kind}")
 
 
 def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
-    """The map at x, the two directions (2 n + 2, 2) along which orbits go on, the step onto the orbits."""
+    """Return the map at x, the two directions (2 n + 2, 2) of the surface of orbits, and the step onto it."""
     z, u, v = x[:-2], x[-2], x[-1]
     linear = problem.at(v).linear(z, u)
     ahead, back = (problem.at(v + sign * DIFFERENCE).gap(z, u) for sign in (1.0, -1.0))
@@ -146,26 +260,26 @@ def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
     matrix[:size] = np.column_stack([linear.matrix - np.eye(size), linear.slope, slope])
     matrix[size:, :size] = linear.neutral.T
     left, sizes, right = np.linalg.svd(matrix)
-    kept = np.count_nonzero(sizes > SINGULAR * sizes[0])
+    rank = np.count_nonzero(sizes > SINGULAR * sizes[0])
     gap = np.concatenate([-linear.gap, np.zeros(loose)])
-    normal = right[:kept].T @ ((left.T @ gap)[:kept] / sizes[:kept])
+    normal = right[:rank].T @ ((left.T @ gap)[:rank] / sizes[:rank])
     return linear, right[-2:].T, normal
 
 
 def _gradient(
     problem: LocusProblem, x: Array, surface: Array, borders: Borders, test: float, sharp: bool
 ) -> Array:
-    """How the test changes along the orbits, as a vector (2 n + 2,) in their surface."""
+    """Change of the test function along the surface of orbits, as a vector (2 n + 2,) in it."""
 
-    def moved(along: Array, step: float) -> float:
-        there = x + step * along
-        return borders.test(problem.matrix(problem.at(there[-1]).linear(there[:-2], there[-2])))
+    def test_at(along: Array, step: float) -> float:
+        position = x + step * along
+        return borders.test(problem.matrix(problem.at(position[-1]).linear(position[:-2], position[-2])))
 
     if sharp:
         step = SHARP
-        rates = [(moved(along, step) - moved(along, -step)) / (2.0 * step) for along in surface.T]
+        rates = [(test_at(along, step) - test_at(along, -step)) / (2.0 * step) for along in surface.T]
     else:
-        rates = [(moved(along, DIFFERENCE) - test) / DIFFERENCE for along in surface.T]
+        rates = [(test_at(along, DIFFERENCE) - test) / DIFFERENCE for along in surface.T]
     return surface @ np.array(rates)
 
 

@@ -1,4 +1,4 @@
-"""The branches of a machine over its speed: what the stage asks for, from a plan."""
+"""Branches of a machine over its speed: the computations of the branches stage, from its plan."""
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -16,29 +16,72 @@ from facegear.dynamics.branches.plan import BranchPlan
 from facegear.dynamics.branches.points import BranchPoint, at_parameter
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.survey import Survey, survey
-from facegear.dynamics.branches.swept import Swept
+from facegear.dynamics.branches.sweep_orbits import SweptMotion
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, simulate, static_start
 from facegear.errors import NotConverged
 from facegear.number_format import count_noun
 
 TRIES = 12
+"""Number of speeds, spaced geometrically over the range, that are tried after the nominal one."""
 SETTLING = Settings(tolerance=1e-6, settle=256, window=64, extensions=1)
+"""Settings of runs that need only come near to a motion; Newton's method refines the orbit afterwards."""
 
 
 def plan_range(plan: BranchPlan) -> ContinuationSettings:
-    """Range of the branches."""
+    """Return the speed range of a plan as settings of the continuation.
+
+    Parameters
+    ----------
+    plan : BranchPlan
+        What to compute; speeds in rpm.
+
+    Returns
+    -------
+    ContinuationSettings
+        Range in rpm, default steps.
+    """
     return ContinuationSettings(plan.from_rpm, plan.to_rpm)
 
 
 def machine_period_map(model: Model, plan: BranchPlan) -> PeriodMap:
-    """The map of a machine over its speed in rpm."""
+    """Return the period map of a machine over its speed in rpm.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : BranchPlan
+        What to compute; speeds in rpm.
+
+    Returns
+    -------
+    PeriodMap
+        Map over one mesh period at the plan's tolerance.
+    """
     return PeriodMap(speed_family(model), 1, plan.tolerance)
 
 
 def first_orbit(model: Model, plan: BranchPlan) -> BranchPoint:
-    """A motion of period one: at the nominal speed, else at the first of TRIES speeds where a run settles on
-    one. Raises NotConverged if there is none.
+    """Find a motion of period one: at the nominal speed, else at the first of TRIES speeds where a run
+    settles on it.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : BranchPlan
+        What to compute; speeds in rpm.
+
+    Returns
+    -------
+    BranchPoint
+        Orbit of period one.
+
+    Raises
+    ------
+    NotConverged
+        If no run settles on such a motion.
     """
     period_map = machine_period_map(model, plan)
     speeds = [plan.nominal_rpm, *np.geomspace(plan.from_rpm, plan.to_rpm, TRIES + 1)[1:]]
@@ -50,51 +93,106 @@ def first_orbit(model: Model, plan: BranchPlan) -> BranchPoint:
             continue
         u = float(np.log(speed))
         try:
-            return at_parameter(period_map, period_map.weighted(response.state, u), u)
+            return at_parameter(period_map, period_map.to_weighted(response.state, u), u)
         except NotConverged:
             continue
-    tried = ", ".join(f"{speed:.6g}" for speed in speeds)
-    raise NotConverged("branches", f"{tried} rpm", "no run from rest settles on a motion of period one")
+    speed_list = ", ".join(f"{speed:.6g}" for speed in speeds)
+    raise NotConverged("branches", f"{speed_list} rpm", "no run from rest settles on a motion of period one")
 
 
 def random_starts(
     model: Model, plan: BranchPlan, speed_rpm: float, step: Callable[[], None] = lambda: None
 ) -> list[SettledMotion]:
-    """Motions on which random starts around rest end at a speed."""
+    """Run random starts around rest at a speed and return the motions on which they end.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : BranchPlan
+        What to compute; speeds in rpm.
+    speed_rpm : float
+        Pinion speed, rpm.
+    step : callable
+        Called without arguments after each start.
+
+    Returns
+    -------
+    list of SettledMotion
+        Motions, the most frequent first.
+    """
     period_map, u = machine_period_map(model, plan), float(np.log(speed_rpm))
-    rest, weights = period_map.weighted(static_start(model), u), period_map.weights(period_map.integrator(u))
-    moved = scattered(model, plan.spread, plan.starts, plan.seed)
-    return explore(period_map, speed_rpm, rest + weights * moved.reshape(plan.starts, -1), SETTLING, step)
+    rest, weights = (
+        period_map.to_weighted(static_start(model), u),
+        period_map.weights(period_map.integrator(u)),
+    )
+    offsets = scattered(model, plan.spread, plan.starts, plan.seed)
+    return explore(period_map, speed_rpm, rest + weights * offsets.reshape(plan.starts, -1), SETTLING, step)
 
 
 def scattered(model: Model, spread: float, count: int, seed: int) -> Array:
-    """Random places and velocities by mesh phase in the model's coordinates, (count, 2, n).
+    """Draw random positions and velocities by mesh phase in the model's coordinates.
 
-    Displacements of the bodies, and rotations at the mesh radius, are spread evenly over -spread to spread
-    (m), and what the model leaves out of them is left out: they are the same in whatever basis it has.
+    Displacements of the bodies, and rotations at the mesh radius, are uniform between -spread and spread. The
+    part that the reduction neglects is left out. So the starts do not depend on the basis of the reduction.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    spread : float
+        Half width of the distribution, m.
+    count : int
+        Number of starts.
+    seed : int
+        Seed of the random numbers, any number.
+
+    Returns
+    -------
+    (count, 2, n) array
+        Displacements and their derivatives by phase in reduced coordinates, m.
     """
     linear = model.machine.linear
     random = np.random.default_rng(seed).uniform(-1.0, 1.0, size=(count, 2, linear.size))
-    return spread * random / linear.lengths @ linear.momentum(model.reduced.basis)
+    return spread * random / linear.lengths @ linear.momentum(model.reduction.basis)
 
 
 def machine_survey(
     model: Model,
     plan: BranchPlan,
     motions_by_speed: Sequence[tuple[float, Sequence[SettledMotion]]],
-    swept: Sequence[Swept],
+    sweep_motions: Sequence[SweptMotion],
     progress: Callable[[str], None] = lambda text: None,
 ) -> Survey:
-    """All branches of a machine: of period one, those that leave it, and those of motions found elsewhere.
+    """Compute all branches of a machine.
 
-    motions_by_speed: those of random starts; swept: those of a sweep.
+    They are those of period one, those that leave them, and those of motions that were found elsewhere.
+    Motions that are not periodic, or longer than the plan's longest_start_period, are left out.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : BranchPlan
+        What to compute; speeds in rpm.
+    motions_by_speed : sequence of tuple
+        Speed in rpm, and the motions on which random starts end there.
+    sweep_motions : sequence of SweptMotion
+        Periodic motions of a sweep.
+    progress : callable
+        Called with one line of text about each step.
+
+    Returns
+    -------
+    Survey
+        Branches, and motions that were not followed.
     """
     start, period_map = first_orbit(model, plan), machine_period_map(model, plan)
     motions = [
         (motion.point, motion.period, f"random starts, {speed:.6g} rpm")
-        for speed, many in motions_by_speed
-        for motion in many
-    ] + [(motion.point, motion.period, motion.origin) for motion in swept]
+        for speed, motions_at_speed in motions_by_speed
+        for motion in motions_at_speed
+    ] + [(motion.point, motion.period, motion.origin) for motion in sweep_motions]
     short = [
         (period_map.over(period), point, origin)
         for point, period, origin in motions
@@ -106,7 +204,22 @@ def machine_survey(
 
 
 def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[StabilityLimit]:
-    """How far every stable motion at the nominal speed is from its end, in speed and in torque."""
+    """Find how far every stable motion at the nominal speed is from its end, in speed and in torque.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : BranchPlan
+        What to compute; speeds in rpm.
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    list of StabilityLimit
+        Limits upwards and downwards in each parameter.
+    """
     speed = plan.nominal_rpm
     across = machine_plane(model, "torque").across(speed)
     families = [
@@ -122,39 +235,56 @@ def machine_loci(
     specials: Sequence[tuple[PeriodMap, Kind, Array]],
     progress: Callable[[str], None] = lambda text: None,
 ) -> tuple[list[Locus], list[str]]:
-    """Loci of the folds and period doublings nearest to the nominal speed, for each parameter of the plan.
+    """Follow the loci of the folds and period doublings nearest to the nominal speed, in each parameter of
+    the plan.
 
-    Also why some could not be followed.
+    Special points through which an earlier locus passes are left out.
 
-    specials: map, kind and x of each. Those that a locus found before passes already are left out.
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : BranchPlan
+        What to compute; speeds in rpm.
+    specials : sequence of tuple
+        Period map, kind and x (2 n + 1,) of each special point.
+    progress : callable
+        Called with one line of text about each step.
+
+    Returns
+    -------
+    list of Locus
+        Loci found.
+    list of str
+        One line for each locus that could not be followed, with the reason.
     """
     nearest = sorted(specials, key=lambda candidate: abs(np.exp(candidate[2][-1]) - plan.nominal_rpm))[
         : plan.nearest
     ]
     loci: list[Locus] = []
-    missed: list[str] = []
+    failures: list[str] = []
     for parameter in plan.parameters:
         plane = machine_plane(model, parameter)
         run = LocusRun((plan.from_rpm, plan.factors[0]), (plan.to_rpm, plan.factors[1]))
-        passed: list[tuple[int, float]] = []
+        points_on_loci: list[tuple[int, float]] = []
         for period_map, kind, x in nearest:
-            if any(period_map.period == period and abs(x[-1] - u) < 1e-4 for period, u in passed):
+            if any(period_map.period == period and abs(x[-1] - u) < 1e-4 for period, u in points_on_loci):
                 continue
             try:
                 locus = follow_locus(plane, 1.0, kind, x, period_map, run)
             except NotConverged as error:
-                missed.append(f"{kind} at {np.exp(x[-1]):.6g} rpm over {parameter}: {error}")
-                progress(missed[-1])
+                failures.append(f"{kind} at {np.exp(x[-1]):.6g} rpm over {parameter}: {error}")
+                progress(failures[-1])
                 continue
             loci.append(locus)
             points = count_noun(len(locus.points), "point")
             progress(f"{kind} at {np.exp(x[-1]):.6g} rpm over {parameter}: {points}")
-            passed += [(period_map.period, u) for u in _at_speed(locus)]
-    return loci, missed
+            points_on_loci += [(period_map.period, u) for u in _at_speed(locus)]
+    return loci, failures
 
 
 def _at_speed(locus: Locus) -> list[float]:
-    """Logarithms of the speed at which a locus passes the machine as it is."""
+    """Logarithms of the speeds at which a locus passes the machine with unchanged second parameter."""
     x = np.array([point.x[-2:] for point in locus.points])
     special_points_at = []
     for a, b in pairwise(x):

@@ -1,4 +1,4 @@
-"""How far stable motions are from their ends, and where several of them exist."""
+"""Find how far stable motions are from their ends, and where several of them exist."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,7 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from facegear.dynamics.branches.continuation import PASSED, Branch, ContinuationSettings, follow, turned
+from facegear.dynamics.branches.continuation import (
+    NON_LIMITING_KINDS,
+    Branch,
+    ContinuationSettings,
+    follow,
+    reverse_tangent,
+)
 from facegear.dynamics.branches.explore import crossings
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
@@ -23,16 +29,16 @@ class StabilityLimit:
 
     Attributes
     ----------
-    branch, period
-        Of the motion.
-    parameter, start
-        Its name and value there.
-    direction
-        Of the parameter.
-    special
-        None if nothing is met within the range.
-    reached
-        Value of the parameter at the end.
+    branch, period : int
+        Number of the motion's branch, and its mesh periods.
+    parameter, start : str, float
+        Name of the parameter, and its value at the motion.
+    direction : str
+        "up" or "down".
+    special : Special or None
+        Special point that is met first; None if there is none within the range.
+    end_value : float
+        Value of the parameter at the special point, else at the end of the branch.
     """
 
     branch: int
@@ -41,11 +47,24 @@ class StabilityLimit:
     start: float
     direction: str
     special: Special | None
-    reached: float
+    end_value: float
 
 
 def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, BranchPoint]]:
-    """Stable orbits at a parameter, each with the number of its branch."""
+    """Return the stable orbits at a value of the parameter.
+
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Branches followed.
+    value : float
+        The parameter, in its unit.
+
+    Returns
+    -------
+    list of tuple
+        Number of the branch, and the orbit.
+    """
     return [
         (number, point)
         for number, branch in enumerate(branches)
@@ -57,10 +76,23 @@ def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Branc
 def stability_limits(
     branches: Sequence[Branch], families: Sequence[tuple[Family, float, ContinuationSettings]], value: float
 ) -> list[StabilityLimit]:
-    """For every stable motion at a parameter of the branches, the first special point in each family. Images
-    have the limits of their original.
+    """Find the first special point of every stable motion, in both directions of each family.
 
-    families: with the value at which they pass through the motion, and the range to look through.
+    An image has the limits of its original.
+
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Branches followed.
+    families : sequence of tuple
+        Family, the value of its parameter at the motion, and the range to search.
+    value : float
+        Parameter of the branches at which the motions are taken, in its unit.
+
+    Returns
+    -------
+    list of StabilityLimit
+        Limits sorted by branch.
     """
     originals = [(n, point) for n, point in stable_at(branches, value) if branches[n].image_of is None]
     limits = []
@@ -80,32 +112,50 @@ def stability_limits(
 def _limits_of(
     period_map: PeriodMap, number: int, point: BranchPoint, start: float, run: ContinuationSettings
 ) -> list[StabilityLimit]:
-    here = at_parameter(period_map, point.z, float(np.log(start)))
+    start_point = at_parameter(period_map, point.z, float(np.log(start)))
     run = replace(run, to_first=True)
     sides = []
     for direction in ("up", "down"):
         sign = 1.0 if direction == "up" else -1.0
-        looking = here if here.tangent[-1] * sign > 0.0 else turned(here)
-        branch = follow(period_map, looking, run, both=False)
+        looking = start_point if start_point.tangent[-1] * sign > 0.0 else reverse_tangent(start_point)
+        branch = follow(period_map, looking, run, both_ways=False)
         special = next(
-            (special_point for special_point in branch.specials if special_point.kind not in PASSED), None
+            (
+                special_point
+                for special_point in branch.specials
+                if special_point.kind not in NON_LIMITING_KINDS
+            ),
+            None,
         )
-        reached = branch.points[-1].value if special is None else special.point.value
+        end_value = branch.points[-1].value if special is None else special.point.value
         sides.append(
             StabilityLimit(
-                number, period_map.period, period_map.family.name, start, direction, special, float(reached)
+                number, period_map.period, period_map.family.name, start, direction, special, float(end_value)
             )
         )
     return sides
 
 
-def several(branches: Sequence[Branch]) -> list[tuple[float, float, tuple[int, ...]]]:
-    """Ranges of the parameter between special points in which several stable motions exist.
+def coexistence_ranges(branches: Sequence[Branch]) -> list[tuple[float, float, tuple[int, ...]]]:
+    """Find the ranges of the parameter, between special points, in which several stable motions exist.
 
-    Each with its ends and the numbers of the branches, one for each motion.
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    list of tuple
+        Both ends in the parameter's unit, and the number of a branch for each motion.
     """
     edges = sorted(
-        {special.point.value for b in branches for special in b.specials if special.kind not in PASSED}
+        {
+            special.point.value
+            for b in branches
+            for special in b.specials
+            if special.kind not in NON_LIMITING_KINDS
+        }
         | {float(b.values[i]) for b in branches for i in (0, -1)}
     )
     ranges: list[tuple[float, float, tuple[int, ...]]] = []
@@ -124,13 +174,17 @@ def several(branches: Sequence[Branch]) -> list[tuple[float, float, tuple[int, .
 
 
 def _stable_passages(branch: Branch, u: float) -> int:
-    """How often a stable part of a branch passes a parameter's logarithm, away from special points."""
-    count, places = 0, {int(special.after): special for special in branch.of(*ENDING)}
-    for index, (here, there) in enumerate(pairwise(branch.points)):
-        if not min(here.u, there.u) <= u < max(here.u, there.u):
+    """Count the passages of stable parts of a branch at a parameter's logarithm, away from special points."""
+    count, special_by_step = 0, {int(special.after): special for special in branch.of(*ENDING)}
+    for index, (start_point, end_point) in enumerate(pairwise(branch.points)):
+        if not min(start_point.u, end_point.u) <= u < max(start_point.u, end_point.u):
             continue
-        special = places.get(index)
-        nearer = here if special is None or (u - special.point.u) * (here.u - special.point.u) > 0 else there
+        special = special_by_step.get(index)
+        nearer = (
+            start_point
+            if special is None or (u - special.point.u) * (start_point.u - special.point.u) > 0
+            else end_point
+        )
         count += nearer.stable
     return count
 
@@ -138,8 +192,23 @@ def _stable_passages(branch: Branch, u: float) -> int:
 def passed_by(
     branches: Sequence[Branch], before: float, after: float, period: int, slack: float
 ) -> list[tuple[int, Special]]:
-    """Special points within a jump's bracket (widened by `slack`) at which a stable part of a branch of some
-    period ends; folds first, then the nearest to the bracket's middle.
+    """Find the special points near a jump at which a stable part of a branch ends.
+
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Branches followed.
+    before, after : float
+        Values of the parameter on both sides of the jump, in its unit.
+    period : int
+        Number of mesh periods of the branch.
+    slack : float
+        Width by which the bracket is widened on both sides, in the parameter's unit.
+
+    Returns
+    -------
+    list of tuple
+        Number of the branch, and the special point: folds first, then the nearest to the bracket's middle.
     """
     low, high = sorted((before, after))
     middle = 0.5 * (low + high)

@@ -1,4 +1,4 @@
-"""What a periodic motion means for the machine: deflections, forces and contact of every mesh."""
+"""Deflections, forces and contact of every mesh in a periodic motion of a branch."""
 
 from dataclasses import dataclass
 
@@ -13,13 +13,23 @@ from facegear.dynamics.steady_state.mesh_samples import (
 from facegear.dynamics.steady_state.window import run_window
 
 SAMPLES = 64
+"""Minimum number of samples in each mesh period."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measures:
-    """Of each mesh, shape (meshes,): RMS without and with mean, least and largest deflection in m, largest
-    elastic force in N. fractions (3, meshes): time open, on drive and
-    back flank.
+    """Measures of each mesh in a periodic motion.
+
+    Attributes
+    ----------
+    ac_rms, rms : (meshes,) array
+        RMS of the deflection without and with its mean, m.
+    minimum, maximum : (meshes,) array
+        Smallest and largest deflection, m.
+    peak_force : (meshes,) array
+        Largest elastic force, N.
+    fractions : (3, meshes) array
+        Fraction of the time open, on the drive flank, and on the back flank.
     """
 
     ac_rms: Array
@@ -31,18 +41,31 @@ class Measures:
 
 
 def measures(period_map: PeriodMap, point: BranchPoint) -> Measures:
-    """Measures of an orbit, by the same sums as those of a sweep."""
+    """Compute the measures of an orbit, by the same sums as those of a sweep.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    point : BranchPoint
+        The orbit.
+
+    Returns
+    -------
+    Measures
+        Measures of each mesh.
+    """
     integrator = period_map.integrator(point.u)
     system = integrator.system
     state = integrator.by_phase(period_map.state(point.z, point.u))
     window = run_window(integrator, state, period_map.period, SAMPLES)
-    each = each_deflection(system, window.samples, window.per_period)
+    deflections = each_deflection(system, window.samples, window.per_period)
     moments = window.averages.meshes(True)
     return Measures(
         ac_rms=moments.ac_rms,
         rms=moments.rms,
         minimum=moments.minimum,
         maximum=moments.maximum,
-        peak_force=largest_mesh_forces(system, each, window.per_period, wraps=True),
-        fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
+        peak_force=largest_mesh_forces(system, deflections, window.per_period, wraps=True),
+        fractions=mesh_fractions(system, window.fractions[:, : system.contacts], deflections),
     )

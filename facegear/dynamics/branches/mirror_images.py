@@ -1,4 +1,4 @@
-"""The images of a branch under the symmetries of its system, which are branches of the same system."""
+"""Images of a branch under the symmetries of its system, which are branches of the same system."""
 
 from dataclasses import replace
 
@@ -10,27 +10,34 @@ from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.segment import SMALL
 from facegear.dynamics.branches.special import Special
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.symmetries import Symmetry
 from facegear.errors import NotConverged
 
 WORST = 100.0
-"""Change of an image over its period, in tolerances of the map, above which it is no motion of the system."""
+"""An image whose change over its period exceeds this, in tolerances of the map, is no motion of the
+system.
+"""
 
 
 def image_state(period_map: PeriodMap, z: Array, u: float, symmetry: Symmetry) -> Array:
-    """Return the weighted state (2 n,), at the start of a mesh period, of the image of the motion through z.
+    """Return the weighted state, at the start of a mesh period, of the image of the motion through a state.
 
     Parameters
     ----------
-    period_map
-        The map of the system, which has the symmetry.
-    z : (2 n,)
-        Weighted state at the start of a mesh period.
-    u
-        Logarithm of the parameter.
-    symmetry
+    period_map : PeriodMap
+        Map of the system, which has the symmetry.
+    z : (2 n,) array
+        Weighted state at the start of a mesh period, dimensionless.
+    u : float
+        Logarithm of the parameter, dimensionless.
+    symmetry : Symmetry
         Maps motions to motions.
+
+    Returns
+    -------
+    (2 n,) array
+        Weighted state of the image, dimensionless.
     """
     integrator = period_map.integrator(u)
     weights = period_map.weights(integrator)
@@ -47,6 +54,18 @@ def image_branch(branch: Branch, symmetry: Symmetry) -> Branch:
 
     Its speeds, stability and special points are those of the branch itself; no continuation is needed.
 
+    Parameters
+    ----------
+    branch : Branch
+        Branch to map.
+    symmetry : Symmetry
+        Symmetry of its system.
+
+    Returns
+    -------
+    Branch
+        Image with the same number of points.
+
     Raises
     ------
     NotConverged
@@ -61,16 +80,38 @@ def image_branch(branch: Branch, symmetry: Symmetry) -> Branch:
 
 
 def image_point(period_map: PeriodMap, point: BranchPoint, symmetry: Symmetry) -> BranchPoint:
-    """Return the image of a periodic motion, see image_branch()."""
+    """Return the image of a periodic motion under a symmetry of its system.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    point : BranchPoint
+        The motion.
+    symmetry : Symmetry
+        Symmetry of its system.
+
+    Returns
+    -------
+    BranchPoint
+        The image; its tangent is a difference over SMALL along the original's.
+
+    Raises
+    ------
+    NotConverged
+        If the image is no periodic motion.
+    """
     z, u = image_state(period_map, point.z, point.u, symmetry), point.u
     ahead = point.x + SMALL * point.tangent
-    moved = np.append(image_state(period_map, ahead[:-1], ahead[-1], symmetry), ahead[-1])
-    tangent = moved - np.append(z, u)
+    image_ahead = np.append(image_state(period_map, ahead[:-1], ahead[-1], symmetry), ahead[-1])
+    tangent = image_ahead - np.append(z, u)
     linear = period_map.linear(z, u)
     off = float(np.abs(linear.gap).max())
     if off > WORST * period_map.tolerance + 2.0 * float(np.abs(point.linear.gap).max()):
-        where = f"{period_map.family.name} = {point.value:.9g}"
-        raise NotConverged("branches", where, f"the image changes by {off:.1e} length scales over a period")
+        location = f"{period_map.family.name} = {point.value:.9g}"
+        raise NotConverged(
+            "branches", location, f"the image changes by {off:.1e} length scales over a period"
+        )
     return BranchPoint(
         x=np.append(z, u),
         tangent=tangent / np.linalg.norm(tangent),

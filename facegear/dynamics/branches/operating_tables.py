@@ -1,4 +1,4 @@
-"""The csv tables of what a machine is on: coexistence, margins, the sweep's motions and jumps."""
+"""Tables of the machine's operation: coexistence, margins, the sweep's motions and its jumps."""
 
 from collections.abc import Sequence
 
@@ -9,19 +9,31 @@ from facegear.dynamics.branches.columns import JUMP_COLUMNS, SWEPT_COLUMNS
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import SettledMotion, lies_on
 from facegear.dynamics.branches.margins import StabilityLimit, passed_by
-from facegear.dynamics.branches.swept import Swept, nearest_branch
+from facegear.dynamics.branches.sweep_orbits import SweptMotion, nearest_branch
 from facegear.dynamics.motion import Motion
 
 IRREGULAR = "not periodic"
+"""Entry of `branch` for motions that no branch of periodic motions can contain."""
 NEUTRAL = "on it but for the place of a body that touches nothing, which is free"
 
 
 def coexistence_table(
     motions_by_speed: Sequence[tuple[float, Sequence[SettledMotion]]], branches: Sequence[Branch]
 ) -> pd.DataFrame:
-    """Columns speed_rpm, motion, branch, fraction, error, starts: where random starts end.
+    """Tabulate the motions on which random starts end.
 
-    branch: its number, `not followed`, or what kind of motion it is that no branch holds.
+    Parameters
+    ----------
+    motions_by_speed : sequence of tuple
+        Speed in rpm, and its motions.
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    DataFrame
+        Columns speed_rpm, motion, branch, fraction, error, starts. `branch` is a number, `not followed`, or
+        `not periodic`.
     """
     rows = []
     for speed, motions in motions_by_speed:
@@ -50,16 +62,35 @@ def _branch_of(motion: SettledMotion, branches: Sequence[Branch]) -> str:
 
 
 def range_table(ranges: Sequence[tuple[float, float, tuple[int, ...]]]) -> pd.DataFrame:
-    """Columns from_rpm, to_rpm, motions, branches: where several stable periodic motions exist."""
+    """Tabulate the ranges in which several stable periodic motions exist.
+
+    Parameters
+    ----------
+    ranges : sequence of tuple
+        Both ends in rpm and the numbers of the branches, see coexistence_ranges().
+
+    Returns
+    -------
+    DataFrame
+        Columns from_rpm, to_rpm, motions (their number), branches.
+    """
     rows = [(low, high, len(numbers), " ".join(map(str, numbers))) for low, high, numbers in ranges]
     return pd.DataFrame(rows, columns=["from_rpm", "to_rpm", "motions", "branches"])
 
 
 def margin_table(stability_limits: Sequence[StabilityLimit]) -> pd.DataFrame:
-    """Columns branch, period, parameter, direction, start, kind, value, margin: how far each stable motion
-    at the operating speed is from its end or its loss of stability.
+    """Tabulate how far each stable motion at the operating speed is from its end or its loss of stability.
 
-    kind `none` where the range ends first; margin is value less start.
+    Parameters
+    ----------
+    stability_limits : sequence of StabilityLimit
+        Limits of stability_limits().
+
+    Returns
+    -------
+    DataFrame
+        Columns branch, period, parameter, direction, start, kind, value, margin. `kind` is `none` where the
+        range ends first; `margin` is value less start.
     """
     rows = [
         {
@@ -69,8 +100,8 @@ def margin_table(stability_limits: Sequence[StabilityLimit]) -> pd.DataFrame:
             "direction": loss.direction,
             "start": loss.start,
             "kind": "none" if loss.special is None else loss.special.kind.value,
-            "value": loss.reached,
-            "margin": loss.reached - loss.start,
+            "value": loss.end_value,
+            "margin": loss.end_value - loss.start,
         }
         for loss in stability_limits
     ]
@@ -78,14 +109,28 @@ def margin_table(stability_limits: Sequence[StabilityLimit]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
-def swept_table(swept: Sequence[Swept], branches: Sequence[Branch], longest: int) -> pd.DataFrame:
-    """SWEPT_COLUMNS: every periodic motion of the sweep with the branch it lies on, or why on none.
+def swept_table(
+    sweep_motions: Sequence[SweptMotion], branches: Sequence[Branch], longest: int
+) -> pd.DataFrame:
+    """Tabulate every periodic motion of the sweep with the branch that it lies on, or why it lies on none.
 
-    sweep_error: how far the sweep's state lies from the exact orbit next to it; distance: how far that orbit
-    lies from the branch's at the same speed; both in length scales.
+    Parameters
+    ----------
+    sweep_motions : sequence of SweptMotion
+        Periodic motions of the sweep.
+    branches : sequence of Branch
+        Branches followed.
+    longest : int
+        Longest period from which branches are started, in mesh periods.
+
+    Returns
+    -------
+    DataFrame
+        SWEPT_COLUMNS. `sweep_error` is the distance of the sweep's state from the exact orbit next to it;
+        `distance` is that of this orbit from the branch's at the same speed; both in length scales.
     """
     rows = []
-    for motion in swept:
+    for motion in sweep_motions:
         number, distance = nearest_branch(motion, branches)
         note = motion.reason
         if number is None and not note:
@@ -116,17 +161,36 @@ def _not_followed(period: int, longest: int) -> str:
 
 def jump_table(
     jumps: pd.DataFrame,
-    swept: Sequence[Swept],
+    sweep_motions: Sequence[SweptMotion],
     branches: Sequence[Branch],
     resolution_rpm: float,
     spacing_rpm: float,
 ) -> pd.DataFrame:
-    """JUMP_COLUMNS: each jump of the sweep with the special point its motion runs into, or why there is none.
+    """Tabulate each jump of the sweep with the special point into which its motion runs, or why there is
+    none.
 
-    A point counts within the jump's bracket or up to `resolution_rpm` beside it, else up to `spacing_rpm`,
-    the sweep's step, before it in the direction of running: a run holds on to a motion that has just lost
-    its stability until disturbances have grown. A motion that has not settled there is taken for the one of
-    the sweep's last speed, if that was periodic.
+    A point counts within the jump's bracket or up to `resolution_rpm` beside it. Else it counts up to
+    `spacing_rpm` before it in the direction of running: a run stays on a motion that has just lost its
+    stability until disturbances have grown. A motion that has not settled there is taken for that of the
+    sweep's last speed, if it was periodic.
+
+    Parameters
+    ----------
+    jumps : DataFrame
+        Columns direction, speed_before_rpm, speed_after_rpm, class_before.
+    sweep_motions : sequence of SweptMotion
+        Periodic motions of the sweep.
+    branches : sequence of Branch
+        Branches followed.
+    resolution_rpm : float
+        Width by which the bracket is widened, rpm.
+    spacing_rpm : float
+        Step of the sweep, rpm.
+
+    Returns
+    -------
+    DataFrame
+        JUMP_COLUMNS.
     """
     rows = []
     for jump in jumps.itertuples():
@@ -143,38 +207,41 @@ def jump_table(
         }
         label = str(jump.class_before)
         if label == Motion.NOT_SETTLED:
-            label = _last_class(str(jump.direction), before, after, swept, spacing_rpm) or label
-        rows.append(row | _named(before, after, label, branches, resolution_rpm, spacing_rpm))
+            label = _last_class(str(jump.direction), before, after, sweep_motions, spacing_rpm) or label
+        rows.append(row | _explain_jump(before, after, label, branches, resolution_rpm, spacing_rpm))
     return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
 
 
 def _last_class(
-    direction: str, before: float, after: float, swept: Sequence[Swept], spacing: float
+    direction: str, before: float, after: float, sweep_motions: Sequence[SweptMotion], spacing: float
 ) -> str | None:
-    """Class of the sweep's periodic motion at most one step of the sweep before a jump."""
+    """Return the class of the sweep's periodic motion at most one step before a jump, or None."""
     onward = np.sign(after - before)
     behind = {
         onward * (before - row.speed_rpm): row.label
-        for row in swept
+        for row in sweep_motions
         if row.direction == direction and 0.0 <= onward * (before - row.speed_rpm) <= spacing
     }
     return behind[min(behind)] if behind else None
 
 
-def _named(
+def _explain_jump(
     before: float, after: float, label: str, branches: Sequence[Branch], resolution: float, spacing: float
 ) -> dict[str, object]:
+    """Return the special point that explains a jump as entries of its row, or a note that says why there
+    is none.
+    """
     if not label.startswith("period-"):
         return {"note": f"the motion before it is {label}: no branch of periodic motions ends there"}
     period = int(label.removeprefix("period-"))
     hits = passed_by(branches, before, after, period, resolution)
     if not hits:
-        passed = passed_by(branches, before - np.copysign(spacing, after - before), before, period, 0.0)
-        hits = sorted(passed, key=lambda hit: abs(hit[1].point.value - before))
+        earlier_hits = passed_by(branches, before - np.copysign(spacing, after - before), before, period, 0.0)
+        hits = sorted(earlier_hits, key=lambda hit: abs(hit[1].point.value - before))
     if not hits:
-        followed = any(branch.period_map.period == period for branch in branches)
+        is_followed = any(branch.period_map.period == period for branch in branches)
         note = "no followed branch loses stability in the bracket"
-        return {"note": note if followed else f"no branch of period {period} was followed"}
+        return {"note": note if is_followed else f"no branch of period {period} was followed"}
     number, special = hits[0]
     low, high = sorted((before, after))
     speed = special.point.value

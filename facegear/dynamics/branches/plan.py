@@ -1,12 +1,14 @@
-"""What to find of a machine's branches; plain numbers, so that a config is read without the solvers."""
+"""Plan of a machine's branches; plain numbers, so that a config can be read without the solvers."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class BranchPlan:
-    """Speeds in rpm, lengths in m. spread: half width of the box of random starts, displacements and
-    rotations at the mesh radius.
+    """Settings of the branches stage.
+
+    Speeds are in rpm, lengths in m. `spread` is the half width of the box of random starts: displacements,
+    and rotations at the mesh radius.
     """
 
     from_rpm: float

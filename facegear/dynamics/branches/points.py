@@ -1,6 +1,7 @@
-"""A periodic motion on a branch, found by Newton's method bordered by one condition.
+"""Find a periodic motion on a branch by Newton's method bordered by one condition.
 
-The bordered matrix stays regular at folds (Keller 1977); multipliers tell stability (Seydel 2010).
+The bordered matrix stays regular at folds (Keller 1977). Floquet multipliers give the stability (Seydel
+2010).
 """
 
 from dataclasses import dataclass
@@ -14,16 +15,18 @@ from facegear.dynamics.multiplier_order import by_modulus
 from facegear.errors import NotConverged
 
 CHORD_STEPS = 10
+"""Maximum number of quasi-Newton steps with one matrix."""
 GAIN = 0.5
-"""Least gain of a step with an old matrix."""
+"""A step with an old matrix must reduce the gap at least to this fraction."""
 FARTHEST = 0.5
 """Largest step in the parameter's logarithm."""
 NEWTON_STEPS = 6
+"""Maximum number of Newton steps, each with a new matrix."""
 REAL_PAIR = 1e-6
 """Multipliers this close to the real axis are on it: symmetry makes them double, rounding splits them."""
 
 
-STALLED = 300.0
+STALL_FACTOR = 300.0
 """Change over the period, in goals, that is accepted where Newton's method gains no more."""
 ON_CIRCLE = 1e-9
 """Distance from the unit circle up to which a complex pair counts as on it: rounding of a period map."""
@@ -37,16 +40,16 @@ class BranchPoint:
 
     Attributes
     ----------
-    x : (2 n + 1,)
+    x : (2 n + 1,) array
         Weighted state and logarithm of the parameter.
-    tangent : (2 n + 1,)
-        Of the branch, of length one.
-    parity
+    tangent : (2 n + 1,) array
+        Unit tangent of the branch.
+    parity : float
         Sign of the bordered determinant, which changes at a branch point only.
-    linear
-        The map near it.
-    extrema
-        As PeriodMap.extrema gives them.
+    linear : Linear
+        Linearised period map at the state.
+    extrema : (m, 2, most) array
+        Extrema of the mesh deflections, see PeriodMap.extrema().
     """
 
     x: Array
@@ -91,7 +94,8 @@ class BranchPoint:
 
     @cached_property
     def outside(self) -> tuple[int, int, int]:
-        """Real multipliers above 1, real ones below -1, complex pairs outside the unit circle.
+        """Number of real multipliers above 1, of real ones below -1, and of complex pairs outside the unit
+        circle.
 
         A pair outside by no more than ON_CIRCLE is on the circle: without damping all pairs are, and rounding
         alone would move them across it.
@@ -104,18 +108,44 @@ class BranchPoint:
 
     @property
     def stable(self) -> bool:
-        """No multiplier outside the unit circle."""
+        """Whether no multiplier lies outside the unit circle."""
         return self.outside == (0, 0, 0)
 
 
 def without_neutral(values: AnyArray, neutral: int) -> ComplexArray:
-    """Multipliers (..., 2 n) less the `neutral` nearest to one, shape (..., 2 n - neutral)."""
+    """Remove the multipliers of neutral directions: those nearest to one.
+
+    Parameters
+    ----------
+    values : (..., 2 n) array
+        Multipliers, dimensionless.
+    neutral : int
+        Number of neutral directions.
+
+    Returns
+    -------
+    (..., 2 n - neutral) array
+        Remaining multipliers, dimensionless.
+    """
     nearest = np.argsort(np.abs(values - 1.0), axis=-1)
     return np.take_along_axis(values, nearest[..., neutral:], axis=-1).astype(complex)
 
 
-def bordered(linear: Linear, row: Array) -> Array:
-    """[M - I, P_u, V; row, 0; V^T, 0, 0] with the neutral directions V."""
+def bordered_matrix(linear: Linear, row: Array) -> Array:
+    """Assemble [M - I, P_u, V; row, 0; V^T, 0, 0] with the neutral directions V.
+
+    Parameters
+    ----------
+    linear : Linear
+        Linearised map with the matrix M, the slope P_u and k neutral directions V.
+    row : (2 n + 1,) array
+        Bordering condition, dimensionless.
+
+    Returns
+    -------
+    (2 n + 1 + k, 2 n + 1 + k) array
+        Bordered matrix, dimensionless.
+    """
     size, loose = linear.neutral.shape
     matrix = np.zeros((size + 1 + loose, size + 1 + loose))
     matrix[:size, :size] = linear.matrix - np.eye(size)
@@ -129,17 +159,41 @@ def bordered(linear: Linear, row: Array) -> Array:
 def correct(
     period_map: PeriodMap, guess: Array, row: Array, linear: Linear | None = None, farthest: float = np.inf
 ) -> tuple[Array, Linear]:
-    """The orbit next to `guess` (2 n + 1,) with row . (x - guess) = 0, and the map there.
+    """Find the orbit next to a guess with row . (x - guess) = 0, by Newton's method.
 
-    A matrix from nearby serves as long as it gains. Raises NotConverged, also where the orbit would lie
-    beyond `farthest` from the guess.
+    A matrix from nearby is used as long as each step gains enough.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    guess : (2 n + 1,) array
+        Weighted state and logarithm of the parameter, dimensionless.
+    row : (2 n + 1,) array
+        Condition that selects the orbit, dimensionless.
+    linear : Linear, optional
+        Linearised map near the guess.
+    farthest : float
+        Largest accepted distance from the guess, dimensionless.
+
+    Returns
+    -------
+    x : (2 n + 1,) array
+        The orbit, dimensionless.
+    linear : Linear
+        Linearised map at it.
+
+    Raises
+    ------
+    NotConverged
+        If Newton's method does not converge, or the orbit lies beyond `farthest`.
     """
     x, goal, chord, before = guess.copy(), _goal(period_map), linear, np.inf
     for _ in range(NEWTON_STEPS):
         if chord is not None:
             x, _ = _by_chord(period_map, x, guess, row, chord, goal)
         if np.linalg.norm(x - guess) > farthest:
-            raise NotConverged("branches", _where(period_map, guess), "correction above the step")
+            raise NotConverged("branches", _describe_location(period_map, guess), "correction above the step")
         chord = period_map.linear(x[:-1], x[-1])
         size = float(np.abs(chord.gap).max())
         if not np.isfinite(size) or size > 1e6:
@@ -150,35 +204,57 @@ def correct(
         if size <= goal and np.abs(step).max() <= 1e3 * goal:
             return x + step, chord
         # Where one list of steps gives way to another the map itself jumps by their errors.
-        if 0.5 * before < size <= STALLED * goal:
+        if 0.5 * before < size <= STALL_FACTOR * goal:
             return x, chord
         x, before = x + step, size
         if np.abs(step).max() <= 1e-3 * np.sqrt(goal) and np.abs(period_map.gap(x[:-1], x[-1])).max() <= goal:
             return x, chord
-    raise NotConverged("branches", _where(period_map, guess), "bordered Newton")
+    raise NotConverged("branches", _describe_location(period_map, guess), "bordered Newton")
 
 
-def _where(period_map: PeriodMap, x: Array) -> str:
+def _describe_location(period_map: PeriodMap, x: Array) -> str:
     return f"{period_map.family.name} = {np.exp(x[-1]):.9g}"
 
 
 def correct_state(period_map: PeriodMap, guess: Array, row: Array, linear: Linear) -> Array:
-    """The orbit alone, with a matrix from nearby. Raises NotConverged where that one does not serve."""
+    """Find the orbit next to a guess as correct() does, with a matrix from nearby where that suffices.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    guess : (2 n + 1,) array
+        Weighted state and logarithm of the parameter, dimensionless.
+    row : (2 n + 1,) array
+        Condition that selects the orbit, dimensionless.
+    linear : Linear
+        Linearised map near the guess.
+
+    Returns
+    -------
+    (2 n + 1,) array
+        The orbit, dimensionless.
+
+    Raises
+    ------
+    NotConverged
+        If Newton's method does not converge.
+    """
     x, size = _by_chord(period_map, guess.copy(), guess, row, linear, _goal(period_map))
-    if size > STALLED * _goal(period_map):
+    if size > STALL_FACTOR * _goal(period_map):
         x, _ = correct(period_map, guess, row, linear)
     return x
 
 
 def _goal(period_map: PeriodMap) -> float:
-    """Change over the period at which an orbit is found: below the steps' errors."""
+    """Change over the period at which an orbit counts as found: below the errors of the steps."""
     return max(0.1 * period_map.step_tolerance, 2e-13)
 
 
 def _by_chord(
     period_map: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float
 ) -> tuple[Array, float]:
-    """Broyden's steps from a matrix nearby while they gain: the best point reached and its change."""
+    """Take Broyden's steps from a nearby matrix while they gain; return the best point and its change."""
     inverse = _bordered_inverse(linear, row)
     right, step = np.zeros(len(inverse)), np.zeros(len(inverse))
     best, nearest, before = np.inf, x, np.zeros(len(inverse))
@@ -194,8 +270,8 @@ def _by_chord(
         right[gap.size + 1 :] = linear.neutral.T @ (x - guess)[:-1]
         if count > 0:
             along = step @ inverse
-            changed = inverse @ (right - before)
-            inverse = inverse + np.outer(step - changed, along) / (along @ (right - before))
+            predicted_step = inverse @ (right - before)
+            inverse = inverse + np.outer(step - predicted_step, along) / (along @ (right - before))
         before = right.copy()
         step = -inverse @ right
         if abs(step[x.size - 1]) > FARTHEST:
@@ -204,24 +280,26 @@ def _by_chord(
     return nearest, best
 
 
-def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:
+def _newton_step(linear: Linear, gap: Array, row: Array, displacement: Array) -> Array:
     right = np.zeros(gap.size + 1 + linear.neutral.shape[1])
-    right[: gap.size], right[gap.size] = -gap, -row @ moved
-    right[gap.size + 1 :] = -linear.neutral.T @ moved[:-1]
+    right[: gap.size], right[gap.size] = -gap, -row @ displacement
+    right[gap.size + 1 :] = -linear.neutral.T @ displacement[:-1]
     return (_bordered_inverse(linear, row) @ right)[: gap.size + 1]
 
 
 def _bordered_inverse(linear: Linear, row: Array) -> Array:
-    """Inverse of bordered(), kept for the last row."""
+    """Inverse of bordered_matrix(); the one for the last row is stored."""
     key = row.tobytes()
     if key not in linear.inverses:
         linear.inverses.clear()
-        linear.inverses[key] = _inverse(bordered(linear, row))
+        linear.inverses[key] = _inverse(bordered_matrix(linear, row))
     return linear.inverses[key]
 
 
 def _inverse(matrix: Array) -> Array:
-    """The inverse; at a branch point, where alone a bordered matrix is singular, that of least norm."""
+    """Inverse of a matrix; the pseudoinverse where the matrix is singular, as bordered ones are at
+    branch points.
+    """
     try:
         inverse = np.asarray(np.linalg.inv(matrix), float)
     except np.linalg.LinAlgError:
@@ -233,8 +311,25 @@ def _inverse(matrix: Array) -> Array:
 
 
 def make_point(period_map: PeriodMap, x: Array, linear: Linear, forward: Array) -> BranchPoint:
-    """A point of a branch whose tangent looks along `forward` (2 n + 1,)."""
-    matrix = bordered(linear, forward)
+    """Make a point of a branch from an orbit, with its tangent, parity and extrema.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    x : (2 n + 1,) array
+        Weighted state and logarithm of the parameter, dimensionless.
+    linear : Linear
+        Linearised map at x.
+    forward : (2 n + 1,) array
+        Direction along which the tangent points, dimensionless.
+
+    Returns
+    -------
+    BranchPoint
+        Point of the branch.
+    """
+    matrix = bordered_matrix(linear, forward)
     tangent = _bordered_inverse(linear, forward)[: x.size, x.size - 1].copy()
     tangent /= np.linalg.norm(tangent)
     return BranchPoint(
@@ -254,13 +349,59 @@ def solve_point(
     linear: Linear | None = None,
     farthest: float = np.inf,
 ) -> BranchPoint:
-    """correct() and make_point() in one."""
+    """Find the orbit next to a guess and make it a point of a branch: correct(), then make_point().
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    guess : (2 n + 1,) array
+        Weighted state and logarithm of the parameter, dimensionless.
+    row : (2 n + 1,) array
+        Condition that selects the orbit, dimensionless.
+    forward : (2 n + 1,) array
+        Direction along which the tangent points, dimensionless.
+    linear : Linear, optional
+        Linearised map near the guess.
+    farthest : float
+        Largest accepted distance from the guess, dimensionless.
+
+    Returns
+    -------
+    BranchPoint
+        Point of the branch.
+
+    Raises
+    ------
+    NotConverged
+        See correct().
+    """
     x, solution = correct(period_map, guess, row, linear, farthest)
     return make_point(period_map, x, solution, forward)
 
 
 def at_parameter(period_map: PeriodMap, z: Array, u: float) -> BranchPoint:
-    """The orbit next to z at a fixed parameter, looking towards larger parameters."""
+    """Find the orbit next to a state at a fixed parameter, with a tangent towards larger parameters.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    z : (2 n,) array
+        Weighted state, dimensionless.
+    u : float
+        Logarithm of the parameter, dimensionless.
+
+    Returns
+    -------
+    BranchPoint
+        Point of the branch.
+
+    Raises
+    ------
+    NotConverged
+        See correct().
+    """
     upward = np.zeros(z.size + 1)
     upward[-1] = 1.0
     return solve_point(period_map, np.append(z, u), upward, upward)

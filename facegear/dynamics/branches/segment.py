@@ -1,4 +1,4 @@
-"""The stretch of a branch between two neighbouring points, and zeros of tests along it."""
+"""Stretch of a branch between two neighbouring points, and zeros of test functions along it."""
 
 from collections.abc import Callable
 
@@ -10,60 +10,116 @@ from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint, correct_state, solve_point
 from facegear.errors import NotConverged
 
-ALIGNED = 0.3
+MIN_COSINE = 0.3
 """Least cosine between a chord and a tangent of the same branch."""
 SMALL = 1e-5
-"""Step along the tangent, in length scales, over which slopes are taken."""
+"""Step along the tangent, in length scales, of the finite differences that give slopes."""
 EXACT = 1e-13
-"""Part of a step down to which a zero is placed."""
+"""Accuracy with which a zero is located, as a fraction of the step."""
 
 
-def cubic(here: BranchPoint, there: BranchPoint) -> Array:
-    """The cubic through two points of a branch along their tangents: coefficients (4, 2 n + 1) of ascending
-    powers of the fraction of their chord.
+def cubic(start_point: BranchPoint, end_point: BranchPoint) -> Array:
+    """Cubic through two points of a branch along their tangents.
+
+    Parameters
+    ----------
+    start_point, end_point : BranchPoint
+        Neighbours on the branch.
+
+    Returns
+    -------
+    (4, 2 n + 1) array
+        Coefficients of ascending powers of the fraction of the chord, dimensionless.
     """
-    chord = there.x - here.x
-    first, second = (_slope(chord, point.tangent) for point in (here, there))
-    return np.array([here.x, first, 3.0 * chord - 2.0 * first - second, first + second - 2.0 * chord])
+    chord = end_point.x - start_point.x
+    first, second = (_slope(chord, point.tangent) for point in (start_point, end_point))
+    return np.array([start_point.x, first, 3.0 * chord - 2.0 * first - second, first + second - 2.0 * chord])
 
 
 def _slope(chord: Array, tangent: Array) -> Array:
-    """A tangent as long as the chord along it; the chord at a junction, whose tangent is another branch's."""
+    """Scale a tangent to the chord's length along it.
+
+    At a junction, where the tangent belongs to another branch, the chord itself is returned.
+    """
     along = chord @ tangent
     length = np.linalg.norm(chord)
-    return chord if along < ALIGNED * length else length**2 / along * tangent
+    return chord if along < MIN_COSINE * length else length**2 / along * tangent
 
 
 class Segment:
-    """Points of a branch between two neighbours, by their fraction of the chord."""
+    """Points of a branch between two neighbours, by their fraction of the chord.
 
-    def __init__(self, period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> None:
-        self.period_map, self.here, self.there = period_map, here, there
-        self.chord = there.x - here.x
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map whose fixed points they are.
+    start_point, end_point : BranchPoint
+        Neighbours on the branch, at fractions 0 and 1.
+    """
+
+    def __init__(self, period_map: PeriodMap, start_point: BranchPoint, end_point: BranchPoint) -> None:
+        self.period_map, self.start_point, self.end_point = period_map, start_point, end_point
+        self.chord = end_point.x - start_point.x
         self.length = float(np.linalg.norm(self.chord))
-        self.known = {0.0: here, 1.0: there}
+        self.points_by_fraction = {0.0: start_point, 1.0: end_point}
 
     def at(self, fraction: float) -> BranchPoint:
-        """The point of the branch at a fraction of the chord."""
-        if fraction not in self.known:
+        """Return the point of the branch at a fraction of the chord; it is solved for once.
+
+        Parameters
+        ----------
+        fraction : float
+            Position as a fraction of the chord.
+
+        Returns
+        -------
+        BranchPoint
+            Point in the plane across the chord.
+        """
+        if fraction not in self.points_by_fraction:
             row = self.chord / self.length
             linear = self._near(fraction).linear
-            self.known[fraction] = solve_point(self.period_map, self._guess(fraction), row, row, linear)
-        return self.known[fraction]
+            self.points_by_fraction[fraction] = solve_point(
+                self.period_map, self._guess(fraction), row, row, linear
+            )
+        return self.points_by_fraction[fraction]
 
     def extrema(self, fraction: float) -> Array:
-        """Extrema of the deflections at a fraction, without the matrix of the map."""
-        if fraction in self.known:
-            return self.known[fraction].extrema
+        """Extrema of the deflections at a fraction of the chord, without the matrix of the map.
+
+        Parameters
+        ----------
+        fraction : float
+            Position as a fraction of the chord.
+
+        Returns
+        -------
+        (m, 2, most) array
+            See PeriodMap.extrema(), dimensionless.
+        """
+        if fraction in self.points_by_fraction:
+            return self.points_by_fraction[fraction].extrema
         row = self.chord / self.length
         x = correct_state(self.period_map, self._guess(fraction), row, self._near(fraction).linear)
         return self.period_map.extrema(x[:-1], x[-1])
 
     def extremum_slope(self, fraction: float, stretch: float) -> Array:
-        """Change of the extrema of a known point with its position on a stretch of the chord, by a small
-        step along the tangent.
+        """Derivative of the extrema by the position on a part of the chord, from a small step along the
+        tangent.
+
+        Parameters
+        ----------
+        fraction : float
+            Position as a fraction of the chord; its point must have been computed by at().
+        stretch : float
+            Length of the part, as a fraction of the chord.
+
+        Returns
+        -------
+        (m, 2, most) array
+            Change of each extremum over the part, dimensionless; 0 where there is no such extremum.
         """
-        point = self.known[fraction]
+        point = self.points_by_fraction[fraction]
         along = _slope(stretch * self.chord, point.tangent)
         step = SMALL / float(np.linalg.norm(along))
         x = point.x + step * along
@@ -71,14 +127,25 @@ class Segment:
         now, then = point.extrema, np.full(point.extrema.shape, -np.inf)
         count = min(ahead.shape[2], now.shape[2])
         then[:, :, :count] = ahead[:, :, :count]
-        known = np.isfinite(now) & np.isfinite(then)
-        return np.divide(np.subtract(then, now, where=known, out=np.zeros(now.shape)), step)
+        is_finite = np.isfinite(now) & np.isfinite(then)
+        return np.divide(np.subtract(then, now, where=is_finite, out=np.zeros(now.shape)), step)
 
     def matrix_slope(self, fraction: float, stretch: float) -> Array:
-        """Change of the map's matrix (2 n, 2 n) with the position on a stretch of the chord, at a known
-        point.
+        """Derivative of the map's matrix by the position on a part of the chord.
+
+        Parameters
+        ----------
+        fraction : float
+            Position as a fraction of the chord; its point must have been computed by at().
+        stretch : float
+            Length of the part, as a fraction of the chord.
+
+        Returns
+        -------
+        (2 n, 2 n) array
+            Change of the matrix over the part, dimensionless.
         """
-        point = self.known[fraction]
+        point = self.points_by_fraction[fraction]
         along = _slope(stretch * self.chord, point.tangent)
         size = float(np.linalg.norm(along))
         is_tangent = along @ point.tangent > (1.0 - 1e-9) * size
@@ -86,43 +153,79 @@ class Segment:
         return size * self.period_map.matrix_rate(point.x, direction, point.linear)
 
     def _near(self, fraction: float) -> BranchPoint:
-        return self.known[min(self.known, key=lambda other: abs(other - fraction))]
+        return self.points_by_fraction[
+            min(self.points_by_fraction, key=lambda candidate: abs(candidate - fraction))
+        ]
 
     def _guess(self, fraction: float) -> Array:
-        """Cubic between the nearest known points, with their tangents."""
-        low = max(other for other in self.known if other < fraction)
-        high = min(other for other in self.known if other > fraction)
+        """Interpolate between the nearest known points by a cubic along their tangents."""
+        low = max(candidate for candidate in self.points_by_fraction if candidate < fraction)
+        high = min(candidate for candidate in self.points_by_fraction if candidate > fraction)
         t = (fraction - low) / (high - low)
-        return t ** np.arange(4) @ cubic(self.known[low], self.known[high])
+        return t ** np.arange(4) @ cubic(self.points_by_fraction[low], self.points_by_fraction[high])
 
 
 def zero(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
-    """Where a test of fractions is zero, to `goal` in the test. Raises NotConverged without a sign change."""
+    """Find the zero of a test function of the fraction by Brent's method.
 
-    def rounded(fraction: float) -> float:
+    Parameters
+    ----------
+    test : callable
+        Function of the fraction.
+    low, high : float
+        Two fractions of the chord between which the test changes its sign.
+    goal : float
+        Magnitude of the test, in the test's unit, that counts as zero.
+
+    Returns
+    -------
+    float
+        Zero of the test, as a fraction of the chord.
+
+    Raises
+    ------
+    NotConverged
+        If the test has the same sign at both ends.
+    """
+
+    def rounded_test(fraction: float) -> float:
         value = test(fraction)
         return 0.0 if abs(value) <= goal else value
 
     try:
-        return float(brentq(rounded, low, high, xtol=EXACT))
+        return float(brentq(rounded_test, low, high, xtol=EXACT))
     except ValueError as error:
         raise NotConverged("branches", f"fractions {low:g} to {high:g} of a step", str(error)) from None
 
 
 def reversal(
-    period_map: PeriodMap, here: BranchPoint, there: BranchPoint
+    period_map: PeriodMap, start_point: BranchPoint, end_point: BranchPoint
 ) -> tuple[BranchPoint, BranchPoint] | None:
-    """Where a branch of several periods runs into its own image, shifted by half of them: the point shortly
-    before, and the orbit of half the period at which another branch doubles.
+    """Find where a branch of an even number of periods runs into its own image, shifted by half of them.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    start_point, end_point : BranchPoint
+        Neighbours on the branch.
+
+    Returns
+    -------
+    tuple of BranchPoint or None
+        Point shortly before, and the orbit of half the period at which another branch doubles its period.
+        None if the branch does not meet its image between the points.
     """
     if period_map.period % 2:
         return None
     half = period_map.over(period_map.period // 2)
-    shift = half.gap(here.z, here.u)
+    shift = half.gap(start_point.z, start_point.u)
     size = np.linalg.norm(shift)
-    if shift @ half.gap(there.z, there.u) > -0.5 * size * np.linalg.norm(half.gap(there.z, there.u)):
+    if shift @ half.gap(end_point.z, end_point.u) > -0.5 * size * np.linalg.norm(
+        half.gap(end_point.z, end_point.u)
+    ):
         return None
-    segment = Segment(period_map, here, there)
+    segment = Segment(period_map, start_point, end_point)
 
     def left(fraction: float) -> float:
         point = segment.at(fraction)

@@ -1,4 +1,4 @@
-"""Steps along a branch: the guess ahead, when a step is accepted, how long the next one is."""
+"""Take steps along a branch: the guess ahead, when a step is accepted, and the length of the next step."""
 
 import numpy as np
 
@@ -10,9 +10,11 @@ from facegear.errors import NotConverged
 STRAIGHT = 0.9
 """Least cosine between neighbouring tangents."""
 CORRECTION = 0.2
-"""Largest correction over the step."""
+"""Largest correction, as a fraction of the step."""
 TURN, AIM, FASTEST = 0.3, 0.15, 2.5
-"""Angle between tangents and correction over the step that steps are made for; their fastest growth."""
+"""Angle between tangents, rad, and ratio of correction to step for which a step is chosen; largest
+growth of steps.
+"""
 DRIFT = 0.3
 """Largest change of the multipliers' moduli near the unit circle over a step."""
 SURE = 1e-3
@@ -20,44 +22,75 @@ SURE = 1e-3
 
 
 def step_along(
-    period_map: PeriodMap, here: BranchPoint, before: BranchPoint | None, step: float
+    period_map: PeriodMap, current_point: BranchPoint, before: BranchPoint | None, step: float
 ) -> BranchPoint:
-    """One step along the tangent, bent as over the step before. Raises NotConverged if it is refused."""
-    guess = _ahead(here, before, step)
-    there = solve_point(period_map, guess, here.tangent, here.tangent, here.linear, CORRECTION * step)
-    reason = _refusal(here, there, step)
+    """Take one step along the tangent, bent as over the step before.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    current_point : BranchPoint
+        Point from which to step.
+    before : BranchPoint or None
+        Point before it.
+    step : float
+        Length of the step, dimensionless.
+
+    Returns
+    -------
+    BranchPoint
+        The next point.
+
+    Raises
+    ------
+    NotConverged
+        If the step is refused, with the reason.
+    """
+    guess = _ahead(current_point, before, step)
+    next_point = solve_point(
+        period_map,
+        guess,
+        current_point.tangent,
+        current_point.tangent,
+        current_point.linear,
+        CORRECTION * step,
+    )
+    reason = _refusal(current_point, next_point, step)
     if reason:
-        raise NotConverged("branches", f"{period_map.family.name} = {there.value:.9g}", reason)
-    return there
+        raise NotConverged("branches", f"{period_map.family.name} = {next_point.value:.9g}", reason)
+    return next_point
 
 
-def _ahead(here: BranchPoint, before: BranchPoint | None, step: float) -> Array:
-    """A guess at a step's length ahead."""
-    guess = here.x + step * here.tangent
+def _ahead(current_point: BranchPoint, before: BranchPoint | None, step: float) -> Array:
+    """Predict the point one step ahead."""
+    guess = current_point.x + step * current_point.tangent
     if before is None:
         return guess
-    bend = (here.tangent - before.tangent) / np.linalg.norm(here.x - before.x)
+    bend = (current_point.tangent - before.tangent) / np.linalg.norm(current_point.x - before.x)
     return guess + 0.5 * step**2 * bend if np.linalg.norm(bend) * step < 0.5 else guess
 
 
-def _refusal(here: BranchPoint, there: BranchPoint, step: float) -> str:
-    """Why a step is not accepted, or an empty string."""
-    chord = (there.x - here.x) / np.linalg.norm(there.x - here.x)
-    straight = min(here.tangent @ there.tangent, chord @ here.tangent, chord @ there.tangent)
-    if here.linear.neutral.shape != there.linear.neutral.shape and step <= SURE:
+def _refusal(current_point: BranchPoint, next_point: BranchPoint, step: float) -> str:
+    """Return why a step is not accepted, or an empty string."""
+    chord = (next_point.x - current_point.x) / np.linalg.norm(next_point.x - current_point.x)
+    straight = min(
+        current_point.tangent @ next_point.tangent, chord @ current_point.tangent, chord @ next_point.tangent
+    )
+    if current_point.linear.neutral.shape != next_point.linear.neutral.shape and step <= SURE:
         return ""
     if straight < STRAIGHT:
         return "the branch turns too sharply"
-    if here.parity != there.parity and step > SURE:
+    if current_point.parity != next_point.parity and step > SURE:
         return "the branch may have been left"
-    if step > SURE and _drift(here, there) > DRIFT:
+    if step > SURE and _drift(current_point, next_point) > DRIFT:
         return "multipliers move too far"
     return ""
 
 
-def _drift(here: BranchPoint, there: BranchPoint) -> float:
+def _drift(current_point: BranchPoint, next_point: BranchPoint) -> float:
     """Largest change of a modulus, in sorted order, among those near the unit circle."""
-    first, second = np.abs(here.multipliers), np.abs(there.multipliers)
+    first, second = np.abs(current_point.multipliers), np.abs(next_point.multipliers)
     if first.size != second.size:
         return 0.0
     near = (first > 0.6) | (second > 0.6)
@@ -65,9 +98,27 @@ def _drift(here: BranchPoint, there: BranchPoint) -> float:
     return float((np.abs(first - second) / scale)[near].max(initial=0.0))
 
 
-def next_length(step: float, before: BranchPoint | None, here: BranchPoint, there: BranchPoint) -> float:
-    """The next step: one that turns by TURN and needs a correction of AIM, as far as the last one tells."""
-    angle = float(np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0)))
-    off = float(np.linalg.norm(there.x - _ahead(here, before, step))) / step
+def next_length(
+    step: float, before: BranchPoint | None, current_point: BranchPoint, next_point: BranchPoint
+) -> float:
+    """Choose the next step so that it turns by TURN and needs a correction of AIM, as far as the last step
+    tells.
+
+    Parameters
+    ----------
+    step : float
+        Length of the last step, dimensionless.
+    before : BranchPoint or None
+        Point before the last step's start.
+    current_point, next_point : BranchPoint
+        Start and end of the last step.
+
+    Returns
+    -------
+    float
+        Length of the next step, dimensionless.
+    """
+    angle = float(np.arccos(np.clip(current_point.tangent @ next_point.tangent, -1.0, 1.0)))
+    off = float(np.linalg.norm(next_point.x - _ahead(current_point, before, step))) / step
     growth = min(TURN / max(angle, 1e-6), np.sqrt(AIM / max(off, 1e-9)))
     return step * float(np.clip(growth, 0.5, FASTEST))

@@ -1,4 +1,4 @@
-"""All motions over a range of one parameter: branches, what leaves them, what was found elsewhere."""
+"""Find all motions over a range of one parameter: branches, what leaves them, and motions found elsewhere."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
@@ -7,23 +7,35 @@ from functools import partial
 import numpy as np
 
 from facegear.dynamics.branches.continuation import Branch, BranchEnd, ContinuationSettings, follow
-from facegear.dynamics.branches.explore import SAME, lies_on
+from facegear.dynamics.branches.explore import SAME_ORBIT, lies_on
 from facegear.dynamics.branches.mirror_images import image_branch, image_point, image_state
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.special import Kind, Special
-from facegear.dynamics.branches.switching import broken, doubled
+from facegear.dynamics.branches.switching import doubled_branch, symmetry_broken_branch
 from facegear.dynamics.symmetries import symmetries
 from facegear.errors import NotConverged
 from facegear.number_format import count_noun
 
-MET = 1e-6
+SAME_POINT = 1e-6
 """Logarithms of the parameter that differ by less belong to one special point."""
 
 
 @dataclass(frozen=True)
-class Unfollowed:
-    """A motion that was not followed: its period, its parameter, where it was met, and why not."""
+class UnfollowedMotion:
+    """A motion that was not followed.
+
+    Attributes
+    ----------
+    period : int
+        Number of mesh periods.
+    value : float
+        The parameter at it.
+    origin : str
+        Where it was met.
+    reason : str
+        Why it was not followed.
+    """
 
     period: int
     value: float
@@ -33,12 +45,18 @@ class Unfollowed:
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """branches in the order in which they were found, images behind their original, and the motions that were
-    not followed.
+    """Result of survey().
+
+    Attributes
+    ----------
+    branches : list of Branch
+        Branches in the order in which they were found, images behind their original.
+    unfollowed_motions : list of UnfollowedMotion
+        Motions that were not followed.
     """
 
     branches: list[Branch]
-    unfollowed: list[Unfollowed]
+    unfollowed_motions: list[UnfollowedMotion]
 
 
 def survey(
@@ -49,36 +67,42 @@ def survey(
     max_branches: int,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Survey:
-    """The branch through `start`, all that leave it, and those through motions found elsewhere.
+    """Follow the branch through `start`, all that leave it, and those through motions found elsewhere.
 
-    Every branch that a symmetry of the system does not map to itself has its images behind it, which are not
-    followed but mapped. These are all periodic motions that hang together with a motion of the start or of
-    `motions` by branches of up to longest_period mesh periods, with these bounds. Motions that no branch
-    leads to and no start has found are missing, also where a branch of `motions` ends on such a branch.
-    Where several multipliers pass one together, as at equal pinions all around, one of the branches that
-    leave the point is followed with its images. What leaves a Neimark-Sacker point is not periodic.
+    Every branch that a symmetry of the system does not map to itself is followed by its images in the list.
+    The images are mapped, not followed. The result contains all periodic motions that are connected with a
+    motion of `start` or `motions` by branches of up to longest_period mesh periods, within these bounds.
+    Motions to which no branch leads and which no start has found are missing, also where a branch of
+    `motions` ends on such a branch. Where several multipliers pass one together, as with equal pinions all
+    around, one of the branches that leave the point is followed, with its images. Motions that leave a
+    Neimark-Sacker point are not periodic.
 
     Parameters
     ----------
-    start
+    start : tuple
         Map and point of the first branch.
-    motions
-        Motions found elsewhere, each with its map and where it was found.
-    run
+    motions : iterable of tuple
+        Motions found elsewhere: map, point, and where each was found.
+    run : ContinuationSettings
         Range and steps of all branches.
-    longest_period
-        Longest period, in mesh periods, to which what leaves a branch by period doubling or broken symmetry
-        is followed.
-    max_branches
+    longest_period : int
+        Longest period, in mesh periods, to which branches that leave by period doubling or broken symmetry
+        are followed.
+    max_branches : int
         Largest number of branches that are followed, without their images.
-    progress
+    progress : callable
         Called with a line about each branch.
+
+    Returns
+    -------
+    Survey
+        Branches, and motions that were not followed.
     """
     search = _Search(run, longest_period, max_branches, progress)
     search.follow(*start, "the first motion")
     for period_map, point, origin in motions:
         search.follow(period_map, point, origin)
-    return Survey(search.branches, search.unfollowed)
+    return Survey(search.branches, search.unfollowed_motions)
 
 
 @dataclass(eq=False)
@@ -88,14 +112,14 @@ class _Search:
     max_branches: int
     progress: Callable[[str], None]
     branches: list[Branch] = field(default_factory=list)
-    unfollowed: list[Unfollowed] = field(default_factory=list)
-    met: list[tuple[int, float]] = field(default_factory=list)
+    unfollowed_motions: list[UnfollowedMotion] = field(default_factory=list)
+    visited_points: list[tuple[int, float]] = field(default_factory=list)
 
     def follow(self, period_map: PeriodMap, point: BranchPoint, origin: str) -> None:
         """Follow a motion that lies on no branch, and all that leaves its branch."""
         if self._is_known(period_map.period, point):
             return
-        branch = self._tried(
+        branch = self._try_branch(
             partial(follow, period_map, point, self.run), period_map.period, point.value, origin
         )
         if branch is None:
@@ -105,14 +129,16 @@ class _Search:
             todo += self._children(todo.pop(0))
 
     def _children(self, parent: Branch) -> list[Branch]:
-        """New branches that leave a branch; a special point that a branch begins or ends at is left once."""
+        """Return new branches that leave a branch; a special point at which a branch begins or ends is
+        left once.
+        """
         children = []
         for special in parent.of(Kind.DOUBLING, Kind.BRANCH):
             period = parent.period_map.period * (2 if special.kind is Kind.DOUBLING else 1)
             if period > self.longest_period or self._was_met(period, special.point.u):
                 continue
-            self.met.append((period, special.point.u))
-            child = self._tried(
+            self.visited_points.append((period, special.point.u))
+            child = self._try_branch(
                 partial(_leave, parent.period_map, special, self.run),
                 period,
                 special.point.value,
@@ -122,18 +148,23 @@ class _Search:
                 children.append(child)
         return children
 
-    def _tried(self, attempt: Callable[[], Branch], period: int, value: float, origin: str) -> Branch | None:
-        """A new branch, kept; None if it is known already, or with a note if it cannot be followed."""
+    def _try_branch(
+        self, attempt: Callable[[], Branch], period: int, value: float, origin: str
+    ) -> Branch | None:
+        """Try to follow a new branch and store it.
+
+        Returns None if the branch is known already, or, with a note, if it cannot be followed.
+        """
         if sum(branch.image_of is None for branch in self.branches) >= self.max_branches:
             reason = f"{self.max_branches} branches are followed already"
-            self.unfollowed.append(Unfollowed(period, value, origin, reason))
+            self.unfollowed_motions.append(UnfollowedMotion(period, value, origin, reason))
             return None
         try:
             branch = attempt()
         except NotConverged as error:
-            self.unfollowed.append(Unfollowed(period, value, origin, str(error)))
+            self.unfollowed_motions.append(UnfollowedMotion(period, value, origin, str(error)))
             return None
-        self.met += [
+        self.visited_points += [
             (period, branch.points[index].u)
             for index, end in zip((0, -1), branch.ends, strict=True)
             if end in (BranchEnd.DOUBLING, BranchEnd.SYMMETRY)
@@ -148,13 +179,13 @@ class _Search:
         return branch
 
     def _add_images(self, branch: Branch) -> None:
-        """Keep the images of a branch that are not known already; a symmetric branch is its own image."""
+        """Store the images of a branch that are not known already; a symmetric branch is its own image."""
         number, period_map = len(self.branches) - 1, branch.period_map
         probe = branch.points[len(branch.points) // 2]
-        own = period_map.images(probe.z, probe.u)
+        branch_images = period_map.images(probe.z, probe.u)
         for symmetry in symmetries(period_map.family.at(probe.value)[0]):
             z = image_state(period_map, probe.z, probe.u, symmetry)
-            if min(np.abs(z - state).max() for state in own) < SAME:
+            if min(np.abs(z - state).max() for state in branch_images) < SAME_ORBIT:
                 continue
             try:
                 image = image_point(period_map, probe, symmetry)
@@ -163,18 +194,23 @@ class _Search:
                 self.branches.append(replace(image_branch(branch, symmetry), image_of=number))
             except NotConverged as error:
                 origin = f"image of branch {number}"
-                self.unfollowed.append(Unfollowed(period_map.period, probe.value, origin, str(error)))
+                self.unfollowed_motions.append(
+                    UnfollowedMotion(period_map.period, probe.value, origin, str(error))
+                )
 
     def _is_known(self, period: int, point: BranchPoint) -> bool:
         return any(lies_on(branch, point, period) for branch in self.branches)
 
     def _was_met(self, period: int, u: float) -> bool:
-        return any(other == period and abs(u - ended_at) < MET for other, ended_at in self.met)
+        return any(
+            visited_period == period and abs(u - ended_at) < SAME_POINT
+            for visited_period, ended_at in self.visited_points
+        )
 
 
 def _leave(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
     return (
-        doubled(period_map, special, run)
+        doubled_branch(period_map, special, run)
         if special.kind is Kind.DOUBLING
-        else broken(period_map, special, run)
+        else symmetry_broken_branch(period_map, special, run)
     )

@@ -1,7 +1,7 @@
-"""From one branch onto another: doubled periods, broken symmetry, any motion that was found.
+"""Switch from one branch to another: doubled periods, broken symmetry, and any motion that was found.
 
 The new branch is sought beside the special point, along the null vector of M + I or M - I (Doedel et al.
-1991), M the matrix of the period map.
+1991), with M the matrix of the period map.
 """
 
 from collections.abc import Callable
@@ -28,25 +28,62 @@ LEFT = 0.3
 """Smallest fraction of the distance that must remain along the new direction."""
 
 
-def doubled(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
-    """The branch of twice the period that leaves a period doubling, followed until it meets itself shifted.
+def doubled_branch(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
+    """Follow the branch of twice the period that leaves a period doubling, until it meets itself shifted.
 
-    Raises NotConverged where none is found near the point.
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    special : Special
+        The period doubling.
+    run : ContinuationSettings
+        Range of the parameter and step lengths.
+
+    Returns
+    -------
+    Branch
+        Branch that begins at the special point.
+
+    Raises
+    ------
+    NotConverged
+        If none is found near the point.
     """
     twice = period_map.over(2 * period_map.period)
     direction = _direction(special.point.linear.matrix, -1.0)
 
     def is_doubled(point: BranchPoint) -> bool:
         """Whether the motion differs from itself a period later, other than the branch that doubles."""
-        changed = np.linalg.norm(period_map.gap(point.z, point.u))
-        return bool(changed > LEFT * np.linalg.norm(point.x - special.point.x))
+        change = np.linalg.norm(period_map.gap(point.z, point.u))
+        return bool(change > LEFT * np.linalg.norm(point.x - special.point.x))
 
     start = _aside(twice, special, direction, is_doubled)
     return _from(twice, special, start, run, BranchEnd.DOUBLING)
 
 
-def broken(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
-    """The branch that leaves a branch point across the one on which it was found."""
+def symmetry_broken_branch(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
+    """Follow the branch that leaves a branch point across the one on which it was found.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    special : Special
+        The branch point.
+    run : ContinuationSettings
+        Range of the parameter and step lengths.
+
+    Returns
+    -------
+    Branch
+        Branch that begins at the special point.
+
+    Raises
+    ------
+    NotConverged
+        If none is found near the point.
+    """
     direction = _direction(special.point.linear.matrix, 1.0)
     across = np.append(direction, 0.0)
     across -= special.point.tangent * (special.point.tangent @ across)
@@ -57,44 +94,65 @@ def broken(period_map: PeriodMap, special: Special, run: ContinuationSettings) -
 def _from(
     period_map: PeriodMap, special: Special, start: BranchPoint, run: ContinuationSettings, end: BranchEnd
 ) -> Branch:
-    """The branch through `start`, away from the special point, which becomes its first point."""
-    child = follow(period_map, start, run, both=False)
+    """Follow the branch through `start` away from the special point, which becomes its first point."""
+    child = follow(period_map, start, run, both_ways=False)
     origin = special.point
     away = start.x - origin.x
     linear = period_map.linear(origin.z, origin.u)
     extrema = period_map.extrema(origin.z, origin.u)
     root = replace(origin, tangent=away / np.linalg.norm(away), linear=linear, extrema=extrema)
     try:
-        first, located = _first_stretch(period_map, root, start)
+        first, special_points = _first_stretch(period_map, root, start)
     except (NotConverged, np.linalg.LinAlgError) as error:
-        tried = f"grazes before {start.value:.9g} were not looked for: {error}"
-        first, located, child = (
+        failure = f"grazes before {start.value:.9g} were not looked for: {error}"
+        first, special_points, child = (
             [root],
             [],
-            replace(child, tried="; ".join(filter(None, [tried, child.tried]))),
+            replace(child, failed_attempts="; ".join(filter(None, [failure, child.failed_attempts]))),
         )
     behind = [replace(later, after=later.after + len(first)) for later in child.specials]
     points = [*first, *child.points]
-    return replace(child, points=points, specials=[*located, *behind], ends=(end, child.ends[1]))
+    return replace(child, points=points, specials=[*special_points, *behind], ends=(end, child.ends[1]))
 
 
 def _first_stretch(
     period_map: PeriodMap, root: BranchPoint, start: BranchPoint
 ) -> tuple[list[BranchPoint], list[Special]]:
-    """Points from a special point up to the orbit beside it, without that one, and what lies on the way."""
+    """Return the points from a special point up to the orbit beside it, without that one, and the
+    special points.
+    """
     near = Segment(period_map, replace(root, linear=start.linear), start).at(NEAR_ROOT)
-    located = locate(period_map, near, start)
-    behind = [replace(special, after=special.after + 1.0) for special in located.specials]
-    return [root, near, *located.inner], [*locate_grazes(period_map, root, near, near.linear), *behind]
+    division = locate(period_map, near, start)
+    behind = [replace(special, after=special.after + 1.0) for special in division.specials]
+    return [root, near, *division.inner], [*locate_grazes(period_map, root, near, near.linear), *behind]
 
 
 def through(period_map: PeriodMap, state: State, value: float, run: ContinuationSettings) -> Branch:
-    """The branch through the orbit next to a state (displacement, velocity by time) at a parameter.
+    """Follow the branch through the orbit next to a state at a value of the parameter.
 
-    Raises NotConverged if Newton's method finds none. The map's period must be the orbit's own.
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over the orbit's own number of mesh periods.
+    state : State
+        Displacement and velocity by time.
+    value : float
+        The parameter, in its unit.
+    run : ContinuationSettings
+        Range of the parameter and step lengths.
+
+    Returns
+    -------
+    Branch
+        Branch through the orbit.
+
+    Raises
+    ------
+    NotConverged
+        If Newton's method finds no orbit.
     """
     u = float(np.log(value))
-    return follow(period_map, at_parameter(period_map, period_map.weighted(state, u), u), run)
+    return follow(period_map, at_parameter(period_map, period_map.to_weighted(state, u), u), run)
 
 
 def _direction(matrix: Array, goal: float) -> Array:
@@ -110,9 +168,10 @@ def _aside(
     direction: Array,
     is_new: Callable[[BranchPoint], bool] = lambda point: True,
 ) -> BranchPoint:
-    """An orbit at some distance along a direction, the parameter free, looking away from the point.
+    """Find an orbit at some distance along a direction, with free parameter and a tangent away from the
+    point.
 
-    is_new: whether an orbit lies on another branch than the special point.
+    `is_new` says whether an orbit lies on another branch than the special point.
     """
     row = np.append(direction, 0.0)
     origin = special.point.x

@@ -1,4 +1,4 @@
-"""The csv tables of the branches stage."""
+"""Tables of the branches stage: points, multipliers, special points, ends, loci."""
 
 from collections.abc import Sequence
 
@@ -10,19 +10,33 @@ from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.loci import Locus
 from facegear.dynamics.branches.measures import measures
 from facegear.dynamics.branches.special import Special
-from facegear.dynamics.branches.survey import Unfollowed
+from facegear.dynamics.branches.survey import UnfollowedMotion
 from facegear.transmission.layout import Layout
 
 UM = 1e6
 SHOWN_MULTIPLIERS = 8
+"""Number of the largest multipliers that the table shows for each point."""
 
 
 def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
-    """BRANCH_COLUMNS: one row for each point and mesh."""
+    """Tabulate each point of each branch, one row for each mesh.
+
+    Parameters
+    ----------
+    layout : Layout
+        Names of the meshes.
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    DataFrame
+        BRANCH_COLUMNS.
+    """
     frames = []
     for number, branch in enumerate(branches):
         for index, (point, arc) in enumerate(zip(branch.points, branch.arc, strict=True)):
-            measured = measures(branch.period_map, point)
+            mesh_measures = measures(branch.period_map, point)
             leading = point.multipliers[0] if point.multipliers.size else complex(np.nan)
             meshes = len(layout.mesh_names)
             frames.append(
@@ -37,14 +51,14 @@ def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
                         "leading_multiplier_real": leading.real,
                         "leading_multiplier_imaginary": leading.imag,
                         "mesh": layout.mesh_names[:meshes],
-                        "deflection_ac_rms_um": UM * measured.ac_rms,
-                        "deflection_rms_um": UM * measured.rms,
-                        "deflection_minimum_um": UM * measured.minimum,
-                        "deflection_maximum_um": UM * measured.maximum,
-                        "peak_force_n": measured.peak_force,
-                        "open_fraction": measured.fractions[0],
-                        "drive_fraction": measured.fractions[1],
-                        "back_fraction": measured.fractions[2],
+                        "deflection_ac_rms_um": UM * mesh_measures.ac_rms,
+                        "deflection_rms_um": UM * mesh_measures.rms,
+                        "deflection_minimum_um": UM * mesh_measures.minimum,
+                        "deflection_maximum_um": UM * mesh_measures.maximum,
+                        "peak_force_n": mesh_measures.peak_force,
+                        "open_fraction": mesh_measures.fractions[0],
+                        "drive_fraction": mesh_measures.fractions[1],
+                        "back_fraction": mesh_measures.fractions[2],
                     }
                 )
             )
@@ -52,7 +66,18 @@ def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
 
 
 def multiplier_table(branches: Sequence[Branch]) -> pd.DataFrame:
-    """Columns branch, point, speed_rpm, real, imaginary: the largest multipliers of each point."""
+    """Tabulate the largest multipliers of each point.
+
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    DataFrame
+        Columns branch, point, speed_rpm, real, imaginary.
+    """
     rows = [
         (number, index, point.value, value.real, value.imag)
         for number, branch in enumerate(branches)
@@ -63,7 +88,20 @@ def multiplier_table(branches: Sequence[Branch]) -> pd.DataFrame:
 
 
 def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
-    """SPECIAL_COLUMNS: every special point along every branch, what it is and what proves it."""
+    """Tabulate every special point along every branch, with its kind and the evidence for it.
+
+    Parameters
+    ----------
+    layout : Layout
+        Names of the meshes.
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    DataFrame
+        SPECIAL_COLUMNS.
+    """
     rows = []
     names = [name.replace(" ", "_") for name in layout.mesh_names]
     for number, branch in enumerate(branches):
@@ -92,17 +130,27 @@ def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
 
 
 def _edge(special: Special, meshes: int) -> str:
-    """The edge that is grazed; of one-sided flanks upper stands for the drive flank, lower for the back."""
+    """Return the edge that is grazed; for one-sided flanks "upper" is the drive flank and "lower" the
+    back flank.
+    """
     if not special.meshes:
         return ""
     return "upper" if special.edge > 0 and special.meshes[0] < meshes else "lower"
 
 
 def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
-    """Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried.
+    """Tabulate each branch with its range and ends, one row a branch.
 
-    One row a branch. image_of: the branch of which it is the image under a symmetry of the machine, or
-    nothing.
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    DataFrame
+        Columns branch, image_of, period, points, from_rpm, to_rpm, first_end, last_end, tried. `image_of` is
+        the branch of which it is the image under a symmetry of the machine, or empty.
     """
     rows = [
         {
@@ -114,21 +162,43 @@ def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
             "to_rpm": branch.values.max(),
             "first_end": branch.ends[0].value,
             "last_end": branch.ends[1].value,
-            "tried": branch.tried,
+            "tried": branch.failed_attempts,
         }
         for number, branch in enumerate(branches)
     ]
     return pd.DataFrame(rows)
 
 
-def unfollowed_table(unfollowed: Sequence[Unfollowed]) -> pd.DataFrame:
-    """Columns period, speed_rpm, origin, reason: motions that were met and not followed."""
-    rows = [(row.period, row.value, row.origin, row.reason) for row in unfollowed]
+def unfollowed_table(motions: Sequence[UnfollowedMotion]) -> pd.DataFrame:
+    """Tabulate motions that were met and not followed.
+
+    Parameters
+    ----------
+    motions : sequence of UnfollowedMotion
+        The motions.
+
+    Returns
+    -------
+    DataFrame
+        Columns period, speed_rpm, origin, reason.
+    """
+    rows = [(row.period, row.value, row.origin, row.reason) for row in motions]
     return pd.DataFrame(rows, columns=["period", "speed_rpm", "origin", "reason"])
 
 
 def locus_table(loci: Sequence[Locus]) -> pd.DataFrame:
-    """Columns locus, kind, parameter, factor, speed_rpm, corner: curves of folds and doublings."""
+    """Tabulate the curves of folds and period doublings.
+
+    Parameters
+    ----------
+    loci : sequence of Locus
+        Loci found.
+
+    Returns
+    -------
+    DataFrame
+        Columns locus, kind, parameter, factor, speed_rpm, corner.
+    """
     columns = ["locus", "kind", "parameter", "factor", "speed_rpm", "corner"]
     rows = []
     for number, locus in enumerate(loci):

@@ -1,4 +1,4 @@
-"""What couples coordinates beside the meshes: further dampers, and what turning bodies add."""
+"""Coupling of coordinates beside the meshes: further dampers, and the effects of turning bodies."""
 
 from dataclasses import dataclass, replace
 
@@ -11,7 +11,7 @@ from facegear.arrays import Array, Mask
 class Coupling:
     """Forces (D + W G) y' + (W N + W^2 P) y at an angular speed W (rad/s).
 
-    dampers D, gyroscopic G, circulatory N, centrifugal P: each (n, n).
+    The matrices are dampers D, gyroscopic G, circulatory N, and centrifugal P, each (n, n).
     """
 
     dampers: Array
@@ -25,41 +25,126 @@ class Coupling:
         return any(matrix.any() for matrix in self._matrices)
 
     def directions(self, basis: Array) -> Array:
-        """Along what the motions of a basis (dof, n) push, (4 n, dof), each matrix of size one."""
+        """Directions along which the motions of a basis push, each matrix scaled to size one.
+
+        Parameters
+        ----------
+        basis : (dof, n) array
+            Motions, any unit.
+
+        Returns
+        -------
+        (up to 4 n, dof) array
+            Directions in rows, in the unit of the basis.
+        """
         rows = [(matrix @ basis).T for matrix in self._matrices]
         sizes = [np.linalg.norm(matrix) for matrix in self._matrices]
         return np.concatenate([row / size for row, size in zip(rows, sizes, strict=True) if size > 0.0])
 
     def among(self, basis: Array) -> "Coupling":
-        """The same in the coordinates of a basis (dof, n)."""
+        """Coupling in the coordinates of a basis.
+
+        Parameters
+        ----------
+        basis : (dof, n) array
+            Displacements of unit coordinates, any unit.
+
+        Returns
+        -------
+        Coupling
+            Matrices (n, n).
+        """
         return Coupling(*(basis.T @ matrix @ basis for matrix in self._matrices))
 
     def linked(self, part: float) -> Mask:
-        """Which coordinates some matrix couples by more than a part of its largest entry, (n, n)."""
+        """Which coordinates some matrix couples by more than a part of its largest entry.
+
+        Parameters
+        ----------
+        part : float
+            Part of the largest entry, a fraction.
+
+        Returns
+        -------
+        (n, n) array
+            True where two coordinates are coupled.
+        """
         sizes = [np.abs(matrix) for matrix in self._matrices]
         return np.asarray(np.any([size > part * size.max(initial=0.0) for size in sizes], axis=0))
 
     def split(self) -> tuple[Array, "Coupling | None"]:
-        """The dampers' diagonal (n,), and what is left; None for nothing."""
-        own = self.dampers.diagonal().copy()
-        left = replace(self, dampers=self.dampers - np.diag(own))
-        return own, left if left.any else None
+        """Split off the diagonal of the dampers.
+
+        Returns
+        -------
+        (n,) array
+            Diagonal, 1/s.
+        Coupling or None
+            The rest; None if it is zero.
+        """
+        diagonal = self.dampers.diagonal().copy()
+        left = replace(self, dampers=self.dampers - np.diag(diagonal))
+        return diagonal, left if left.any else None
 
     def per_speed(self, ratio: float) -> "Coupling":
-        """The same for another angular speed, which is `ratio` times the one before."""
+        """Express the coupling by another angular speed.
+
+        Parameters
+        ----------
+        ratio : float
+            The ratio of the other speed to the one before.
+
+        Returns
+        -------
+        Coupling
+            Matrices for the other speed, in the same units.
+        """
         gyroscopic, circulatory = self.gyroscopic / ratio, self.circulatory / ratio
         return Coupling(self.dampers, gyroscopic, circulatory, self.centrifugal / ratio**2)
 
     def velocity_terms(self, speed: float) -> Array:
-        """D + W G over W: what acts on derivatives by the phase W t, (n, n)."""
+        """Matrix D / W + G that acts on derivatives by the phase W t.
+
+        Parameters
+        ----------
+        speed : float
+            Angular speed W, rad/s.
+
+        Returns
+        -------
+        (n, n) array
+            Matrix for unit masses, 1/rad.
+        """
         return self.dampers / speed + self.gyroscopic
 
     def displacement_terms(self, speed: float) -> Array:
-        """W N + W^2 P over W^2, (n, n)."""
+        """Matrix N / W + P that acts on displacements over the phase W t.
+
+        Parameters
+        ----------
+        speed : float
+            Angular speed W, rad/s.
+
+        Returns
+        -------
+        (n, n) array
+            Matrix for unit masses, 1/rad^2.
+        """
         return self.circulatory / speed + self.centrifugal
 
     def fastest(self, speed: float) -> float:
-        """Bound of the angular frequency that the coupling brings by itself, over the speed."""
+        """Bound of the angular frequency that the coupling brings by itself.
+
+        Parameters
+        ----------
+        speed : float
+            Angular speed W, rad/s.
+
+        Returns
+        -------
+        float
+            Bound over the speed, dimensionless.
+        """
         dampers, gyroscopic, circulatory, centrifugal = (
             np.linalg.norm(matrix, 2) for matrix in self._matrices
         )

@@ -1,4 +1,4 @@
-"""What a run keeps of its steps: their polynomials, and the extrema of the deflections."""
+"""Steps that a run has stored: their polynomials, and the extrema of the deflections."""
 
 from typing import NamedTuple
 
@@ -22,8 +22,10 @@ class Steps(NamedTuple):
 
 
 class Extrema(NamedTuple):
-    """Deflections where they change direction: values (m, 2, K), maxima, then minima, in the order in which
-    they are met; counts (m, 2), also of those that have no room.
+    """Deflections where they change direction.
+
+    `values` (m, 2, K) are maxima, then minima, in the order in which they are met. `counts` (m, 2) include
+    those that have not been stored.
     """
 
     values: Array

@@ -1,4 +1,4 @@
-"""A system at one mesh frequency, ready to be run: what the kernels need stays inside."""
+"""A system at one mesh frequency, ready to be integrated; the kernels' data stays inside."""
 
 import math
 from collections.abc import Sequence
@@ -10,7 +10,8 @@ import numpy as np
 
 from facegear._kernels import motion
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import (
+from facegear.dynamics.integrator.dense import Extrema, Steps, extrema_of, steps_of
+from facegear.dynamics.integrator.kernel_system import (
     TAU,
     edges_of,
     fastest,
@@ -19,40 +20,39 @@ from facegear.dynamics.integrator.compiled import (
     packed_system,
     weights_of,
 )
-from facegear.dynamics.integrator.dense import Extrema, Steps, extrema_of, steps_of
 from facegear.dynamics.integrator.sums import Sums, sums_of
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
 
 SUCCESS, TOO_MANY_STEPS, NOT_FINITE = range(3)
-"""How the kernels say that a run has ended."""
+"""Status codes of the kernels at the end of a run."""
 
 
 @dataclass(frozen=True, eq=False)
 class RunResult:
-    """What a run over whole mesh periods has left. n coordinates, m rows of meshes, flanks and rings.
+    """Result of a run over whole mesh periods, with n coordinates and m rows of meshes, flanks and rings.
 
     Attributes
     ----------
-    state : (2, n)
-        At the end.
-    ends : (periods, 2, n)
-        At the end of each period.
-    tangents : (columns, 2, n)
+    state : (2, n) array
+        State at the end.
+    ends : (periods, 2, n) array
+        State at the end of each period.
+    tangents : (columns, 2, n) array
         Disturbances at the end.
-    samples : (periods * samples, n)
+    samples : (periods * samples, n) array
         Coordinates at evenly spaced phases, from the start of each period.
-    fractions : (3, m)
-        Of time open, on the drive and on the back flank; only with samples, batches or tangents.
-    divergence
+    fractions : (3, m) array
+        Fraction of the time open, on the drive and on the back flank; only with samples, batches or tangents.
+    divergence : float
         Integral of the trace of the equations' matrix; only with tangents.
-    growth : (periods,)
-        Logarithm of the growth of the one tangent in each period, if it was asked for.
-    steps
-        Their number.
-    sums
-        Integrals and extremes over batches of periods.
+    growth : (periods,) array
+        Logarithm of the growth of the one tangent in each period, if it was requested.
+    steps : int
+        Number of steps.
+    sums : Sums
+        Integrals and extrema over batches of periods.
     """
 
     state: Array
@@ -67,12 +67,23 @@ class RunResult:
 
 
 class Integrator:
-    """Runs a system at an angular mesh frequency (rad/s) from states (2, n): coordinates and their
-    derivatives by mesh phase, in rad.
+    """Integrator of a system at one mesh frequency.
 
-    tolerance: local error of a step over the length scale; order: of the steps, None: from the tolerance.
-    `like`: an integrator whose scratch space is used where it is that of a system of the same sizes. Of two
-    integrators that share theirs only one may run at a time.
+    States (2, n) are coordinates and their derivatives by mesh phase, in rad.
+
+    Parameters
+    ----------
+    system : System
+        Equations of motion.
+    frequency : float
+        Angular mesh frequency, rad/s.
+    tolerance : float
+        Local error of a step over the length scale.
+    order : int, optional
+        Order of the steps; from the tolerance if None.
+    like : Integrator, optional
+        Integrator whose scratch space is used if its system has the same sizes. Of two integrators that share
+        their scratch space only one may run at a time.
     """
 
     def __init__(
@@ -108,7 +119,7 @@ class Integrator:
 
     @property
     def meshes(self) -> int:
-        """Number of meshes; of all rows where a mesh is one contact."""
+        """Number of meshes; number of all rows where a mesh is one contact."""
         return self.system.pairs or self.rows
 
     @property
@@ -152,16 +163,40 @@ class Integrator:
         return fastest(self.system, self.frequency)
 
     def by_phase(self, state: State) -> Array:
-        """A state (2, n) by phase."""
+        """Convert a state by time to a state by phase.
+
+        Parameters
+        ----------
+        state : State
+            Displacement and velocity by time.
+
+        Returns
+        -------
+        (2, n) array
+            Coordinates and their derivatives by phase, m and m/rad.
+        """
         return np.array([state.displacement, state.velocity / self.frequency])
 
     def by_time(self, state: Array) -> State:
-        """A state by time."""
+        """Convert a state by phase to a state by time.
+
+        Parameters
+        ----------
+        state : (2, n) array
+            Coordinates and their derivatives by phase, m and m/rad.
+
+        Returns
+        -------
+        State
+            Displacement and velocity by time.
+        """
         return State(state[0].copy(), state[1] * self.frequency)
 
     @cached_property
     def longest_step(self) -> float:
-        """Longest step, rad, that disturbances of the motion may be moved over, whatever the motion does."""
+        """Longest step, rad, over which disturbances of the motion may be integrated, whatever the
+        motion does.
+        """
         return disturbance_step(self.fastest, self.order, self.tolerance)
 
     def run(
@@ -175,12 +210,36 @@ class Integrator:
         fine: bool = False,
         drift: Array | None = None,
     ) -> RunResult:
-        """Run whole mesh periods from a state (2, n), which is left alone. Raises NotConverged.
+        """Run whole mesh periods from a state, which is not changed.
 
-        tangents (columns, 2, n): disturbances to be moved along; with `growth` the one is brought back to
-        length one after every period. samples: of the coordinates in each period; batches: of the sums.
-        fine: steps as short as tangents need, which they are with any. drift (terms, m): what is added to the
-        error in every period, by powers of the phase.
+        Parameters
+        ----------
+        state : (2, n) array
+            State by phase at the start, m and m/rad.
+        periods : int
+            Number of mesh periods.
+        tangents : (columns, 2, n) array, optional
+            Disturbances that are integrated along, any unit.
+        samples : int
+            Number of samples of the coordinates in each period.
+        batches : int
+            Number of batches of the sums.
+        growth : bool
+            Whether the one tangent is scaled back to length one after every period.
+        fine : bool
+            Whether steps are as short as tangents need; with tangents they always are.
+        drift : (terms, up to m) array, optional
+            Addition to the error in every period, by powers of the phase, m/rad^power.
+
+        Returns
+        -------
+        RunResult
+            State at the end and all that was requested.
+
+        Raises
+        ------
+        NotConverged
+            If a step fails.
         """
         log = self._run(
             state,
@@ -194,24 +253,80 @@ class Integrator:
         )
         return result_of(log, 0, self, periods)
 
-    def returned(self, state: Array) -> Array:
-        """Where a state (2, n) is a mesh period later, by steps as short as tangents need. Raises
-        NotConverged.
+    def advance_period(self, state: Array) -> Array:
+        """Advance a state by one mesh period, with steps as short as tangents need.
+
+        Parameters
+        ----------
+        state : (2, n) array
+            State by phase, m and m/rad.
+
+        Returns
+        -------
+        (2, n) array
+            State one period later, m and m/rad.
+
+        Raises
+        ------
+        NotConverged
+            If a step fails.
         """
         return self._run(state, 1, fine=True).ends[0, 0]
 
     def steps(self, state: Array, periods: int, count: int, begin: float = 0.0) -> tuple[Array, int, Steps]:
-        """Run whole mesh periods from a state (2, n) at a phase `begin`, in rad, of the first one.
+        """Run whole mesh periods from a state and store the first steps.
 
-        Returns the state at the end, the number of steps and the first `count` of them. Raises NotConverged.
+        Parameters
+        ----------
+        state : (2, n) array
+            State by phase at the start, m and m/rad.
+        periods : int
+            Number of mesh periods.
+        count : int
+            Number of first steps to store.
+        begin : float
+            Mesh phase at the start in the first period, rad.
+
+        Returns
+        -------
+        (2, n) array
+            State at the end, m and m/rad.
+        int
+            Number of steps.
+        Steps
+            The first `count` of them.
+
+        Raises
+        ------
+        NotConverged
+            If a step fails.
         """
         log = self._run(state, periods, begin=begin, steps=count)
         return log.ends[0, -1], int(log.steps[0]), steps_of(log)
 
     def extrema(self, state: Array, periods: int, count: int) -> Extrema:
-        """The first `count` maxima and minima of each deflection in a run from a state (2, n).
+        """Find the first maxima and minima of each deflection in a run.
 
-        Runs whole mesh periods; the steps are no longer than disturbances need. Raises NotConverged.
+        The steps are no longer than disturbances need.
+
+        Parameters
+        ----------
+        state : (2, n) array
+            State by phase at the start, m and m/rad.
+        periods : int
+            Number of mesh periods.
+        count : int
+            Number of maxima, and of minima, to store.
+
+        Returns
+        -------
+        Extrema
+            Extrema of each deflection.
+
+        Raises
+        ------
+        NotConverged
+            If a step fails.
         """
         log = self._run(state, periods, longest=self.longest_step, turns=count)
         return extrema_of(log)
@@ -388,10 +503,21 @@ def disturbance_step(fastest: float, order: int, tolerance: float) -> float:
 
 
 def require(status: int) -> None:
-    """Raise NotConverged unless the status of a run is good."""
-    reported = {
+    """Raise NotConverged unless the status of a run is SUCCESS.
+
+    Parameters
+    ----------
+    status : int
+        Status code of the kernels.
+
+    Raises
+    ------
+    NotConverged
+        If the run took too many steps or the motion grew beyond all bounds.
+    """
+    messages = {
         TOO_MANY_STEPS: f"a mesh period took more than {motion.MAX_STEPS} steps",
         NOT_FINITE: "the motion grew beyond all bounds",
     }
     if status != SUCCESS:
-        raise NotConverged("dynamics", "time integration", reported[status])
+        raise NotConverged("dynamics", "time integration", messages[status])

@@ -1,4 +1,4 @@
-"""What the integrator (`facegear/_kernels/src/motion`) sees: unit masses coupled by meshes with clearance.
+"""Equations of motion for the integrator (`facegear/_kernels/src/motion`): unit masses coupled by meshes.
 
     y'' + damping y' + omega_squared y + coupling + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.coupling import Coupling
-from facegear.dynamics.integrator.reduction import Reduced
+from facegear.dynamics.integrator.reduction import Reduction
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import different
@@ -117,20 +117,34 @@ class FlankRubbing:
     directions: Array
 
 
-def machine_system(machine: Machine, reduced: Reduced) -> System:
-    """The system of a machine in its reduced coordinates; runouts and pitch deviations are left out."""
+def machine_system(machine: Machine, reduction: Reduction) -> System:
+    """Make the equations of motion of a machine in its reduced coordinates, without runouts and pitch
+    deviations.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    reduction : Reduction
+        Its reduced coordinates.
+
+    Returns
+    -------
+    System
+        Equations of motion.
+    """
     contacts, rings = mesh_contacts(machine), machine.linear.rings
-    nothing = 3 * rings.body.size * [0.0]
-    error, error_kind = _kinds(machine.alike)
-    load = np.zeros((reduced.omega_squared.size, 2, 1))
-    load[:, 1, 0] = reduced.load
+    zeros = 3 * rings.body.size * [0.0]
+    error, error_kind = _kinds(machine.without_errors)
+    load = np.zeros((reduction.omega_squared.size, 2, 1))
+    load[:, 1, 0] = reduction.load
     return System(
-        mesh_jacobian=reduced.mesh_jacobian,
-        omega_squared=reduced.omega_squared,
-        damping=reduced.damping,
-        mesh_damping=np.append(contacts.damping, nothing),
+        mesh_jacobian=reduction.mesh_jacobian,
+        omega_squared=reduction.omega_squared,
+        damping=reduction.damping,
+        mesh_damping=np.append(contacts.damping, zeros),
         lower=np.append(contacts.lower, np.tile([0.0, 0.0, -np.inf], rings.body.size)),
-        upper=np.append(contacts.upper, nothing),
+        upper=np.append(contacts.upper, zeros),
         law=contacts.law,
         error=error,
         error_kind=error_kind,
@@ -142,28 +156,43 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         ring_stiffness=rings.stiffness,
         ring_clearance=rings.clearance,
         ring_lag=machine.linear.bearing_damping,
-        coupling=reduced.coupling and reduced.coupling.per_speed(machine.layout.pinion_teeth),
-        rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduced),
+        coupling=reduction.coupling and reduction.coupling.per_speed(machine.layout.pinion_teeth),
+        rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduction),
     )
 
 
 @lru_cache(maxsize=8)
 def _kinds(machine: Machine) -> tuple[Array, Integers]:
-    """The different series of e(t) among contacts and rings, and the kind of each; shared, only read."""
+    """Different series of e(t) among contacts and rings, and the kind of each; shared, must not be
+    changed.
+    """
     return different((*mesh_contacts(machine).error, *3 * machine.linear.rings.body.size * [NO_ERROR]))
 
 
-def _rubbing(machine: Machine, friction: MeshFriction, reduced: Reduced) -> FlankRubbing:
+def _rubbing(machine: Machine, friction: MeshFriction, reduction: Reduction) -> FlankRubbing:
     """Friction of all flanks in reduced coordinates, without directions in which nothing moves."""
     rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
     flank, part = np.nonzero(rows.any(axis=2))
     ratios = flank_ratios(friction.ratios, machine.phases)
-    return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduced.basis)
+    return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduction.basis)
 
 
 def length_scale(machine: Machine) -> float:
-    """Largest of the mesh deflection under the torques, the half backlash and the error's amplitude, m."""
+    """Largest of the mesh deflection under the torques, the half backlash and the error's amplitude.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    float
+        Length that tolerances refer to, m.
+    """
     layout = machine.layout
     forces = np.abs(machine.torques[: len(layout.pinions)]) / layout.pinion_arm
-    loaded = float(forces.max()) / machine.stiffness.mean
-    return max(loaded, float(machine.half_backlash.max()), float(machine.error.amplitudes[1:].sum()), 1e-12)
+    mean_deflection = float(forces.max()) / machine.stiffness.mean
+    return max(
+        mean_deflection, float(machine.half_backlash.max()), float(machine.error.amplitudes[1:].sum()), 1e-12
+    )

@@ -1,4 +1,4 @@
-"""Averages of a response over time, exact for its step polynomials, and how far chance goes."""
+"""Averages of a response over time, exact for its step polynomials, and their confidence intervals."""
 
 from dataclasses import dataclass, replace
 from functools import cache
@@ -7,12 +7,14 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.sums import Sums
 
 BATCHES = 16
+"""Number of batches into which the window of a motion that is not periodic is divided."""
 CONFIDENCE = 0.95
+"""Probability with which an interval holds the mean."""
 LARGEST_CORRELATION = 0.95
 """Correlation of successive batches above which so few of them cannot tell it from 1."""
 MIN_INDEPENDENT = 3.0
@@ -94,24 +96,48 @@ class Averages:
         return self.square - 2.0 * off * self.deflection + off**2
 
     def meshes(self, periodic: bool) -> Moments:
-        """Moments of the mesh deflections."""
+        """Moments of the mesh deflections.
+
+        Parameters
+        ----------
+        periodic : bool
+            Whether the motion is periodic; then the intervals are zero.
+
+        Returns
+        -------
+        Moments
+            Moments of each mesh, m.
+        """
         off = self._whole(self.deflection)
         variance = np.maximum(self._whole(self.square) - off**2, 0.0)
         mean = self.level + off
         rms, ac_rms = np.sqrt(variance + mean**2), np.sqrt(variance)
-        moved, centred = self.deflection - off, self.centred_squares
+        mean_offsets, centred_squares = self.deflection - off, self.centred_squares
         return Moments(
             mean=mean,
             rms=rms,
             ac_rms=ac_rms,
             minimum=self.minimum,
             maximum=self.maximum,
-            rms_interval=_root_interval(centred + 2.0 * mean * moved, rms, periodic),
-            ac_rms_interval=_root_interval(centred, ac_rms, periodic),
+            rms_interval=_root_interval(centred_squares + 2.0 * mean * mean_offsets, rms, periodic),
+            ac_rms_interval=_root_interval(centred_squares, ac_rms, periodic),
         )
 
     def views(self, views: Array, periodic: bool) -> tuple[Array, Array, Array]:
-        """Of y @ views (n, columns): RMS, RMS without mean and its 95 % half-width, each (columns,)."""
+        """RMS of linear combinations of the coordinates.
+
+        Parameters
+        ----------
+        views : (n, columns) array
+            Weights of the coordinates in each combination, any unit.
+        periodic : bool
+            Whether the motion is periodic; then the intervals are zero.
+
+        Returns
+        -------
+        tuple of array
+            RMS, RMS without mean and its 95 % half-width, each (columns,), in the unit of the combination.
+        """
         off = self._whole(self.centre)
         cross = off[:, None] * self.centre[:, None, :]
         about_mean = self.products - cross - cross.transpose(0, 2, 1) + np.outer(off, off)
@@ -122,7 +148,18 @@ class Averages:
         return np.sqrt(variance + mean**2), ac_rms, _root_interval(variances, ac_rms, periodic)
 
     def part(self, batches: slice) -> "Averages":
-        """The averages over some of the batches; extremes and forces stay those of all."""
+        """Averages over some of the batches; extremes and forces stay those of all.
+
+        Parameters
+        ----------
+        batches : slice
+            Batches to keep.
+
+        Returns
+        -------
+        Averages
+            Averages of the selected batches.
+        """
         names = ("weight", "deflection", "square", "centre", "products")
         return replace(self, **{name: getattr(self, name)[batches] for name in names})
 
@@ -131,7 +168,22 @@ class Averages:
 
 
 def averages(integrator: Integrator, sums: Sums, periods: int) -> Averages:
-    """Means from the integrals over a run of `periods` mesh periods."""
+    """Compute the averages from the integrals over a run.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    sums : Sums
+        Integrals over batches of the run.
+    periods : int
+        Number of mesh periods.
+
+    Returns
+    -------
+    Averages
+        Averages of each batch.
+    """
     n, m = integrator.size, integrator.meshes
     batches = len(sums.coordinates)
     weight = np.bincount(np.arange(periods) * batches // periods, minlength=batches).astype(float)
@@ -164,14 +216,14 @@ def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
 
     Parameters
     ----------
-    batches : (B, columns)
-        Means over B batches of equal length, in their order in time.
-    confidence
-        Probability with which the interval holds the mean.
+    batches : (B, columns) array
+        Means over B batches of equal length, in their order in time, any unit.
+    confidence : float
+        Probability with which the interval holds the mean, a fraction.
 
     Returns
     -------
-    (columns,)
+    (columns,) array
         Half-width in the unit of the batches; zero from a single batch, which says nothing.
 
     References
@@ -185,19 +237,41 @@ def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
 
 
 def successive_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """Compute the half-width (columns,) that the correlation of successive batches (B, columns) alone widens.
+    """Compute the half-width of a mean from the correlation of successive batches alone.
 
-    For a few batches, as the halves of a run have: how many independent ones they are worth is not known, and
-    an interval that allows for any number would hide every change.
+    It serves for a few batches, such as the halves of a run: how many independent ones they are worth is not
+    known, and an interval that allows for any number would hide every change.
+
+    Parameters
+    ----------
+    batches : (B, columns) array
+        Means over batches of equal length, in their order in time, any unit.
+    confidence : float
+        Probability with which the interval holds the mean, a fraction.
+
+    Returns
+    -------
+    (columns,) array
+        Half-width in the unit of the batches.
     """
     correlation = np.clip(_successive(batches) + 1.0 / len(batches), 0.0, 0.9)
     return independent_interval(batches, confidence) * np.sqrt((1.0 + correlation) / (1.0 - correlation))
 
 
 def independent_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
-    """Compute the half-width (columns,) from batches (B, columns) that do not depend on each other.
+    """Compute the half-width of a mean from independent batches, by Student's distribution.
 
-    Student's distribution with B - 1 degrees of freedom. Zero from a single batch, which says nothing.
+    Parameters
+    ----------
+    batches : (B, columns) array
+        Means over batches of equal length, any unit.
+    confidence : float
+        Probability with which the interval holds the mean, a fraction.
+
+    Returns
+    -------
+    (columns,) array
+        Half-width in the unit of the batches; zero from a single batch, which says nothing.
     """
     count = len(batches)
     if count < 2:

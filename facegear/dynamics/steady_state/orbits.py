@@ -10,13 +10,13 @@ from facegear.dynamics.integrator.integrator import Integrator, RunResult
 from facegear.dynamics.multiplier_order import by_modulus
 
 NEWTON_STEPS, MATRICES = 12, 3
-"""Steps that Newton's method may take, and matrices for them: what needs more is nowhere near an orbit."""
+"""Maximum number of Newton steps, and of matrices for them: what needs more is nowhere near an orbit."""
 NEUTRAL = 1e-9
 """Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
 UNIT_TOLERANCE = 1e-6
 """A multiplier may exceed one by this: that of a neutral direction is one."""
 RETURNS = 3
-"""Returns in succession that must follow an orbit's multipliers."""
+"""Number of successive returns that must follow an orbit's multipliers."""
 ROUNDING = 1e-11
 """Change over a period, over the length scale, that rounding alone may leave."""
 
@@ -27,17 +27,18 @@ class Orbit:
 
     Attributes
     ----------
-    state : (2, n)
-        By phase.
-    period
-        In mesh periods.
-    residual
-        Change over the period over the length scale, also an error estimate once Newton has settled.
-    multipliers : (2 n,)
-        Complex, largest first.
-    vectors : (2 n, 2 n)
-        Their directions, by column.
-    liouville
+    state : (2, n) array
+        Coordinates and their derivatives by phase.
+    period : int
+        Number of mesh periods.
+    residual : float
+        Change over the period over the length scale, also an error estimate once Newton's method has
+        converged.
+    multipliers : (2 n,) array
+        Complex Floquet multipliers, largest first.
+    vectors : (2 n, 2 n) array
+        Their eigenvectors, by column.
+    liouville : float
         Log det of the monodromy matrix less the integral of the divergence, which is zero for an exact
         solution (NaN where the matrix is singular to rounding).
     """
@@ -50,67 +51,164 @@ class Orbit:
     liouville: float
 
     @property
-    def moving(self) -> Mask:
+    def is_off_circle(self) -> Mask:
         """Which multipliers (2 n,) lie off the unit circle: all but those of neutral directions."""
         return np.abs(1.0 - np.abs(self.multipliers)) > UNIT_TOLERANCE
 
     @property
-    def holding(self) -> float:
-        """By which factor a period brings the slowest disturbance back, neutral directions left out."""
-        return float(np.abs(self.multipliers[self.moving]).max(initial=0.0))
+    def spectral_radius(self) -> float:
+        """Largest magnitude among the multipliers, without those of neutral directions."""
+        return float(np.abs(self.multipliers[self.is_off_circle]).max(initial=0.0))
 
     def parts(self, off: Array) -> ComplexArray:
-        """Components (..., 2 n) of states (..., 2, n) off the orbit along its own directions."""
+        """Components of states off the orbit along its own eigenvectors.
+
+        Parameters
+        ----------
+        off : (..., 2, n) array
+            Differences of states from the orbit, m and m/rad.
+
+        Returns
+        -------
+        (..., 2 n) array
+            Components along the eigenvectors, m.
+        """
         return np.asarray(off.reshape(*off.shape[:-2], -1) @ self._inverse.T)
 
     @cached_property
     def _inverse(self) -> ComplexArray:
-        """Pseudoinverse (2 n, 2 n) of the directions, some of which may be parallel to rounding."""
+        """Pseudoinverse (2 n, 2 n) of the eigenvectors, some of which may be parallel to rounding."""
         return np.asarray(np.linalg.pinv(self.vectors, rcond=len(self.vectors) * np.finfo(float).eps))
 
     def distance(self, integrator: Integrator, state: Array, rates: float = 1.0) -> float:
-        """How far a state (2, n) is off, as a change(), whatever its neutral directions.
+        """Distance of a state from the orbit, measured as by change(), without shifts along neutral
+        directions.
 
-        rates: by which velocities are divided.
+        Parameters
+        ----------
+        integrator : Integrator
+            Integrates the system at one mesh frequency.
+        state : (2, n) array
+            State by phase, m and m/rad.
+        rates : float
+            A factor by which velocities are divided.
+
+        Returns
+        -------
+        float
+            Distance over the length scale, dimensionless.
         """
         off = state - self.state
-        neutral = ~self.moving
+        neutral = ~self.is_off_circle
         if neutral.any():
-            shifted = self.vectors[:, neutral] @ self.parts(off)[neutral]
-            off -= shifted.real.reshape(2, -1)
+            neutral_part = self.vectors[:, neutral] @ self.parts(off)[neutral]
+            off -= neutral_part.real.reshape(2, -1)
         off[1] /= rates
         return change(integrator, off, 0.0 * off)
 
-    def leaving(self, integrator: Integrator, off: Array) -> Array:
-        """A state (2, n) of change() one along the leading direction, to the side of `off`."""
+    def leading_disturbance(self, integrator: Integrator, off: Array) -> Array:
+        """Disturbance of size one, as by change(), along the leading eigenvector.
+
+        Parameters
+        ----------
+        integrator : Integrator
+            Integrates the system at one mesh frequency.
+        off : (2, n) array
+            Difference of a state from the orbit, m and m/rad; the disturbance is on its side.
+
+        Returns
+        -------
+        (2, n) array
+            Disturbance by phase, m and m/rad.
+        """
         side = self.parts(off)[0]
-        known = abs(side) > ROUNDING * integrator.scale
-        along = self.vectors[:, 0] * (side / abs(side) if known else 1.0)
+        is_resolved = abs(side) > ROUNDING * integrator.scale
+        along = self.vectors[:, 0] * (side / abs(side) if is_resolved else 1.0)
         leading = along.real.reshape(2, -1)
         return leading / change(integrator, leading, 0.0 * leading)
 
 
 def change(integrator: Integrator, first: Array, second: Array) -> float:
-    """Largest difference of two states (2, n) as mesh deflections and their rates, over the length scale."""
+    """Largest difference of two states as mesh deflections and their rates.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    first, second : (2, n) array
+        States by phase, m and m/rad.
+
+    Returns
+    -------
+    float
+        Difference over the length scale, dimensionless.
+    """
     return float(largest(integrator, (first - second)[None])[0])
 
 
 def largest(integrator: Integrator, gaps: Array) -> Array:
-    """Largest component of each of some differences of states (K, 2, n), counted as in change()."""
+    """Largest component of each of several differences of states, measured as by change().
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    gaps : (K, 2, n) array
+        Differences by phase, m and m/rad; overwritten.
+
+    Returns
+    -------
+    (K,) array
+        Largest component over the length scale, dimensionless.
+    """
     np.abs(gaps, out=gaps)
     gaps *= integrator.weights / integrator.scale
     return np.asarray(gaps.reshape(len(gaps), gaps.shape[1] * gaps.shape[2]).max(axis=1))
 
 
 def changes(integrator: Integrator, ends: Array, longest: int) -> Array:
-    """change() of the last of `ends` (periods, 2, n) from those 1 .. longest periods before it."""
+    """change() of the last state of a run from the states one to `longest` periods before it.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    ends : (periods, 2, n) array
+        States at the ends of mesh periods, m and m/rad.
+    longest : int
+        Largest number of mesh periods.
+
+    Returns
+    -------
+    (min(longest, periods - 1),) array
+        Change after 1, 2, ... periods over the length scale, dimensionless.
+    """
     return largest(integrator, ends[-1] - ends[-2 : -2 - min(longest, len(ends) - 1) : -1])
 
 
 def monodromy(integrator: Integrator, state: Array, period: int) -> tuple[Array, RunResult]:
-    """The matrix (2 n, 2 n) of the map over `period` mesh periods at a state (2, n), and the run.
+    """Compute the monodromy matrix of the map over some mesh periods at a state, and the run.
 
-    Raises NotConverged where a step fails.
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    state : (2, n) array
+        State by phase, m and m/rad.
+    period : int
+        Number of mesh periods.
+
+    Returns
+    -------
+    (2 n, 2 n) array
+        Monodromy matrix in coordinates and rates by phase, factors of 1.
+    RunResult
+        The run with its tangents.
+
+    Raises
+    ------
+    NotConverged
+        If a step fails.
     """
     n = integrator.size
     tangents = np.zeros((2 * n, 2, n))
@@ -123,7 +221,7 @@ def monodromy(integrator: Integrator, state: Array, period: int) -> tuple[Array,
 
 @dataclass(frozen=True, eq=False)
 class _Tangent:
-    """The map over the period near a state: matrix, its eigenvalues and vectors, largest first."""
+    """Linearised map over the period at a state: matrix, its eigenvalues and eigenvectors, largest first."""
 
     state: Array
     matrix: Array
@@ -133,9 +231,9 @@ class _Tangent:
 
     @property
     def slowness(self) -> float:
-        """How far the multipliers stay from the unit circle (at least 1e-3), by which a residual is divided.
+        """Distance of the multipliers from the unit circle (at least 1e-3), by which a residual is divided.
 
-        That of a neutral direction, along which a disturbance stays as it is, does not count.
+        The multiplier of a neutral direction, along which a disturbance stays as it is, does not count.
         """
         off = np.abs(1.0 - np.abs(self.multipliers))
         return max(float(off[off > UNIT_TOLERANCE].min(initial=1.0)), 1e-3)
@@ -143,7 +241,7 @@ class _Tangent:
     def correction(self, gap: Array) -> Array:
         """Newton's step for a change (2 n,) over the period.
 
-        Positions along neutral directions are free: the solution of minimum norm keeps them.
+        Positions along neutral directions are free: the solution of minimum norm leaves them.
         """
         matrix = np.eye(gap.size) - self.matrix
         if np.abs(1.0 - self.multipliers).min() > UNIT_TOLERANCE:
@@ -154,44 +252,63 @@ class _Tangent:
 def shoot(
     integrator: Integrator, state: Array, period: int, goal: float, matrices: int = MATRICES
 ) -> Orbit | None:
-    """Newton's method on the change over `period` mesh periods; None if it does not settle near the start.
+    """Solve for an orbit by Newton's method on the change over the period.
 
-    A matrix serves as long as each step with it gains a digit, and is the orbit's own if that lies within ten
-    steps' errors of where it was taken; there may be `matrices` of them on the way. An orbit is accepted when
-    the change is so small that the orbit is known to the goal.
+    A matrix is used as long as each step with it gains a digit. It is the orbit's own if the orbit lies
+    within ten steps' errors of where it was computed. An orbit is accepted when the change is so small that
+    the orbit is known to the goal.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    state : (2, n) array
+        Guess by phase, m and m/rad.
+    period : int
+        Number of mesh periods.
+    goal : float
+        Error of the orbit over the length scale, dimensionless.
+    matrices : int
+        Largest number of matrices computed on the way.
+
+    Returns
+    -------
+    Orbit or None
+        Orbit, of the shortest period that it repeats after; None if the method does not converge near the
+        start.
     """
-    here, tolerance = state.copy(), integrator.tolerance
-    best, gained = np.inf, 0.0
+    current_state, tolerance = state.copy(), integrator.tolerance
+    best, gain = np.inf, 0.0
     tangent: _Tangent | None = None
     for _ in range(NEWTON_STEPS):
-        if gained < 0.1 and tangent is not None:
-            result = integrator.run(here, period, fine=True)
+        if gain < 0.1 and tangent is not None:
+            result = integrator.run(current_state, period, fine=True)
         elif matrices > 0:
-            result, tangent = _linearised(integrator, here, period)
+            result, tangent = _linearised(integrator, current_state, period)
             matrices -= 1
         else:
             return None
-        residual = change(integrator, here, result.state)
+        residual = change(integrator, current_state, result.state)
         if not residual < 4.0 * best:
             return None
-        shortest = shortest_period(integrator, here, result.ends, max(residual, goal))
+        shortest = shortest_period(integrator, current_state, result.ends, max(residual, goal))
         if residual <= goal and shortest < period:
-            return shoot(integrator, here, shortest, goal)
+            return shoot(integrator, current_state, shortest, goal)
         # Newton's method cannot do better than the steps and their rounding.
-        stalled = residual > 0.5 * best and residual <= max(tolerance * tangent.slowness, ROUNDING)
-        if residual <= goal * min(1.0, tangent.slowness) or stalled:
-            if change(integrator, here, tangent.state) > 10.0 * tolerance:
-                _, tangent = _linearised(integrator, here, period)
-            return _orbit(here, period, residual, tangent)
-        gained = residual / best if np.isfinite(best) else 0.0
+        has_stalled = residual > 0.5 * best and residual <= max(tolerance * tangent.slowness, ROUNDING)
+        if residual <= goal * min(1.0, tangent.slowness) or has_stalled:
+            if change(integrator, current_state, tangent.state) > 10.0 * tolerance:
+                _, tangent = _linearised(integrator, current_state, period)
+            return _orbit(current_state, period, residual, tangent)
+        gain = residual / best if np.isfinite(best) else 0.0
         best = min(best, residual)
-        correction = tangent.correction((result.state - here).ravel())
-        here = here + correction.reshape(2, -1)
+        correction = tangent.correction((result.state - current_state).ravel())
+        current_state = current_state + correction.reshape(2, -1)
     return None
 
 
 def _linearised(integrator: Integrator, state: Array, period: int) -> tuple[RunResult, _Tangent]:
-    """The run from a state (2, n) over the period, and the map near it."""
+    """Run from a state (2, n) over the period, and linearise the map there."""
     matrix, result = monodromy(integrator, state, period)
     multipliers, vectors = np.linalg.eig(matrix)
     order = by_modulus(multipliers)
@@ -199,7 +316,24 @@ def _linearised(integrator: Integrator, state: Array, period: int) -> tuple[RunR
 
 
 def shortest_period(integrator: Integrator, start: Array, ends: Array, residual: float) -> int:
-    """Smallest number of mesh periods after which an orbit has closed already, to ten times its residual."""
+    """Find the smallest number of mesh periods after which an orbit has closed, to ten times its residual.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    start : (2, n) array
+        State by phase at the start, m and m/rad.
+    ends : (periods, 2, n) array
+        States at the ends of the mesh periods, m and m/rad.
+    residual : float
+        Change over all periods over the length scale, dimensionless.
+
+    Returns
+    -------
+    int
+        Number of mesh periods.
+    """
     for period in range(1, len(ends)):
         if len(ends) % period == 0 and change(integrator, start, ends[period - 1]) <= 10.0 * residual:
             return period
@@ -224,29 +358,60 @@ def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orb
 
 
 def near_for_ever(integrator: Integrator, orbit: Orbit, distance: float) -> bool:
-    """Whether a run so far off a stable orbit stays there: within the error of the steps, and where the
-    slowest disturbance is held.
+    """Whether a run at some distance from a stable orbit stays there.
+
+    It does if the distance is within the error of the steps, and small beside what the slowest disturbance
+    loses in a period.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    orbit : Orbit
+        Stable orbit.
+    distance : float
+        Distance of the run over the length scale, dimensionless.
+
+    Returns
+    -------
+    bool
+        True if no further check is needed.
     """
-    slow = 1.0 - orbit.holding
+    slow = 1.0 - orbit.spectral_radius
     return distance <= min(10.0 * integrator.tolerance / slow, 0.1 * slow)
 
 
 def drawn_in(integrator: Integrator, orbit: Orbit, ends: Array, since: int) -> bool:
     """Whether nothing can lead a run away from a stable orbit any more.
 
-    ends (periods, 2, n) of the run, the last of them `since` periods after one that belongs to the orbit's
-    state. Each return must be what the multipliers make of the one before, but for less than half of what
-    they take away; then the distance, measured along the orbit's own directions, falls for ever, as what the
-    multipliers leave out falls faster still. Within the error of the steps there is no more to ask.
+    Each return must be what the multipliers make of the one before, but for less than half of what they take
+    away. Then the distance, measured along the orbit's own eigenvectors, falls for ever, because what the
+    multipliers leave out falls faster still. Within the error of the steps nothing more is required.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    orbit : Orbit
+        Stable orbit.
+    ends : (periods, 2, n) array
+        States of the run at the ends of mesh periods, m and m/rad.
+    since : int
+        Number of periods between the last end and the last one that belongs to the orbit's state.
+
+    Returns
+    -------
+    bool
+        True if the orbit attracts the run.
     """
     back = ends[len(ends) - 1 - since :: -orbit.period][: RETURNS + 1][::-1]
     if len(back) < RETURNS + 1:
         return False
     off = back - orbit.state
-    moving, slow = orbit.moving, 1.0 - orbit.holding
+    is_off_circle, slow = orbit.is_off_circle, 1.0 - orbit.spectral_radius
     distance = (integrator.weights * np.abs(off[-1])).max() / integrator.scale
     if near_for_ever(integrator, orbit, distance):
         return True
-    parts = orbit.parts(off)[:, moving]
-    missed = np.linalg.norm(parts[1:] - orbit.multipliers[moving] * parts[:-1], axis=1)
-    return bool((missed < 0.5 * slow * np.linalg.norm(parts[:-1], axis=1)).all())
+    parts = orbit.parts(off)[:, is_off_circle]
+    deviations = np.linalg.norm(parts[1:] - orbit.multipliers[is_off_circle] * parts[:-1], axis=1)
+    return bool((deviations < 0.5 * slow * np.linalg.norm(parts[:-1], axis=1)).all())

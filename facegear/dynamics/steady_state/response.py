@@ -1,4 +1,4 @@
-"""A steady state, and the numbers that are taken from it."""
+"""Steady state of a machine, and the numbers that are derived from it."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,7 +19,7 @@ from facegear.dynamics.steady_state.mesh_samples import (
     past_law,
 )
 from facegear.dynamics.steady_state.orbits import Orbit
-from facegear.dynamics.steady_state.watching import Watched
+from facegear.dynamics.steady_state.watch import WatchResult
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class SteadyState:
         Of the system.
     averages
         Over the whole response.
-    touching : (3, contacts)
+    contact_fractions : (3, contacts)
         Fraction of the time that each mesh or flank spends open, on its drive and on its back flank, as the
         steps count it.
     orbit
@@ -71,7 +71,7 @@ class SteadyState:
     per_period: int
     coordinates: Array
     averages: Averages
-    touching: Array
+    contact_fractions: Array
     orbit: Orbit | None
     exponent: tuple[float, float] | None
     periods_run: int
@@ -90,31 +90,31 @@ class SteadyState:
 
     @property
     def liouville(self) -> float | None:
-        """As of the orbit."""
+        """Liouville check of the orbit, see Orbit."""
         return None if self.orbit is None else self.orbit.liouville
 
     @cached_property
     def deflections(self) -> Array:
         """Deflections of the samples (K, meshes), with e(t) taken off, m."""
-        return by_mesh(self.system, self._each)
+        return by_mesh(self.system, self._contact_deflections)
 
     @cached_property
     def fractions(self) -> Array:
         """Fraction of the time (3, meshes) open, on the drive flank, on the back flank."""
-        return mesh_fractions(self.system, self.touching, self._each)
+        return mesh_fractions(self.system, self.contact_fractions, self._contact_deflections)
 
     @cached_property
     def forces(self) -> Array:
         """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
-        return mesh_forces(self.system, self._each, self.per_period)
+        return mesh_forces(self.system, self._contact_deflections, self.per_period)
 
     @property
     def largest_forces(self) -> Array:
         """Largest magnitude (meshes,) of the elastic mesh forces, located between the samples, N."""
-        return largest_mesh_forces(self.system, self._each, self.per_period, self.period > 0)
+        return largest_mesh_forces(self.system, self._contact_deflections, self.per_period, self.period > 0)
 
     @cached_property
-    def _each(self) -> Array:
+    def _contact_deflections(self) -> Array:
         """Deflections of each mesh or flank."""
         return each_deflection(self.system, self.coordinates, self.per_period)
 
@@ -123,7 +123,7 @@ class SteadyState:
         """Fraction of samples (meshes,) at which a mesh is pressed in past the last level of its law."""
         if self.system.law.straight:
             return np.zeros(self.system.pairs or self.system.contacts)
-        return past_law(self.system, self._each)
+        return past_law(self.system, self._contact_deflections)
 
     @property
     def moments(self) -> Moments:
@@ -142,25 +142,46 @@ class SteadyState:
 
 
 def response_of(
-    system: System, integrator: Integrator, seen: Watched, looks: tuple[int, int] | None
+    system: System, integrator: Integrator, watch_result: WatchResult, looks: tuple[int, int] | None
 ) -> SteadyState:
-    """The response that a run has been watched for, and why its class does not hold, if so."""
-    settled, window, exponent = seen.settled, seen.window, seen.exponent
+    """Make the response of a run that was watched.
+
+    Parameters
+    ----------
+    system : System
+        Equations of motion.
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    watch_result : WatchResult
+        Result of watching the run.
+    looks : tuple of int or None
+        Periods of the motions of this start and another, where they differ; see SteadyState.
+
+    Returns
+    -------
+    SteadyState
+        Response.
+    """
+    settling_result, window, exponent = (
+        watch_result.settling_result,
+        watch_result.window,
+        watch_result.exponent,
+    )
     averages, square = window.averages, integrator.frequency**2
     return SteadyState(
         system=system,
-        motion=seen.motion,
-        period=settled.period,
+        motion=watch_result.motion,
+        period=settling_result.period,
         frequency=integrator.frequency,
-        residual=settled.residual,
+        residual=settling_result.residual,
         periods=window.periods,
         per_period=window.per_period,
         coordinates=window.samples,
         averages=replace(averages, force=averages.force * square, pull=averages.pull * square),
-        touching=window.fractions[:, : system.contacts],
-        orbit=settled.orbit,
+        contact_fractions=window.fractions[:, : system.contacts],
+        orbit=settling_result.orbit,
         exponent=(exponent.value, exponent.half_width) if exponent else None,
-        periods_run=seen.periods_run,
+        periods_run=watch_result.periods_run,
         looks=looks,
         state=integrator.by_time(window.ends[-1]),
     )

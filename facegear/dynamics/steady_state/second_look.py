@@ -11,13 +11,13 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, Mask
-from facegear.dynamics.courses import Course
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.closing import SMALL
+from facegear.dynamics.run_plans import RunPlan
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit
 from facegear.dynamics.steady_state.orbits import change, largest
-from facegear.dynamics.steady_state.settle import Settled, settling
+from facegear.dynamics.steady_state.periodicity import SMALL
+from facegear.dynamics.steady_state.settle import SettlingResult, settling
 
 WANDERED = 16
 """After so many periods with changes that are not small the orbit reached may be a matter of chance."""
@@ -31,11 +31,11 @@ def disagreeing(
     integrator: Integrator,
     start: Array,
     settings: Settings,
-    first: Settled,
+    first: SettlingResult,
     motion: Motion,
     states: Array,
     before: int,
-) -> Course[Settled | None]:
+) -> RunPlan[SettlingResult | None]:
     """Where another start (2, n) settles if that takes the class of the first back; None if the class holds.
 
     A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another
@@ -53,7 +53,7 @@ def disagreeing(
     known = KnownOrbit(first.orbit, states) if first.orbit else None
     starts = other_starts(integrator, start, settings.aside, first)
     for looks in range(1, max(MAX_LOOKS, settings.second_looks) + 1):
-        other = yield from settling(integrator, next(starts), settings, known=known)
+        other = yield from settling(integrator, next(starts), settings, known_orbit=known)
         if other.period != first.period:
             return other
         wandered += wandering(integrator, other, other.period)
@@ -73,7 +73,9 @@ def never_closing(runs: int, wandered: int, patience: int) -> float:
     return float(np.exp(-rate * patience))
 
 
-def other_starts(integrator: Integrator, start: Array, aside: float, first: Settled) -> Iterator[Array]:
+def other_starts(
+    integrator: Integrator, start: Array, aside: float, first: SettlingResult
+) -> Iterator[Array]:
     """Starts (2, n) beside that of a run, by a fraction `aside` of the length scale.
 
     They lie in any direction in which the run itself has moved. A symmetric run is left symmetric: what
@@ -87,7 +89,7 @@ def other_starts(integrator: Integrator, start: Array, aside: float, first: Sett
         yield start + aside * off / change(integrator, off, 0.0 * off)
 
 
-def wandering(integrator: Integrator, settled: Settled, period: int) -> int:
+def wandering(integrator: Integrator, settled: SettlingResult, period: int) -> int:
     """Count the periods of a run before the last change over a period that is not small.
 
     They are 0 if there are but few. Of a run so long that its first states are not kept any more, what counts
@@ -100,7 +102,7 @@ def wandering(integrator: Integrator, settled: Settled, period: int) -> int:
     return settled.aperiodic_until if settled.periods_run > len(settled.ends) else 0
 
 
-def _large(integrator: Integrator, settled: Settled, period: int) -> Mask:
+def _large(integrator: Integrator, settled: SettlingResult, period: int) -> Mask:
     """Where the change over a period is not small, at the end of each mesh period that is kept."""
     ends = settled.ends
     return largest(integrator, ends[period:] - ends[: len(ends) - period]) > SMALL

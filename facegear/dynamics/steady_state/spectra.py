@@ -7,13 +7,31 @@ from facegear.arrays import Array
 SEGMENT = 8
 """Mesh periods in a segment; orders are multiples of 1 / SEGMENT."""
 MAX_ORDER = 6
+"""Largest order of the grid, in multiples of the mesh frequency."""
 ORDERS = np.arange(SEGMENT * MAX_ORDER + 1) / SEGMENT
+"""Grid of the orders, in multiples of the mesh frequency."""
 
 
 def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Array]:
-    """Orders (F,) and amplitudes (F, columns) of whole periods; Hann-weighted unless periodic.
+    """Amplitude spectrum of whole periods; Hann-weighted unless periodic.
 
     A sine of amplitude A at an order of the grid has the amplitude A (the mean stays the mean).
+
+    Parameters
+    ----------
+    samples : (K, columns) array
+        Samples, any unit.
+    per_period : int
+        Number of samples in each mesh period.
+    periodic : bool
+        Whether the samples are a whole period of the motion.
+
+    Returns
+    -------
+    (F,) array
+        Orders in multiples of the mesh frequency, ratio 1.
+    (F, columns) array
+        Amplitudes, in the unit of the samples.
     """
     count = len(samples)
     window = np.ones(count) if periodic else np.hanning(count + 1)[:count]
@@ -24,9 +42,23 @@ def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Ar
 
 
 def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
-    """Amplitudes on the fixed grid ORDERS, shape (columns, orders), RMS-averaged over segments (Welch 1967).
+    """Amplitudes on the fixed grid ORDERS, RMS-averaged over segments (Welch 1967).
 
-    Lines of a period that SEGMENT is no multiple of go to the nearest order of the grid.
+    Lines of a period that does not divide SEGMENT go to the nearest order of the grid.
+
+    Parameters
+    ----------
+    samples : (K, columns) array
+        Samples, any unit.
+    per_period : int
+        Number of samples in each mesh period.
+    period : int
+        Period of the motion in mesh periods; 0 if it is not periodic.
+
+    Returns
+    -------
+    (columns, orders) array
+        Amplitudes, in the unit of the samples.
     """
     result = np.zeros((samples.shape[1], ORDERS.size))
     if period:

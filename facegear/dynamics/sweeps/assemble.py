@@ -1,4 +1,4 @@
-"""Chunks of a sweep put together as if it had been run in one go."""
+"""Join the chunks of a sweep as if it had been run in one go."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,25 +9,25 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.mirror_images import held_symmetries
 from facegear.dynamics.steady_state.simulate import Model, simulate
 from facegear.dynamics.sweeps.plan import SweepPlan
-from facegear.dynamics.sweeps.rms_distance import SAME, distance
-from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds
+from facegear.dynamics.sweeps.rms_distance import SAME_ORBIT, distance
+from facegear.dynamics.sweeps.sweep import Piece, collect, join_pieces, run_speeds
 from facegear.dynamics.symmetries import Symmetry, symmetries
 
 
 class SeamKind(StrEnum):
-    """How two chunks met."""
+    """Agreement of two chunks where they meet."""
 
-    AGREED = "agreed"
+    AGREEMENT = "agreed"
     RERUN = "rerun"
     IRREGULAR = "irregular"
 
 
 @dataclass(frozen=True)
 class Seam:
-    """Where two chunks meet and how many speeds had to be run again from the end of the first.
+    """Where two chunks meet, and how many speeds had to be run again from the end of the first.
 
-    `irregular`: both are in irregular motion there, whose state is never forgotten; the chunks agree in RMS
-    only.
+    With `irregular`, both are in irregular motion there, whose state is never forgotten; the chunks agree in
+    RMS only.
     """
 
     direction: str
@@ -37,20 +37,52 @@ class Seam:
 
 
 def same_response(first: Piece, i: int, second: Piece, j: int) -> SeamKind | None:
-    """Whether two responses at one speed are the same motion; None if not."""
-    rms, other = first.deflection_ac_rms[i], second.deflection_ac_rms[j]
+    """Compare two responses at one speed.
+
+    Parameters
+    ----------
+    first : Piece
+        First piece.
+    i : int
+        Position in it.
+    second : Piece
+        Second piece.
+    j : int
+        Position in it.
+
+    Returns
+    -------
+    SeamKind or None
+        None if they are different motions.
+    """
+    rms, other_rms = first.deflection_ac_rms[i], second.deflection_ac_rms[j]
     periodic = first.periodic[i], second.periodic[j]
     if all(periodic):
-        near = distance(rms, other) <= SAME
-        return SeamKind.AGREED if near and first.period[i] == second.period[j] else None
+        near = distance(rms, other_rms) <= SAME_ORBIT
+        return SeamKind.AGREEMENT if near and first.period[i] == second.period[j] else None
     if any(periodic):
         return None
     doubt = first.deflection_ac_rms_interval[i] + second.deflection_ac_rms_interval[j]
-    return SeamKind.IRREGULAR if (np.abs(rms - other) <= 2.0 * doubt + SAME * rms).all() else None
+    return SeamKind.IRREGULAR if (np.abs(rms - other_rms) <= 2.0 * doubt + SAME_ORBIT * rms).all() else None
 
 
 def symmetries_at_end(model: Model, piece: Piece, settings: Settings) -> tuple[Symmetry, ...]:
-    """Return the symmetries that map the last motion of a piece to itself; all where it is not periodic."""
+    """Return the symmetries that map the last motion of a piece to itself.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    piece : Piece
+        Results in the order of running.
+    settings : Settings
+        Settings of the run.
+
+    Returns
+    -------
+    tuple of Symmetry
+        All symmetries of the system where the motion is not periodic.
+    """
     if not piece.symmetry_broken[-1]:
         return symmetries(model.system)
     return held_symmetries(simulate(model, float(piece.speeds[-1]), settings, piece.state(-1)))
@@ -59,25 +91,46 @@ def symmetries_at_end(model: Model, piece: Piece, settings: Settings) -> tuple[S
 def assemble(
     model: Model, plan: SweepPlan, direction: str, chunks: list[tuple[Piece, Piece]]
 ) -> tuple[Piece, list[Seam]]:
-    """Join (overlap, own) chunks; where a chunk started on another branch it is run again until it agrees."""
+    """Join chunks; where a chunk started on another branch it is run again until it agrees.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : SweepPlan
+        Speeds and settings.
+    direction : str
+        "up" or "down".
+    chunks : list of tuple
+        Overlap and own speeds of each chunk.
+
+    Returns
+    -------
+    Piece
+        Results at all speeds.
+    list of Seam
+        Seams between the chunks.
+    """
     whole = chunks[0][1]
     seams: list[Seam] = []
-    for before, own in chunks[1:]:
+    for before, own_piece in chunks[1:]:
         speed = float(whole.speeds[-1])
         kind = same_response(whole, -1, before, -1) if len(before.speeds) else None
         if kind is not None:
             seams.append(Seam(direction, speed, kind, 0))
-            whole = joined([whole, own])
+            whole = join_pieces([whole, own_piece])
             continue
         redone: list[Piece] = []
-        held = symmetries_at_end(model, whole, plan.settings)
-        for i in range(len(own.speeds)):
+        start_symmetries = symmetries_at_end(model, whole, plan.settings)
+        for i in range(len(own_piece.speeds)):
             state = (redone[-1] if redone else whole).state(-1)
-            (again,) = run_speeds(model, own.speeds[i : i + 1], plan.settings, state, held=held)
+            (again,) = run_speeds(
+                model, own_piece.speeds[i : i + 1], plan.settings, state, start_symmetries=start_symmetries
+            )
             redone.append(collect(model, iter([again])))
-            held = held_symmetries(again[1])
-            if same_response(redone[-1], -1, own, i) is not None:
+            start_symmetries = held_symmetries(again[1])
+            if same_response(redone[-1], -1, own_piece, i) is not None:
                 break
         seams.append(Seam(direction, speed, SeamKind.RERUN, len(redone)))
-        whole = joined([whole, *redone, own.tail(len(redone))])
+        whole = join_pieces([whole, *redone, own_piece.tail(len(redone))])
     return whole, seams

@@ -1,4 +1,4 @@
-"""Which natural mode a resonance belongs to."""
+"""Find the natural mode to which a resonance belongs."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,27 @@ from facegear.dynamics.sweeps.sweep import Piece
 from facegear.transmission.modes import Modes
 
 PROMINENT = 1.15
+"""Ratio of a maximum to the higher of the valleys beside it from which it counts."""
 SMALL = 0.1
 """Maxima below this fraction of the largest do not count."""
 
 
 @dataclass(frozen=True)
 class Resonance:
-    """The natural mode (order in the frequency table, from 1) that holds most of a response's energy.
+    """The natural mode that holds most of a response's energy.
 
-    order: multiple of the mesh frequency at which it moves most; fraction: of the energy of all modes;
-    predicted_rpm: where that multiple meets the mode's linear frequency.
+    Attributes
+    ----------
+    mode : int
+        Number in the frequency table, from 1.
+    frequency_hz : float
+        Natural frequency.
+    order : float
+        Multiple of the mesh frequency at which it moves most.
+    fraction : float
+        Fraction of the energy of all modes.
+    predicted_rpm : float
+        Speed at which that multiple meets the mode's linear frequency.
     """
 
     mode: int
@@ -30,12 +41,29 @@ class Resonance:
 
     @property
     def name(self) -> str:
-        """`mode 17 at 1x`."""
+        """Name such as `mode 17 at 1x`."""
         return f"mode {self.mode} at {self.order:g}x"
 
 
 def resonance(piece: Piece, position: int, modes: Modes, teeth: int) -> Resonance:
-    """The resonance that a response belongs to; modes of one frequency count together."""
+    """Find the resonance to which a response belongs; modes of one frequency count together.
+
+    Parameters
+    ----------
+    piece : Piece
+        Results of a sweep.
+    position : int
+        Position of the speed.
+    modes : Modes
+        Natural modes of the machine.
+    teeth : int
+        Number of teeth of the pinion.
+
+    Returns
+    -------
+    Resonance
+        Strongest mode.
+    """
     energy = piece.modal[position] ** 2
     groups = [energy[start:stop].sum() for start, stop in modes.groups]
     start, _ = modes.groups[int(np.argmax(groups))]
@@ -46,24 +74,45 @@ def resonance(piece: Piece, position: int, modes: Modes, teeth: int) -> Resonanc
 
 
 def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
-    """Local maxima over speed: (deflection or x, y, z), mesh or body, position, AC RMS in m.
+    """Find the local maxima of the AC RMS over speed.
 
     A maximum counts if it stands 15 % over the minimum on either side before a larger value comes.
+
+    Parameters
+    ----------
+    piece : Piece
+        Results of a sweep.
+
+    Returns
+    -------
+    list of tuple
+        Quantity (deflection, x, y or z), mesh or body, position, AC RMS in m.
     """
     rows = []
     for mesh, curve in enumerate(piece.deflection_ac_rms.T):
         rows += [("deflection", mesh, i, float(curve[i])) for i in maxima(curve)]
-    moved = piece.translation_ac_rms
-    for body in range(moved.shape[1]):
+    translations = piece.translation_ac_rms
+    for body in range(translations.shape[1]):
         for axis, letter in enumerate("xyz"):
-            curve = moved[:, body, axis]
+            curve = translations[:, body, axis]
             if curve.max() > 1e-12:
                 rows += [(letter, body, i, float(curve[i])) for i in maxima(curve)]
     return rows
 
 
 def maxima(curve: Array) -> list[int]:
-    """Positions of the maxima that are PROMINENT times the higher of the valleys beside them."""
+    """Find the maxima that are PROMINENT times the higher of the valleys beside them.
+
+    Parameters
+    ----------
+    curve : (P,) array
+        AC RMS over speed, any unit.
+
+    Returns
+    -------
+    list of int
+        Positions.
+    """
     positions, prominences = local_maxima(curve)
     heights = curve[positions]
     stands_out = heights > PROMINENT * (heights - prominences)

@@ -1,4 +1,4 @@
-"""A stable periodic orbit of a machine, followed from speed to speed until it is lost."""
+"""Follow a stable periodic orbit of a machine from speed to speed until it is lost."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
@@ -20,20 +20,36 @@ from facegear.transmission.machine import mesh_frequency
 FINE = 1e-8
 """Tolerance of a step, in length scales: special points are then exact to 1e-6 of the speed or better."""
 PARTS = 2
-"""A range of speeds is searched in at least so many steps, so that a short unstable part is not skipped."""
+"""Least number of steps in which a range of speeds is searched, so that a short unstable part is not
+skipped.
+"""
 NEAR = 0.2
 """Largest change of an orbit's state in one step, in length scales; else the step is halved."""
 SMOOTH = 0.95 * MIN_CHANGE
-"""Largest relative change of a mesh's AC RMS in one step; else the step is halved. What still changes by more
-within the resolution is another orbit, to which Newton's method came across a fold."""
+"""Largest relative change of a mesh's AC RMS in one step; else the step is halved.
+
+If it changes by more within the resolution, Newton's method came to another orbit across a fold.
+"""
 SAMPLES = 256
-"""Samples in a mesh period for the AC RMS, which errs by less than 1e-3."""
+"""Number of samples in a mesh period for the AC RMS, which errs by less than 1e-3."""
 
 
 @dataclass(frozen=True, eq=False)
 class HeldOrbit:
-    """An orbit of `period` mesh periods at a speed (rpm), its state, the AC RMS (meshes,), m, of the mesh
-    deflections, and the size of its leading multiplier.
+    """A stable orbit at one speed.
+
+    Attributes
+    ----------
+    speed : float
+        Pinion speed, rpm.
+    period : int
+        Number of mesh periods.
+    state : State
+        A state on the orbit.
+    ac_rms : (meshes,) array
+        AC RMS of the mesh deflections, m.
+    multiplier : float
+        Magnitude of the leading multiplier.
     """
 
     speed: float
@@ -44,7 +60,20 @@ class HeldOrbit:
 
 
 def machine_follower(model: Model, settings: Settings) -> "OrbitFollower":
-    """Return what follows the orbits of a machine over the speed of its pinions, rpm."""
+    """Return a follower of the orbits of a machine over the speed of its pinions, rpm.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    settings : Settings
+        Settings of the run.
+
+    Returns
+    -------
+    OrbitFollower
+        Follower of the model.
+    """
     return OrbitFollower(
         lambda speed: (model.system, TAU * mesh_frequency(model.machine.layout, speed)), settings
     )
@@ -56,24 +85,52 @@ class OrbitFollower:
 
     Attributes
     ----------
-    at
-        The system at a speed, and its angular mesh frequency, rad/s.
-    settings
-        With which the motion is sought; steps are at least as fine as FINE.
+    at : callable
+        Returns the system at a speed, and its angular mesh frequency, rad/s.
+    settings : Settings
+        Settings with which the motion is sought; steps are at least as fine as FINE.
     """
 
     at: Callable[[float], tuple[System, float]]
     settings: Settings
 
     def orbit(self, speed: float, state: State, period: int) -> HeldOrbit | None:
-        """Return the stable orbit at a speed next to a state of a motion with a period; None if there is none
-        or the period is 0.
+        """Find the stable orbit at a speed next to a state.
+
+        Parameters
+        ----------
+        speed : float
+            Pinion speed, rpm.
+        state : State
+            State of a motion.
+        period : int
+            Mesh periods of the motion; 0 if it is not periodic.
+
+        Returns
+        -------
+        HeldOrbit or None
+            None if there is no such orbit.
         """
         return self._stable(speed, state, period) if period else None
 
     def until_lost(self, orbit: HeldOrbit, end: float, resolution: float) -> tuple[HeldOrbit, float | None]:
-        """Return the last orbit that is found stable on the way to a speed, and the speed (rpm), at most
-        `resolution` beyond it, at which it is not; None in place of it if it is stable up to the end.
+        """Follow an orbit to a speed, or until it is lost.
+
+        Parameters
+        ----------
+        orbit : HeldOrbit
+            Orbit at the first speed.
+        end : float
+            Last speed, rpm.
+        resolution : float
+            Largest distance between the two speeds of the result, rpm.
+
+        Returns
+        -------
+        HeldOrbit
+            Last orbit that is found stable.
+        float or None
+            Speed at which it is not, rpm; None if it is stable up to the end.
         """
         whole = abs(end - orbit.speed)
         onward, step, again = 1.0 if end > orbit.speed else -1.0, whole / PARTS, False
@@ -93,17 +150,31 @@ class OrbitFollower:
     def aside(self, last: HeldOrbit, speed: float, kick: float) -> State:
         """Return a start at a speed at which an orbit is lost.
 
-        It lies beside the orbit, by a distance `kick` in length scales along its leading direction, where the
-        orbit goes on unstable; else it is the last state of the orbit.
+        It lies beside the orbit along its leading direction, where the orbit continues unstable. Else it is
+        the last state of the orbit.
+
+        Parameters
+        ----------
+        last : HeldOrbit
+            Last stable orbit.
+        speed : float
+            Speed at which it is lost, rpm.
+        kick : float
+            Distance from the orbit in length scales, dimensionless.
+
+        Returns
+        -------
+        State
+            Start.
         """
         integrator, orbit = self._near(speed, last.state, last.period)
         if orbit is None:
             return last.state
-        off = orbit.leaving(integrator, 0.0 * orbit.state)
+        off = orbit.leading_disturbance(integrator, 0.0 * orbit.state)
         return integrator.by_time(orbit.state + kick * off)
 
     def _stable(self, speed: float, state: State, period: int) -> HeldOrbit | None:
-        """The stable orbit of a period at a speed near a state."""
+        """Stable orbit of a period at a speed near a state, or None."""
         integrator, orbit = self._near(speed, state, period)
         if orbit is None or abs(orbit.multipliers[0]) > 1.0 + UNIT_TOLERANCE:
             return None
@@ -119,7 +190,7 @@ class OrbitFollower:
         )
 
     def _near(self, speed: float, state: State, period: int) -> tuple[Integrator, Orbit | None]:
-        """The orbit of a period at a speed to which a state belongs, stable or not, with its integrator."""
+        """Integrator, and the orbit of a period at a speed to which a state belongs, stable or not."""
         system, frequency = self.at(speed)
         integrator = Integrator(system, frequency, min(self.settings.tolerance, FINE))
         start = integrator.by_phase(state)

@@ -1,4 +1,4 @@
-"""How far an operating speed is from the nearest jump of the response."""
+"""Distance of an operating speed from the nearest jump of the response."""
 
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.sweeps.jumps import Jump
@@ -8,11 +8,30 @@ from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 
 
 def jump_margin(model: Model, speed_rpm: float, within: JumpRange) -> float:
-    """Distance (rpm) from a speed to the nearest jump of sweeps up and down; the range where there is none.
+    """Compute the distance from a speed to the nearest jump of sweeps up and down.
 
-    A jump is what `facegear.dynamics.sweeps.jumps` calls one, and lies at the nearer end of its bracket: the
-    margin is 0 at a speed inside it. What jumps farther away than the range is not seen, nor are motions that
-    neither sweep meets. Raises NotConverged naming the speed.
+    A jump is defined in `facegear.dynamics.sweeps.jumps`, and lies at the nearer end of its bracket: the
+    margin is 0 at a speed inside it. Jumps farther away than the range are not seen, nor are motions that
+    neither sweep meets.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    speed_rpm : float
+        Pinion speed, rpm.
+    within : JumpRange
+        Range around the speed.
+
+    Returns
+    -------
+    float
+        Distance, rpm; the range where there is no jump.
+
+    Raises
+    ------
+    NotConverged
+        If a run fails; the message names the speed.
     """
     plan = within.plan(speed_rpm)
     by_direction = whole_sweep(

@@ -1,8 +1,8 @@
-"""Jumps in a sweep: found where the response changes abruptly, then bracketed by following the motion.
+"""Find jumps in a sweep where the response changes abruptly, and bracket them by following the motion.
 
 The periodic motion before a suspected jump is followed as an orbit, speed by speed, until it ends or loses
-its stability. That speed belongs to the motion, so it depends neither on the speeds of the sweep nor on how
-far a run is from the edge of its basin. Motions that are not periodic are bracketed by bisection.
+its stability. That speed is a property of the motion, so it depends neither on the speeds of the sweep nor on
+how far a run is from the edge of its basin. Motions that are not periodic are bracketed by bisection.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,37 +11,55 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.dynamics.courses import Course
 from facegear.dynamics.motion import Motion, State
+from facegear.dynamics.run_plans import RunPlan
 from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
 from facegear.dynamics.sweeps.held_orbit import HeldOrbit, OrbitFollower
 from facegear.dynamics.sweeps.jump_kinds import JumpKind
-from facegear.dynamics.sweeps.rms_distance import FLOOR, MIN_CHANGE, SAME, distance, image_distance
+from facegear.dynamics.sweeps.rms_distance import FLOOR, MIN_CHANGE, SAME_ORBIT, distance, image_distance
 from facegear.dynamics.sweeps.sweep import Piece
 
 ABRUPT = 3.0
-"""A jump is this many times the change over the speeds around it."""
+"""Factor by which a jump exceeds the changes over the neighbouring speeds."""
 NEAR_LOSS = 4.0
 """Distance, in resolutions, from the last orbit held within which a change found by runs is its end."""
 MAX_CHANGES = 4
-"""Smooth changes of the motion, such as period doublings, that are followed on the way to a jump; what comes
-after them is bracketed by bisection."""
+"""Maximum number of smooth changes of the motion, such as period doublings, that are followed on the way to a
+jump.
+
+Changes after them are bracketed by bisection.
+"""
 KICKS = (0.01, 0.05, 0.2)
 """Disturbances of an orbit that has just lost its stability, in length scales; the first after which a run
 settles counts. Without any it takes some 10,000 periods to leave an orbit with a multiplier of 1.0005."""
 RUNS = 2
-"""Runs, each from the end of the one before, in which a motion may settle."""
+"""Number of runs, each from the end of the one before, in which a motion may settle."""
 
-Respond = Callable[[float, State], Course[SteadyState]]
+Respond = Callable[[float, State], RunPlan[SteadyState]]
+"""Makes a run plan of the response at a speed (rpm) from a state."""
 
 
 @dataclass(frozen=True, eq=False)
 class JumpSide:
-    """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), m, its class and state.
+    """Response on one side of a jump.
 
-    period: 0 where the motion is not periodic. multiplier: the leading one, NaN where there is none.
-    symmetry_broken: whether the motion has mirror images that are other motions.
+    Attributes
+    ----------
+    speed : float
+        Pinion speed, rpm.
+    ac_rms : (meshes,) array
+        AC RMS of the mesh deflections, m.
+    label : str
+        Class of motion.
+    period : int
+        Mesh periods; 0 where the motion is not periodic.
+    multiplier : float
+        Magnitude of the leading multiplier, NaN where there is none.
+    symmetry_broken : bool
+        Whether the motion has mirror images that are other motions.
+    state : State
+        State at the end.
     """
 
     speed: float
@@ -59,16 +77,16 @@ class Jump:
 
     Attributes
     ----------
-    before, after
-        What is found on both sides.
-    mesh
-        Where the relative change is largest.
-    largest
+    before, after : JumpSide
+        Responses on both sides.
+    mesh : int
+        Mesh in which the relative change is largest.
+    largest : int
         The sweep's position next to the jump with the larger response.
-    error
+    error : float
         How far the speed of the change may lie from the bracket, rpm: its width where the motion before it
         was followed as an orbit, else the sweep's step, since a run leaves irregular motion by chance.
-    followed
+    is_followed : bool
         Whether the motion before it was followed as an orbit until it was lost.
     """
 
@@ -77,21 +95,31 @@ class Jump:
     mesh: int
     largest: int
     error: float
-    followed: bool
+    is_followed: bool
 
     @property
     def kind(self) -> JumpKind:
         """Kind of the change, by the classes of motion on both sides."""
         if self.before.period == 0 or self.after.period == 0:
             return JumpKind.IRREGULAR
-        return JumpKind.JUMP if self.followed else JumpKind.STEP
+        return JumpKind.JUMP if self.is_followed else JumpKind.STEP
 
 
 def suspects(piece: Piece) -> dict[int, bool]:
-    """Return positions i where the response may jump on the way from speed i to i + 1, and if abruptly.
+    """Find the positions i at which the response may jump on the way from speed i to i + 1.
 
-    Abrupt is what is larger than the changes around it. Between periodic motions every change that is large
-    enough for a jump counts, since following the orbit tells a jump from a steep curve.
+    A change is abrupt if it is larger than the changes around it. Between periodic motions every change that
+    is large enough for a jump counts, since following the orbit tells a jump from a steep curve.
+
+    Parameters
+    ----------
+    piece : Piece
+        Results of a sweep in one direction.
+
+    Returns
+    -------
+    dict
+        Whether the change is abrupt, by position.
     """
     ac_rms, interval = piece.deflection_ac_rms, piece.deflection_ac_rms_interval
     floor = FLOOR * ac_rms.max()
@@ -115,23 +143,30 @@ def refine(
     resolution: float,
     images: Integers,
     thorough: bool,
-) -> Course[Jump | None]:
-    """Find where the motion at a position of a sweep is lost before the next position; None if it is not.
+) -> RunPlan[Jump | None]:
+    """Find where the motion at a position of a sweep is lost before the next position.
 
     Parameters
     ----------
-    piece, position
-        The sweep, and the number of the speed before the change.
-    respond
-        The response at a speed (rpm) from a state.
-    follower
+    piece : Piece
+        Results of a sweep in one direction.
+    position : int
+        Number of the speed before the change.
+    respond : Respond
+        Makes a run plan of the response at a speed (rpm) from a state.
+    follower : OrbitFollower
         Follows orbits over the speed.
-    resolution
+    resolution : float
         Width of the bracket, rpm.
-    images : (images, meshes)
-        How symmetries of the machine exchange meshes. Mirror images are one motion.
-    thorough
+    images : (images, meshes) array
+        Permutations of the meshes by symmetry. Mirror images are one motion.
+    thorough : bool
         Whether to bisect where no orbit can be followed, and to wait for a motion that settles slowly.
+
+    Returns
+    -------
+    RunPlan of Jump or None
+        Computation that returns the jump; None if the motion is not lost.
     """
     before, end = (_stored_side(piece, i) for i in (position, position + 1))
     step = abs(end.speed - before.speed)
@@ -148,7 +183,7 @@ def refine(
             return _jump(piece, position, before, after, images, step, False)
         last, beyond = follower.until_lost(orbit, end.speed, resolution)
         if beyond is None:
-            if image_distance(last.ac_rms, end.ac_rms, images) <= SAME and last.period == end.period:
+            if image_distance(last.ac_rms, end.ac_rms, images) <= SAME_ORBIT and last.period == end.period:
                 return None
             return _jump(piece, position, before, end, images, step, False)
         # Beside a fold a run from the orbit may already leave it: the orbit itself is the motion before.
@@ -179,7 +214,7 @@ def _held_side(orbit: HeldOrbit, former: JumpSide) -> JumpSide:
 
 def _beyond(
     last: HeldOrbit, speed: float, follower: OrbitFollower, respond: Respond, kicks: Sequence[float]
-) -> Course[JumpSide]:
+) -> RunPlan[JumpSide]:
     """Find the motion that follows an orbit at a speed at which it is lost.
 
     It may be left, and the next motion approached, so slowly that no run settles: then a run goes on once,
@@ -202,31 +237,33 @@ def _jump(
     after: JumpSide,
     images: Integers,
     error: float,
-    followed: bool,
+    is_followed: bool,
 ) -> Jump | None:
-    """The jump between two sides, None if what is left is a steep but smooth change or noise."""
+    """Return the jump between two sides, or None if the rest is a steep but smooth change or noise."""
     if not abrupt(before, after, images):
         return None
     after = replace(after, ac_rms=after.ac_rms[_preferred(before.ac_rms, after.ac_rms, images)])
     floor = np.full_like(before.ac_rms, 1e-300)
     ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
     # Twins differ by what their AC RMS err by, which is absolute in a logarithm.
-    mesh = int(np.flatnonzero(np.abs(ratio) >= np.abs(ratio).max() - SAME)[0])
-    return Jump(before, after, mesh, position + int(ratio[mesh] > 0.0), error, followed)
+    mesh = int(np.flatnonzero(np.abs(ratio) >= np.abs(ratio).max() - SAME_ORBIT)[0])
+    return Jump(before, after, mesh, position + int(ratio[mesh] > 0.0), error, is_followed)
 
 
 def _preferred(before: Array, after: Array, images: Integers) -> Integers:
-    """The image (meshes,) of the motion after a jump that is named: of those that the symmetries of the
-    motion before it allow, the one with the largest AC RMS in the first mesh in which they differ.
+    """Image (meshes,) of the motion after a jump that is reported.
+
+    Of the images that the symmetries of the motion before the jump allow, it is the one with the largest AC
+    RMS in the first mesh in which they differ.
     """
-    allowed = [image for image in images if distance(before, before[image]) <= SAME]
-    digits = np.round(-np.log10(SAME)).astype(int)
+    candidates = [image for image in images if distance(before, before[image]) <= SAME_ORBIT]
+    digits = np.round(-np.log10(SAME_ORBIT)).astype(int)
     scale = max(float(after.max()), 1e-300)
-    return max(allowed, key=lambda image: tuple(np.round(after[image] / scale, digits)))
+    return max(candidates, key=lambda image: tuple(np.round(after[image] / scale, digits)))
 
 
 def _stored_side(piece: Piece, position: int) -> JumpSide:
-    """What a sweep has found at one of its speeds."""
+    """Response that a sweep has found at one of its speeds."""
     return JumpSide(
         speed=float(piece.speeds[position]),
         ac_rms=piece.deflection_ac_rms[position],
@@ -240,29 +277,74 @@ def _stored_side(piece: Piece, position: int) -> JumpSide:
 
 def bracket(
     before: JumpSide, after: JumpSide, respond: Respond, resolution: float, images: Integers
-) -> Course[tuple[JumpSide, JumpSide]]:
-    """Halve the interval between two speeds with different responses down to `resolution`."""
+) -> RunPlan[tuple[JumpSide, JumpSide]]:
+    """Halve the interval between two speeds with different responses.
+
+    Parameters
+    ----------
+    before, after : JumpSide
+        Responses at both speeds.
+    respond : Respond
+        Makes a run plan of the response at a speed.
+    resolution : float
+        Width of the interval at the end, rpm.
+    images : (images, meshes) array
+        Permutations of the meshes by symmetry.
+
+    Returns
+    -------
+    RunPlan of tuple
+        Computation that returns the responses at both ends, in rpm and m, such as ac_rms (meshes,).
+    """
     while abs(after.speed - before.speed) > resolution:
         middle = 0.5 * (before.speed + after.speed)
         response = yield from respond(middle, before.state)
-        here = side(middle, response)
-        to_before, to_after = (image_distance(here.ac_rms, side.ac_rms, images) for side in (before, after))
+        middle_side = side(middle, response)
+        to_before, to_after = (
+            image_distance(middle_side.ac_rms, side.ac_rms, images) for side in (before, after)
+        )
         if to_before <= to_after:
-            before = here
+            before = middle_side
         else:
-            after = here
+            after = middle_side
     return before, after
 
 
 def abrupt(before: JumpSide, after: JumpSide, images: Integers) -> bool:
-    """Whether two motions differ by more than a smooth change or noise."""
+    """Whether two motions differ by more than a smooth change or noise.
+
+    Parameters
+    ----------
+    before, after : JumpSide
+        Responses.
+    images : (images, meshes) array
+        Permutations of the meshes by symmetry.
+
+    Returns
+    -------
+    bool
+        True if the distance of their AC RMS is above MIN_CHANGE, or three times that if neither is periodic.
+    """
     regular = before.period > 0 or after.period > 0
     apart = image_distance(before.ac_rms, after.ac_rms, images)
     return apart > np.log1p(MIN_CHANGE if regular else 3.0 * MIN_CHANGE)
 
 
 def side(speed: float, response: SteadyState) -> JumpSide:
-    """What bisection compares, from a response."""
+    """Reduce a response to the numbers that bisection compares.
+
+    Parameters
+    ----------
+    speed : float
+        Pinion speed, rpm.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    JumpSide
+        Side of a jump.
+    """
     ac_rms = response.moments.ac_rms
     multiplier = np.nan if response.multipliers is None else float(abs(response.multipliers[0]))
     return JumpSide(

@@ -1,4 +1,4 @@
-"""Local maxima of a curve, as `scipy.signal.find_peaks` has them, which takes half a second to import."""
+"""Local maxima of a curve, as by `scipy.signal.find_peaks`, which takes half a second to import."""
 
 import numpy as np
 
@@ -6,10 +6,22 @@ from facegear.arrays import Array, Integers
 
 
 def local_maxima(curve: Array) -> tuple[Integers, Array]:
-    """Positions (m,) of the maxima of a curve (n,), its ends left out, and their prominences (m,).
+    """Find the maxima of a curve, without its ends, and their prominences.
 
     Of equal neighbours the middle counts. A prominence is the height above the larger of the two smallest
     values that lie on either side before a larger value than the maximum comes.
+
+    Parameters
+    ----------
+    curve : (n,) array
+        Values, any unit.
+
+    Returns
+    -------
+    (m,) array
+        Positions, as indices.
+    (m,) array
+        Prominences, in the unit of the values.
     """
     changes = np.flatnonzero(np.diff(curve))
     first, last = np.append(0, changes + 1), np.append(changes, curve.size - 1)
@@ -21,6 +33,6 @@ def local_maxima(curve: Array) -> tuple[Integers, Array]:
 
 
 def _valley(curve: Array) -> float:
-    """The smallest value before one that is larger than the first."""
+    """Smallest value before one that is larger than the first."""
     beyond = ~(curve <= curve[0])
     return float(curve[: beyond.argmax() if beyond.any() else curve.size].min())

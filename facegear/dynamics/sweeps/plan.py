@@ -1,4 +1,4 @@
-"""Which speeds a sweep runs, and in which chunks."""
+"""Speeds that a sweep runs, and its chunks."""
 
 from dataclasses import dataclass
 from math import ceil
@@ -9,7 +9,7 @@ from facegear.arrays import Array
 from facegear.dynamics.motion import Settings
 
 SLOWEST_RPM = 1.0
-"""Slower speeds are not run."""
+"""Lowest speed of a sweep for jumps, rpm; slower speeds are not run."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,20 @@ class SweepPlan:
         return np.linspace(self.first_rpm, self.last_rpm, self.points)
 
     def chunk(self, direction: str, number: int) -> tuple[Array, Array]:
-        """Speeds to run for overlap, and the chunk's own, each in the order of running."""
+        """Return the speeds of a chunk in the order of running.
+
+        Parameters
+        ----------
+        direction : str
+            "up" or "down".
+        number : int
+            Number of the chunk.
+
+        Returns
+        -------
+        tuple of array
+            Speeds of the overlap (overlap,) and the chunk's own speeds (points,), rpm.
+        """
         speeds = self.speeds if direction == "up" else self.speeds[::-1]
         bounds = np.linspace(0, self.points, self.chunks + 1).round().astype(int)
         start, stop = bounds[number], bounds[number + 1]
@@ -43,9 +56,10 @@ class SweepPlan:
 
 @dataclass(frozen=True)
 class JumpRange:
-    """Where jumps are looked for: up to `range_rpm` on both sides, at most `step_rpm` from speed to speed.
+    """Range in which jumps are sought.
 
-    A jump is bracketed to `resolution_rpm`; `settings` are those of the sweeps.
+    It reaches `range_rpm` to both sides, in steps of at most `step_rpm`. A jump is bracketed to
+    `resolution_rpm`; `settings` are those of the sweeps.
     """
 
     range_rpm: float
@@ -54,7 +68,18 @@ class JumpRange:
     settings: Settings
 
     def plan(self, speed_rpm: float) -> SweepPlan:
-        """Up and down through the range around a speed, each in one piece."""
+        """Return a sweep up and down through the range around a speed, each in one piece.
+
+        Parameters
+        ----------
+        speed_rpm : float
+            Pinion speed, rpm.
+
+        Returns
+        -------
+        SweepPlan
+            Plan in one chunk.
+        """
         first, last = max(speed_rpm - self.range_rpm, SLOWEST_RPM), speed_rpm + self.range_rpm
         return SweepPlan(
             first_rpm=first,

@@ -1,4 +1,4 @@
-"""One line about what a stage found."""
+"""Summaries of a response and of a sweep in one line."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -11,14 +11,25 @@ from facegear.dynamics.sweeps.whole_sweep import Direction
 from facegear.number_format import count_noun
 
 PULLS = 1e-3
-"""Pull of a damper, over the largest elastic mesh force, that is worth a word."""
+"""Pull of a damper, over the largest elastic mesh force, from which it is reported."""
 
 
 def response_summary(response: SteadyState) -> str:
-    """Largest mesh force, class of motion, largest fraction of time out of contact, pull of the dampers."""
+    """Summarise the largest mesh force, class of motion, largest open fraction, and pull of the dampers.
+
+    Parameters
+    ----------
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    str
+        One line.
+    """
     parts = [f"largest mesh force {np.abs(response.forces).max():.4g} N", response.label]
     if response.looks is not None:
-        parts.append(" from one start and ".join(map(_closed, response.looks)) + " from another")
+        parts.append(" from one start and ".join(map(_period_label, response.looks)) + " from another")
     parts.append(f"open for up to {100.0 * response.fractions[0].max():.0f} % of the time")
     past = float(response.past_law.max())
     if past > 0.0:
@@ -29,12 +40,24 @@ def response_summary(response: SteadyState) -> str:
     return ", ".join(parts)
 
 
-def _closed(period: int) -> str:
+def _period_label(period: int) -> str:
     return f"period-{period}" if period else "irregular"
 
 
 def sweep_summary(directions: Mapping[str, Direction]) -> str:
-    """Jumps and periodic speeds in each direction, and seams that have not forgotten, if there are any."""
+    """Summarise jumps and periodic speeds in each direction, and seams that have not forgotten, if there are
+    any.
+
+    Parameters
+    ----------
+    directions : mapping
+        Results of a sweep, by direction.
+
+    Returns
+    -------
+    str
+        One line.
+    """
     parts = []
     for name, direction in directions.items():
         periods = direction.piece.period

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.dynamics.courses import Course, alone, side_by_side
 from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.run_plans import RunPlan, alone, side_by_side
 from facegear.dynamics.steady_state.mirror_images import symmetry_broken
 from facegear.dynamics.steady_state.response import SteadyState
-from facegear.dynamics.steady_state.simulate import Model, Started, started, static_start
+from facegear.dynamics.steady_state.simulate import Model, StartedRun, start_run, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.symmetries import Symmetry
@@ -20,28 +20,50 @@ from facegear.transmission.loaded_modes import loaded_modes
 
 T = TypeVar("T")
 DEFLECTION = ("mean", "rms", "ac_rms", "minimum", "maximum", "rms_interval", "ac_rms_interval")
+"""Moments of the mesh deflections that a sweep stores."""
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
+"""Moments of the bodies' translations that a sweep stores."""
 TOGETHER = 64
-"""Speeds whose motions are watched on side by side."""
+"""Number of speeds whose motions are watched side by side."""
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
     """Results of one chunk in the order of running; P speeds, M meshes, B bodies, n coordinates.
 
-    motion (P,): class of motion, period (P,) its mesh periods where it is periodic, else 0. deflection_*
-    (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
-    forces, without the damper's part, N; largest_force (P, M): their largest magnitude.
-    largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
-    open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_fraction (P, M) of the samples,
-    at which a mesh is pressed past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
-    residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
-    there is none. first_look_period, second_look_period (P,): mesh periods of the motions that two starts
-    came to (0: not periodic) where the motion is not settled because they differ, else NaN. symmetry_broken
-    (P,): whether the motion is periodic and has mirror images that are other motions. spectrum (P, M,
-    orders), m. modal (P, modes): RMS velocity scale omega * coordinate of every natural mode without mean,
-    sqrt(J). modal_order (P,): where in multiples of the mesh frequency the
-    strongest mode moves most. displacement, velocity (P, n).
+    Attributes
+    ----------
+    motion, period : (P,) array
+        Class of motion, and its mesh periods where it is periodic, else 0.
+    deflection_* : (P, M) array
+        Moments of the mesh deflections, m.
+    mean_force, mean_force_magnitude, largest_force : (P, M) array
+        Mean, mean magnitude and largest magnitude of the elastic mesh forces, without the damper's part, N.
+    largest_pull : (P, M) array
+        Largest force by which the damper of a contact pulls its flanks together, N.
+    open_fraction, drive_fraction, back_fraction : (P, M) array
+        Fractions of the time.
+    past_law_fraction : (P, M) array
+        Fraction of the samples at which a mesh is compressed beyond the last level of its law.
+    translation_* : (P, B, 3) array
+        Moments of x, y, z, m.
+    residual, periods_run : (P,) array
+        Change over the period over the length scale, and number of mesh periods run.
+    leading_multiplier, exponent_per_period, exponent_interval : (P,) array
+        Floquet multiplier, Lyapunov exponent and its half-width; NaN where there is none.
+    first_look_period, second_look_period : (P,) array
+        Mesh periods of the motions to which two starts came (0: not periodic) where the motion is not settled
+        because they differ, else NaN.
+    symmetry_broken : (P,) array
+        Whether the motion is periodic and has mirror images that are other motions.
+    spectrum : (P, M, orders) array
+        Amplitude spectra of the mesh deflections, m.
+    modal : (P, modes) array
+        RMS velocity scale omega * coordinate of every natural mode without mean, sqrt(J).
+    modal_order : (P,) array
+        Multiple of the mesh frequency at which the strongest mode moves most.
+    displacement, velocity : (P, n) array
+        State at the end.
     """
 
     speeds: Array
@@ -102,20 +124,64 @@ class Piece:
         ]
 
     def part(self, speeds: slice) -> "Piece":
-        """Some of the speeds."""
+        """Return the results at some of the speeds.
+
+        Parameters
+        ----------
+        speeds : slice
+            Positions of the speeds.
+
+        Returns
+        -------
+        Piece
+            Results at these speeds.
+        """
         return Piece(**{name: getattr(self, name)[speeds] for name in self.__dataclass_fields__})
 
     def tail(self, start: int) -> "Piece":
-        """The speeds from position `start` on."""
+        """Return the results from a position on.
+
+        Parameters
+        ----------
+        start : int
+            Position of the first speed.
+
+        Returns
+        -------
+        Piece
+            Results at these speeds.
+        """
         return self.part(slice(start, None))
 
     def state(self, index: int) -> State:
-        """State at the end of one speed."""
+        """Return the state at the end of one speed.
+
+        Parameters
+        ----------
+        index : int
+            Position of the speed.
+
+        Returns
+        -------
+        State
+            Displacement and velocity.
+        """
         return State(self.displacement[index], self.velocity[index])
 
 
-def joined(pieces: list[Piece]) -> Piece:
-    """Pieces one after another."""
+def join_pieces(pieces: list[Piece]) -> Piece:
+    """Join pieces one after another.
+
+    Parameters
+    ----------
+    pieces : list of Piece
+        Pieces in the order of running.
+
+    Returns
+    -------
+    Piece
+        Results at all speeds.
+    """
     names = Piece.__dataclass_fields__
     return Piece(**{name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in names})
 
@@ -123,9 +189,28 @@ def joined(pieces: list[Piece]) -> Piece:
 def run_chunk(
     model: Model, plan: SweepPlan, direction: str, number: int, step: Callable[[], None] = lambda: None
 ) -> tuple[Piece, Piece]:
-    """Overlap and own speeds of a chunk, the first speed started from static equilibrium."""
-    before, own = plan.chunk(direction, number)
-    responses = run_speeds(model, np.concatenate([before, own]), plan.settings, None, step)
+    """Run the overlap and the own speeds of a chunk; the first speed is started from static equilibrium.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    plan : SweepPlan
+        Speeds and settings.
+    direction : str
+        "up" or "down".
+    number : int
+        Number of the chunk.
+    step : callable
+        Called without arguments after each speed.
+
+    Returns
+    -------
+    tuple of Piece
+        Results at the overlap and at the own speeds.
+    """
+    before, own_speeds = plan.chunk(direction, number)
+    responses = run_speeds(model, np.concatenate([before, own_speeds]), plan.settings, None, step)
     piece = collect(model, responses)
     return piece.part(slice(len(before))), piece.tail(len(before))
 
@@ -136,13 +221,31 @@ def run_speeds(
     settings: Settings,
     start: State | None,
     step: Callable[[], None] = lambda: None,
-    held: Sequence[Symmetry] | None = None,
+    start_symmetries: Sequence[Symmetry] | None = None,
 ) -> Iterator[tuple[float, SteadyState]]:
-    """Steady states at speeds in the given order, the state carried over.
+    """Compute steady states at speeds in the given order, each started from the state of the one before.
 
-    held: symmetries of what the start belongs to, by default of the start itself.
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    speeds : (P,) array
+        Pinion speeds, rpm.
+    settings : Settings
+        Settings of the run.
+    start : State or None
+        Start at the first speed; the static equilibrium if None.
+    step : callable
+        Called without arguments after each speed.
+    start_symmetries : sequence of Symmetry, optional
+        Symmetries of the motion to which the start belongs; by default those of the start itself.
+
+    Returns
+    -------
+    iterator of tuple
+        Speed, rpm, and response.
     """
-    responses = carried_over(model, speeds, settings, start, Started.followed, step, held)
+    responses = carried_over(model, speeds, settings, start, StartedRun.follow, step, start_symmetries)
     return zip(speeds.tolist(), responses, strict=True)
 
 
@@ -151,32 +254,69 @@ def carried_over(
     speeds: Array,
     settings: Settings,
     start: State | None,
-    follow: Callable[[Started], Course[T]],
+    follow: Callable[[StartedRun], RunPlan[T]],
     step: Callable[[], None] = lambda: None,
-    held: Sequence[Symmetry] | None = None,
+    start_symmetries: Sequence[Symmetry] | None = None,
 ) -> Iterator[T]:
-    """What comes of the motions at speeds in the given order, the state carried over.
+    """Run plans for the motions at speeds in the given order, each started from the state of the one before.
 
-    What a motion hands on is known after its first watch: where it has settled that is a state of the motion
-    it has settled on, else the last one seen, as good as any other of an irregular motion. What is left to
-    see of TOGETHER speeds runs side by side. held: as in run_speeds().
+    The state that a motion hands on is known after its first watch. Where the motion has settled, this is a
+    state of the motion on which it has settled. Else it is the last state, as good as any other of an
+    irregular motion. The rest of TOGETHER speeds runs side by side.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    speeds : (P,) array
+        Pinion speeds, rpm.
+    settings : Settings
+        Settings of the run.
+    start : State or None
+        Start at the first speed; the static equilibrium if None.
+    follow : callable
+        Makes a run plan of each started run.
+    step : callable
+        Called without arguments after each first watch.
+    start_symmetries : sequence of Symmetry, optional
+        Symmetries of the motion to which the start belongs; by default those of the start itself.
+
+    Yields
+    ------
+    T
+        Value that each plan returns.
     """
     state = static_start(model) if start is None else start
     for first in range(0, len(speeds), TOGETHER):
         motions = []
         for speed in speeds[first : first + TOGETHER]:
-            motions.append(alone(started(model, float(speed), settings, state, held=held)))
-            state, held = motions[-1].state, motions[-1].held
+            motions.append(
+                alone(start_run(model, float(speed), settings, state, start_symmetries=start_symmetries))
+            )
+            state, start_symmetries = motions[-1].state, motions[-1].motion_symmetries
             step()
         yield from side_by_side([follow(motion) for motion in motions])
 
 
 def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:
-    """Reduce responses to the numbers that a sweep keeps."""
+    """Reduce responses to the numbers that a sweep stores.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    responses : iterator of tuple
+        Speed, rpm, and response.
+
+    Returns
+    -------
+    Piece
+        Numbers at each speed.
+    """
     machine = model.machine
     modes = loaded_modes(machine)
     to_modal = machine.linear.momentum(modes.shapes) * (2.0 * np.pi * modes.frequencies)
-    basis = model.reduced.basis
+    basis = model.reduction.basis
     translations = basis[machine.linear.translations.ravel()].T
     views = np.hstack([translations, basis.T @ to_modal])
     rows = [_row(views, translations.shape[1], speed, response) for speed, response in responses]
@@ -197,7 +337,7 @@ def _row(
     exponent, half = response.exponent or (np.nan, np.nan)
     first_look, second_look = response.looks or (np.nan, np.nan)
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
-    moved = (values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval))
+    translations = (values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval))
     return {
         "speeds": speed,
         "motion": response.motion.value,
@@ -208,7 +348,7 @@ def _row(
         "largest_pull": response.averages.pull,
         **dict(zip(("open_fraction", "drive_fraction", "back_fraction"), response.fractions, strict=True)),
         "past_law_fraction": response.past_law,
-        **dict(zip((f"translation_{name}" for name in TRANSLATION), moved, strict=True)),
+        **dict(zip((f"translation_{name}" for name in TRANSLATION), translations, strict=True)),
         "residual": response.residual,
         "leading_multiplier": leading,
         "exponent_per_period": exponent,
@@ -226,7 +366,18 @@ def _row(
 
 
 def tighter(settings: Settings) -> Settings:
-    """Half the tolerance and twice the dwell, to show what a sweep's numbers are worth."""
+    """Return settings with half the tolerance and twice the dwell, to show the accuracy of a sweep's numbers.
+
+    Parameters
+    ----------
+    settings : Settings
+        Settings of the run.
+
+    Returns
+    -------
+    Settings
+        Settings of the same order of steps.
+    """
     return replace(
         settings,
         tolerance=0.5 * settings.tolerance,

@@ -1,4 +1,4 @@
-"""The csv tables of a sweep."""
+"""Tables of a sweep: numbers over speed, jumps, resonances, seams."""
 
 from dataclasses import asdict
 
@@ -13,6 +13,7 @@ from facegear.transmission.layout import Layout
 from facegear.transmission.modes import Modes
 
 UM = 1e6
+"""Micrometres in a metre."""
 STILL = 1e-12
 """Fraction of the largest RMS translation up to which a body moves in a direction by rounding alone."""
 PER_MESH = {
@@ -33,14 +34,29 @@ PER_SPEED = (
     "first_look_period",
     "second_look_period",
 )
+"""Quantities of the table with one value for each speed."""
 
 
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
-    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
-    symmetry_broken.
+    """Tabulate the numbers of a sweep over speed.
 
-    The unit stands in the quantity. Directions in which a body moves by rounding alone are left out.
-    `past_law_fraction` is there where a mesh is past its law at some speed.
+    Directions in which a body moves by rounding alone are left out. `past_law_fraction` is present where a
+    mesh is past its law at some speed.
+
+    Parameters
+    ----------
+    layout : Layout
+        Names of meshes and bodies.
+    direction : str
+        Entry of the column direction.
+    piece : Piece
+        Results in the order of running.
+
+    Returns
+    -------
+    DataFrame
+        Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic, after_irregular,
+        symmetry_broken. The unit is part of the quantity.
     """
     order, labels = np.argsort(piece.speeds), np.array(piece.labels)
     curves: list[tuple[str, str, np.ndarray]] = []
@@ -117,10 +133,25 @@ RESONANCE_COLUMNS = (
 
 
 def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) -> pd.DataFrame:
-    """One row for each jump: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance.
+    """Tabulate the jumps: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance.
 
-    order: multiple of the mesh frequency at which the mode moves most. after_irregular: of the speed after
-    the one with the larger response. symmetry_broken: whether the motion on one side has mirror images.
+    Parameters
+    ----------
+    layout : Layout
+        Names of the meshes.
+    name : str
+        Entry of the column direction.
+    direction : Direction
+        Results of the direction.
+    modes : Modes
+        Natural modes of the machine.
+
+    Returns
+    -------
+    DataFrame
+        JUMP_COLUMNS. `order`: multiple of the mesh frequency at which the mode moves most. `after_irregular`:
+        that of the speed after the one with the larger response. `symmetry_broken`: whether the motion on one
+        side has mirror images.
     """
     rows = []
     for jump in direction.jumps:
@@ -149,9 +180,24 @@ def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) ->
 
 
 def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) -> pd.DataFrame:
-    """Local maxima of the AC RMS, each with the mode it belongs to.
+    """Tabulate the local maxima of the AC RMS, each with the mode to which it belongs.
 
-    after_irregular: that of the next speed, since a maximum needs both its neighbours.
+    Parameters
+    ----------
+    layout : Layout
+        Names of meshes and bodies.
+    direction : str
+        Entry of the column direction.
+    piece : Piece
+        Results in the order of running.
+    modes : Modes
+        Natural modes of the machine.
+
+    Returns
+    -------
+    DataFrame
+        RESONANCE_COLUMNS. `after_irregular`: that of the next speed, since a maximum needs both its
+        neighbours.
     """
     rows, labels = [], piece.labels
     for quantity, item, position, value in peaks(piece):
@@ -190,6 +236,17 @@ def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
 
 
 def seam_table(seams: list[Seam]) -> pd.DataFrame:
-    """Where chunks met: direction, speed_rpm, kind, rerun."""
+    """Tabulate where chunks met.
+
+    Parameters
+    ----------
+    seams : list of Seam
+        Seams.
+
+    Returns
+    -------
+    DataFrame
+        Columns direction, speed_rpm, kind, rerun.
+    """
     columns = ["direction", "speed_rpm", "kind", "rerun"]
     return pd.DataFrame([asdict(seam) | {"kind": seam.kind.value} for seam in seams], columns=columns)

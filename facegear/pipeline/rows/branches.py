@@ -1,7 +1,7 @@
 """Branches of periodic motions."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import MACHINE, MOVING, SPEED, SWEEP
+from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, SPEED, SWEEP
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
 
 BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
@@ -13,8 +13,10 @@ ROWS = (
         machine="machine",
         needs=BRANCHES,
         section="branches",
-        upstream=MOVING,
-        files={"motions": File("branches/starts/{number}.npz", "facegear.dynamics.branches.stored:SHAPES")},
+        upstream=MOTION_INPUTS,
+        files={
+            "motions": File("branches/starts/{number}.npz", "facegear.dynamics.branches.motion_arrays:SHAPES")
+        },
         wildcards={"number": NUMBER},
         minutes=30,
         priority=50,
@@ -26,9 +28,9 @@ ROWS = (
         needs={**BRANCHES, **SWEEP},
         section="branches",
         upstream={
-            **MOVING,
-            "starts": From("branches_starts", "motions", each=asked.random_starts),
-            "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks),
+            **MOTION_INPUTS,
+            "starts": From("branches_starts", "motions", each_wildcards=asked.random_starts),
+            "chunks": From("dynamics_sweep_chunk", "chunk", each_wildcards=asked.sweep_chunks),
             "jumps": From("dynamics_sweep", "jumps"),
         },
         files={
@@ -58,9 +60,11 @@ ROWS = (
                 may_be_empty=True,
                 text=("class_before", "branch", "kind", "note"),
             ),
-            "orbits": File("branches/special_points.npz", "facegear.dynamics.branches.stored:SPECIAL_SHAPES"),
+            "orbits": File(
+                "branches/special_points.npz", "facegear.dynamics.branches.motion_arrays:SPECIAL_SHAPES"
+            ),
         },
-        asked=asked.branches,
+        condition=asked.branches,
         memory_mb=1300,
         minutes=60,
         priority=50,
@@ -71,7 +75,7 @@ ROWS = (
         machine="machine",
         needs=BRANCHES,
         section="branches",
-        upstream={**MOVING, "orbits": From("branches", "orbits")},
+        upstream={**MOTION_INPUTS, "orbits": From("branches", "orbits")},
         files={
             "loci": File(
                 "branches/loci.csv",
@@ -92,7 +96,7 @@ ROWS = (
             },
             needs={**SPEED, "pinions": "transmission.pinions"},
         ),
-        asked=asked.branches,
+        condition=asked.branches,
         minutes=60,
     ),
 )

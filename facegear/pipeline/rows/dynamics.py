@@ -6,12 +6,12 @@ from facegear.pipeline.rows.shared import (
     BODIES,
     HARMONICS,
     MACHINE,
-    MOVING,
+    MOTION_INPUTS,
     SPEED,
     SWEEP,
     TOOTH_ERRORS,
 )
-from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Stage, from_stage
+from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, Stage, from_stage
 
 ROWS = (
     Stage(
@@ -19,7 +19,7 @@ ROWS = (
         title="Response at the nominal speed",
         machine="machine",
         needs={**MACHINE, **ACCURACY, **SPEED},
-        upstream=MOVING,
+        upstream=MOTION_INPUTS,
         files={
             "response": File(
                 "dynamics/response.csv", ("mesh_cycle", "mesh", "deflection_um", "elastic_force_n")
@@ -29,7 +29,7 @@ ROWS = (
             "multipliers": File("dynamics/multipliers.csv", may_be_empty=True),
             "bearings": File("dynamics/bearings.csv", ("body", "direction", "static_n", "mean_n", "peak_n")),
         },
-        asked=asked.machine,
+        condition=asked.machine,
     ),
     Stage(
         name="shaft_orders",
@@ -68,7 +68,7 @@ ROWS = (
             chapter="dynamics",
             upstream=from_stage("shaft_orders", "orders", "over_speed"),
         ),
-        asked=asked.turning_errors,
+        condition=asked.turning_errors,
         local=True,
     ),
     Stage(
@@ -76,10 +76,10 @@ ROWS = (
         title="Speed sweep, one chunk",
         machine="machine",
         needs={**MACHINE, **SWEEP},
-        upstream=MOVING,
+        upstream=MOTION_INPUTS,
         files={
             "chunk": File(
-                "dynamics/chunks/{direction}_{number}.npz", "facegear.dynamics.sweeps.stored:SHAPES"
+                "dynamics/chunks/{direction}_{number}.npz", "facegear.dynamics.sweeps.chunk_arrays:SHAPES"
             )
         },
         wildcards={"direction": "up|down", "number": NUMBER},
@@ -91,7 +91,10 @@ ROWS = (
         title="Jumps and resonances",
         machine="machine",
         needs={**MACHINE, **SWEEP},
-        upstream={**MOVING, "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks)},
+        upstream={
+            **MOTION_INPUTS,
+            "chunks": From("dynamics_sweep_chunk", "chunk", each_wildcards=asked.sweep_chunks),
+        },
         files={
             "sweep": File(
                 "dynamics/sweep.csv",
@@ -120,7 +123,7 @@ ROWS = (
             needs={"transmission": "transmission", "pinion_teeth": "tooth_pair.pinion_teeth"},
             memory_mb=1300,
         ),
-        asked=asked.machine,
+        condition=asked.machine,
         memory_mb=1300,
         minutes=60,
         priority=60,
@@ -141,11 +144,11 @@ ROWS = (
             upstream={
                 **from_stage("law_loads", "loads"),
                 **from_stage("dynamics_sweep", "sweep"),
-                "others": From("dynamics_sweep", "sweep", each=studies.other_laws),
+                "others": From("dynamics_sweep", "sweep", each_wildcards=studies.other_laws),
             },
-            needs={"labels": Computed(studies.law_labels, ("studies", "mesh_stiffness"))},
+            needs={"labels": ComputedValue(studies.law_labels, ("studies", "mesh_stiffness"))},
         ),
-        asked=asked.load_dependent_machine,
+        condition=asked.load_dependent_machine,
         local=True,
     ),
 )

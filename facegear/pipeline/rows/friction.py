@@ -1,10 +1,10 @@
 """Friction, heat and film."""
 
 from facegear.pipeline import asked, studies
-from facegear.pipeline.rows.shared import MACHINE, MOVING, PAIR, SPEED
-from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
+from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, PAIR, SPEED
+from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
-PRESSED = from_stage("contact", "ltca", "pressure")
+STORED_CONTACT = from_stage("contact", "ltca", "pressure")
 
 PAIR_ROWS = (
     Stage(
@@ -12,7 +12,7 @@ PAIR_ROWS = (
         title="Sliding, friction, heat and film of the pair",
         needs={**PAIR, **SPEED, "lubrication": "lubrication"},
         section="lubrication",
-        upstream=PRESSED,
+        upstream=STORED_CONTACT,
         files={
             "by_torque": File("lubrication/friction.csv", "facegear.lubrication.columns:BY_TORQUE_FINITE"),
             "positions": File("lubrication/positions.csv", "facegear.lubrication.columns:POSITION_FINITE"),
@@ -35,7 +35,7 @@ PAIR_ROWS = (
                 "map_table": From("lubrication", "map"),
             },
         ),
-        asked=asked.friction,
+        condition=asked.friction,
         local=True,
     ),
 )
@@ -48,8 +48,8 @@ ROWS = (
         needs={**PAIR, **MACHINE, **SPEED, "lubrication": "lubrication", "strength": "strength"},
         section="lubrication",
         upstream={
-            **PRESSED,
-            **MOVING,
+            **STORED_CONTACT,
+            **MOTION_INPUTS,
             "response": From("dynamics_response", "response", when=asked.friction_in_motion),
             "duty_loads": From("duty_loads", "duty_loads", when=asked.machine_loads),
         },
@@ -58,16 +58,17 @@ ROWS = (
             "bodies": File("lubrication/body_heat.csv", ("bin", "speed_rpm", "heat_w"), text=("body",)),
             "machine": File("lubrication/machine_loss.csv", ("bin", "speed_rpm", "power_in_w", "loss_w")),
         },
-        asked=asked.machine_friction,
+        condition=asked.machine_friction,
         local=True,
         together=8,
     ),
     Stage(
         name="friction_studies",
         title="Loss and heat of the studies' cases side by side",
-        needs={"points": Computed(studies.friction_points, ("studies",))},
+        needs={"points": ComputedValue(studies.friction_points, ("studies",))},
         upstream={
-            name: From("machine_loss", name, each=studies.friction_cases) for name in ("meshes", "machine")
+            name: From("machine_loss", name, each_wildcards=studies.friction_cases)
+            for name in ("meshes", "machine")
         },
         files={
             "table": File(
@@ -76,7 +77,7 @@ ROWS = (
                 text=("study", "point", "label", "hottest_mesh"),
             )
         },
-        asked=studies.friction_studied,
+        condition=studies.friction_studied,
         local=True,
     ),
 )

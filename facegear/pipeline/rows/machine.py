@@ -12,7 +12,7 @@ from facegear.pipeline.rows.shared import (
     POSES,
     SPEED,
 )
-from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
+from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 ROWS = (
     Stage(
@@ -40,7 +40,7 @@ ROWS = (
             upstream=from_stage("gear_bodies", "modes", "crossings", "shapes"),
             needs={"last_rpm": "dynamics.sweep.to_rpm", "teeth": "tooth_pair.pinion_teeth"},
         ),
-        asked=asked.elastic_gears,
+        condition=asked.elastic_gears,
         memory_mb=500,
         local=True,
     ),
@@ -58,7 +58,7 @@ ROWS = (
             upstream=from_stage("ratings", "meshes"),
             needs=MACHINE,
         ),
-        asked=asked.machine,
+        condition=asked.machine,
         local=True,
     ),
     Stage(
@@ -81,9 +81,9 @@ ROWS = (
             names=asked.shaft_figures,
             chapter="load_sharing",
             upstream=from_stage("shafts", "bearings", "deflections"),
-            needs={**MACHINE, "width_mm": Computed(asked.pinion_width, ("tooth_pair",))},
+            needs={**MACHINE, "width_mm": ComputedValue(asked.pinion_width, ("tooth_pair",))},
         ),
-        asked=asked.drive_line,
+        condition=asked.drive_line,
         local=True,
     ),
     Stage(
@@ -106,7 +106,7 @@ ROWS = (
             chapter="load_sharing",
             upstream=from_stage("operating_pose", "meshes", "loads", "as_assembled", "running"),
         ),
-        asked=asked.poses,
+        condition=asked.poses,
         memory_mb=2000,
     ),
     Stage(
@@ -129,7 +129,7 @@ ROWS = (
             upstream=from_stage("gear_waves", "campbell", "campbell_crossings"),
             needs={"last_rpm": "dynamics.sweep.to_rpm", "teeth": "tooth_pair.pinion_teeth"},
         ),
-        asked=asked.elastic_gears,
+        condition=asked.elastic_gears,
         local=True,
     ),
     Stage(
@@ -159,7 +159,7 @@ ROWS = (
             chapter="modes",
             upstream=from_stage("modal", "frequencies", "shapes"),
         ),
-        asked=asked.machine,
+        condition=asked.machine,
         local=True,
     ),
 )

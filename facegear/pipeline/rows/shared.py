@@ -1,28 +1,32 @@
-"""What stages of several chapters take: slices of the config, and files of earlier stages."""
+"""Needs and sources that several chapters share: slices of the config, and files of earlier stages."""
 
 from facegear.config.changes import TEETH
 from facegear.pipeline import asked
-from facegear.pipeline.stage import Computed, From, Needs, from_stage
+from facegear.pipeline.stage import ComputedValue, From, Needs, from_stage
 
 PAIR: Needs = {"tooth_pair": "tooth_pair"}
 MACHINE: Needs = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
 SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
 ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}
 SWEEP: Needs = {"sweep": "dynamics.sweep"}
-OPTIONS = Computed(asked.load_sharing_options, ("load_sharing",))
+OPTIONS = ComputedValue(asked.load_sharing_options, ("load_sharing",))
 """How load sharing is averaged."""
 SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": OPTIONS}
 
-FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in asked.BODIES}
+FLANKS = {name: From("compliance", "arrays", wildcards={"body": name}) for name in asked.BODIES}
 LAW = {"law": From("mesh_law", "law", when=asked.load_dependent)}
 POSES = {"poses": From("pose_surface", "surface", when=asked.poses)}
 """Contact over pose, where meshes stand where the machine's own forces put them."""
 MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
 HARMONICS = {**MESHES, **POSES}
-"""What meshes transmit."""
+"""Sources of the mesh stiffness and of its contact over pose."""
 BODIES = {"bodies": From("gear_bodies", "reduced", when=asked.elastic_gears)}
 """Face gears that bend."""
 TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=asked.single_teeth)}
 """Teeth that deviate from the others."""
-MOVING = {**HARMONICS, **BODIES, "friction": From("lubrication", "excitation", when=asked.friction_in_motion)}
-"""What stages take that set the machine in motion."""
+MOTION_INPUTS = {
+    **HARMONICS,
+    **BODIES,
+    "friction": From("lubrication", "excitation", when=asked.friction_in_motion),
+}
+"""Sources of everything that stages take that compute the motion of the machine."""

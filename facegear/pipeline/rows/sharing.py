@@ -6,13 +6,13 @@ from facegear.pipeline.rows.shared import (
     BODIES,
     HARMONICS,
     MACHINE,
-    MOVING,
+    MOTION_INPUTS,
     OPTIONS,
     SHARING,
     SPEED,
     TOOTH_ERRORS,
 )
-from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
+from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 CASE_COLUMNS = ("study", "point", "label")
 
@@ -22,27 +22,27 @@ ROWS = (
         title="Load sharing at the nominal speed",
         machine="machine",
         needs=SHARING,
-        upstream=MOVING,
+        upstream=MOTION_INPUTS,
         files={
             "curve": File("load_sharing/nominal.csv", ("cycle_fraction",), may_be_empty=True),
             "summary": File("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
             "forces": File("load_sharing/forces.csv", ("mean_n", "largest_n"), text=("mesh", "group")),
         },
-        asked=asked.grouped,
+        condition=asked.has_groups_of_pinions,
         together=8,
     ),
     Stage(
         name="load_sharing_summary",
         title="Load sharing of all studies",
-        needs={"points": Computed(studies.points, ("studies",))},
+        needs={"points": ComputedValue(studies.points, ("studies",))},
         upstream={
-            "summaries": From("load_sharing", "summary", each=studies.nominal_and_every_point),
-            "curves": From("load_sharing", "curve", each=studies.every_point),
+            "summaries": From("load_sharing", "summary", each_wildcards=studies.nominal_and_every_point),
+            "curves": From("load_sharing", "curve", each_wildcards=studies.every_point),
         },
         files={
             "summary": File("load_sharing/summary.csv", ("group", "kind"), text=CASE_COLUMNS),
             "studies": File(
-                "load_sharing/{each}.csv", ("cycle_fraction",), text=CASE_COLUMNS, each=studies.names
+                "load_sharing/{each}.csv", ("cycle_fraction",), text=CASE_COLUMNS, each_text=studies.names
             ),
         },
         figures=Figures(
@@ -51,18 +51,18 @@ ROWS = (
             chapter="load_sharing",
             upstream=from_stage("load_sharing_summary", "studies", "summary"),
             needs={
-                "titles": Computed(studies.titles, ("studies",)),
-                "groups": Computed(studies.kinds_of_groups, ("transmission", "tooth_pair")),
+                "titles": ComputedValue(studies.titles, ("studies",)),
+                "groups": ComputedValue(studies.kinds_of_groups, ("transmission", "tooth_pair")),
             },
         ),
-        asked=asked.shares_load,
+        condition=asked.shares_load,
         local=True,
     ),
     Stage(
         name="study_forces",
         title="Forces of meshes over the numbers of studies",
-        needs={"points": Computed(studies.numbered_points, ("studies",))},
-        upstream={"tables": From("load_sharing", "forces", each=studies.numbered_cases)},
+        needs={"points": ComputedValue(studies.numbered_points, ("studies",))},
+        upstream={"tables": From("load_sharing", "forces", each_wildcards=studies.numbered_cases)},
         files={
             "forces": File(
                 "load_sharing/study_forces.csv",
@@ -75,9 +75,9 @@ ROWS = (
             names=studies.force_figures,
             chapter="load_sharing",
             upstream=from_stage("study_forces", "forces"),
-            needs={"titles": Computed(studies.titles_by_name, ("studies",))},
+            needs={"titles": ComputedValue(studies.titles_by_name, ("studies",))},
         ),
-        asked=studies.over_numbers,
+        condition=studies.over_numbers,
         local=True,
     ),
     Stage(
@@ -90,12 +90,12 @@ ROWS = (
             "range_accuracy": "dynamics.sweep.accuracy",
             "options": OPTIONS,
         },
-        upstream=MOVING,
+        upstream=MOTION_INPUTS,
         files={
             "reference": File("load_sharing/reference.csv"),
             "speeds": File("load_sharing/speed_range.csv"),
         },
-        asked=asked.shares_load,
+        condition=asked.shares_load,
         minutes=15,
         priority=58,
     ),
@@ -135,7 +135,7 @@ ROWS = (
             upstream=from_stage("hunting", "meshes", "bearings", "cycles", "scan", "sensitivity"),
             needs=MACHINE,
         ),
-        asked=asked.hunting,
+        condition=asked.hunting,
     ),
     Stage(
         name="sharing_map",
@@ -144,7 +144,7 @@ ROWS = (
         needs={
             **MACHINE,
             "sharing_map": "sharing_map",
-            "torques": Computed(asked.duty_torques, ("strength",)),
+            "torques": ComputedValue(asked.duty_torques, ("strength",)),
         },
         section="sharing_map",
         upstream={**HARMONICS, **BODIES},
@@ -181,7 +181,7 @@ ROWS = (
             chapter="load_sharing",
             upstream=from_stage("sharing_map", "curves", "inputs", "points"),
         ),
-        asked=asked.sharing_map,
+        condition=asked.sharing_map,
     ),
     Stage(
         name="following",
@@ -194,11 +194,11 @@ ROWS = (
             "positions": "load_sharing.hunting_positions",
             "cycles": "load_sharing.followed_cycles",
         },
-        upstream={**MOVING, **TOOTH_ERRORS},
+        upstream={**MOTION_INPUTS, **TOOTH_ERRORS},
         files={
             "groups": File("load_sharing/following_groups.csv", may_be_empty=True),
             "meshes": File("load_sharing/following_meshes.csv"),
         },
-        asked=asked.following,
+        condition=asked.follows_rotation,
     ),
 )

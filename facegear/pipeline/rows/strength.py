@@ -8,18 +8,18 @@ from facegear.pipeline.rows.shared import (
     HARMONICS,
     MACHINE,
     MESHES,
-    MOVING,
+    MOTION_INPUTS,
     PAIR,
     POSES,
     SPEED,
     TOOTH_ERRORS,
 )
-from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
+from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
-GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
+GEARS = {"gears": ComputedValue(asked.gears_met, ("transmission",))}
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
 
-POSED = {
+POSED_CONTACT = {
     "posed": From("posed_stress", "contacts", when=asked.poses),
     "posed_by_torque": From("posed_stress", "by_torque", when=asked.poses),
 }
@@ -51,7 +51,7 @@ LOAD_ROWS = (
             chapter="strength",
             upstream=from_stage("root_stress", "passage", "along_face"),
         ),
-        asked=asked.root_stress,
+        condition=asked.root_stress,
     ),
     Stage(
         name="posed_stress",
@@ -66,7 +66,7 @@ LOAD_ROWS = (
             ),
             "contacts": File("strength/posed_contacts.npz"),
         },
-        asked=asked.posed_stress,
+        condition=asked.posed_stress,
         memory_mb=4000,
         minutes=30,
     ),
@@ -82,7 +82,7 @@ LOAD_ROWS = (
                 "strength/duty_poses.csv", "facegear.stages.duty_poses:COLUMNS", text=("mesh", "flank")
             )
         },
-        asked=asked.posed_rating,
+        condition=asked.posed_rating,
         local=True,
     ),
     Stage(
@@ -91,7 +91,7 @@ LOAD_ROWS = (
         machine="inputs",
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
         section="strength",
-        upstream={**MOVING, **TOOTH_ERRORS},
+        upstream={**MOTION_INPUTS, **TOOTH_ERRORS},
         files={
             "duty_loads": File("strength/duty_loads.csv"),
             "duty_spectrum": File(
@@ -111,7 +111,7 @@ ROWS = (
             **STRESS,
             "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
             "mesh_losses": From("machine_loss", "meshes", when=asked.scuffed_loads),
-            **POSED,
+            **POSED_CONTACT,
             **POSES,
             "duty_poses": From("duty_poses", "duty_poses", when=asked.poses),
         },
@@ -127,7 +127,7 @@ ROWS = (
             chapter="strength",
             upstream=from_stage("rating", "rating", "damage", "curves"),
         ),
-        asked=asked.strength,
+        condition=asked.strength,
     ),
     Stage(
         name="dynamic_root_stress",
@@ -136,7 +136,7 @@ ROWS = (
         upstream={
             **from_stage("dynamics_response", "response", "summary"),
             **STRESS,
-            **POSED,
+            **POSED_CONTACT,
             **POSES,
         },
         files={
@@ -144,7 +144,7 @@ ROWS = (
                 "strength/dynamic_stress.csv", "facegear.strength.columns:DYNAMIC_STRESS_FINITE"
             )
         },
-        asked=asked.machine_stress,
+        condition=asked.machine_stress,
     ),
     Stage(
         name="stress_over_speed",
@@ -157,7 +157,7 @@ ROWS = (
             **STRESS,
             **HARMONICS,
             **BODIES,
-            **POSED,
+            **POSED_CONTACT,
         },
         files={
             "stress_over_speed": File(
@@ -171,6 +171,6 @@ ROWS = (
             upstream={"table": From("stress_over_speed", "stress_over_speed")},
             needs=SPEED,
         ),
-        asked=asked.machine_stress,
+        condition=asked.machine_stress,
     ),
 )

@@ -2,14 +2,17 @@
 
 from facegear.pipeline import asked, studies
 from facegear.pipeline.rows.shared import FLANKS, PAIR
-from facegear.pipeline.stage import Computed, Figures, File, From, Needs, Stage, from_stage
+from facegear.pipeline.stage import ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 MESH: Needs = {**PAIR, "mesh": "mesh"}
 BODY = {"body": "pinion|face_gear"}
-CONTACT_POINTS = Computed(studies.contact_points, ("studies",))
+CONTACT_POINTS = ComputedValue(studies.contact_points, ("studies",))
 STUDIED_CONTACT = {
-    "pair": From("geometry", "pair", each=studies.contact_cases),
-    **{kind: From("contact", kind, each=studies.contact_cases) for kind in ("ltca", "by_torque", "pressure")},
+    "pair": From("geometry", "pair", each_wildcards=studies.contact_cases),
+    **{
+        kind: From("contact", kind, each_wildcards=studies.contact_cases)
+        for kind in ("ltca", "by_torque", "pressure")
+    },
 }
 
 ROWS = (
@@ -33,7 +36,7 @@ ROWS = (
             chapter="teeth",
             upstream=from_stage("geometry", "pair", "flanks", "contact"),
         ),
-        asked=asked.contact,
+        condition=asked.contact,
         priority=65,
     ),
     Stage(
@@ -48,13 +51,13 @@ ROWS = (
             },
             "quality": File("mesh/quality.csv"),
         },
-        asked=asked.contact,
+        condition=asked.contact,
         memory_mb=2000,
     ),
     Stage(
         name="cad",
         title="Exact teeth for CAD",
-        needs={**MESH, "case": Computed(asked.config_name, ("case",))},
+        needs={**MESH, "case": ComputedValue(asked.config_name, ("case",))},
         files={"step": File("cad/{body}.step"), "stl": File("cad/{body}.stl")},
         wildcards=BODY,
     ),
@@ -62,11 +65,11 @@ ROWS = (
         name="compliance",
         title="Flank compliance",
         needs={
-            "tooth_pair": Computed(asked.without_gaps, ("tooth_pair",)),
+            "tooth_pair": ComputedValue(asked.without_gaps, ("tooth_pair",)),
             "mesh": "mesh",
-            "contact": Computed(asked.without_loads, ("tooth_pair", "mesh", "contact")),
+            "contact": ComputedValue(asked.without_loads, ("tooth_pair", "mesh", "contact")),
         },
-        files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:STORED")},
+        files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:ARRAY_SHAPES")},
         wildcards=BODY,
         memory_mb=3000,
         minutes=30,
@@ -95,7 +98,7 @@ ROWS = (
             chapter="contact",
             upstream=from_stage("contact", "ltca", "pressure"),
         ),
-        asked=asked.contact,
+        condition=asked.contact,
         memory_mb=4000,
         minutes=30,
         priority=80,
@@ -116,7 +119,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("stiffness", "tvms", "spectrum"),
         ),
-        asked=asked.always,
+        condition=asked.always,
         local=True,
         priority=75,
     ),
@@ -135,7 +138,7 @@ ROWS = (
             chapter="teeth",
             upstream=from_stage("topography", "points"),
         ),
-        asked=asked.measured_flanks,
+        condition=asked.measured_flanks,
         local=True,
     ),
     Stage(
@@ -155,7 +158,7 @@ ROWS = (
             chapter="contact",
             upstream=from_stage("tooth_errors", "curves", "orders"),
         ),
-        asked=asked.single_teeth,
+        condition=asked.single_teeth,
         local=True,
     ),
     Stage(
@@ -173,7 +176,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("mesh_law", "law"),
         ),
-        asked=asked.load_dependent,
+        condition=asked.load_dependent,
         memory_mb=4000,
         minutes=30,
         priority=74,
@@ -185,7 +188,7 @@ ROWS = (
             **PAIR,
             "contact": "contact",
             "torque_n_m": "mesh_stiffness.torque_n_m",
-            "tilting": Computed(asked.tilting, ("transmission",)),
+            "tilting": ComputedValue(asked.tilting, ("transmission",)),
         },
         upstream=FLANKS,
         files={
@@ -193,7 +196,7 @@ ROWS = (
             "nodes": File("poses/nodes.csv", ("unloaded_path_mm", "torque_n_m", "stiffness_n_per_m")),
             "errors": File("poses/errors.csv", ("largest", "rms"), text=("quantity", "left_out")),
         },
-        asked=asked.poses,
+        condition=asked.poses,
         memory_mb=4000,
         minutes=30,
         priority=74,
@@ -209,7 +212,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("load_dependence", "table"),
         ),
-        asked=asked.contact,
+        condition=asked.contact,
         local=True,
     ),
     Stage(
@@ -225,11 +228,11 @@ ROWS = (
             upstream=STUDIED_CONTACT,
             needs={
                 "points": CONTACT_POINTS,
-                "titles": Computed(studies.contact_titles, ("studies",)),
-                "torque": Computed(studies.contact_torque, ("contact", "mesh_stiffness")),
+                "titles": ComputedValue(studies.contact_titles, ("studies",)),
+                "torque": ComputedValue(studies.contact_torque, ("contact", "mesh_stiffness")),
             },
         ),
-        asked=studies.contact_studied,
+        condition=studies.contact_studied,
         local=True,
     ),
 )

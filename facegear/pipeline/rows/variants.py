@@ -2,24 +2,24 @@
 
 from facegear.pipeline import asked
 from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
-from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Needs, Stage, from_stage
+from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
-SOLID = Computed(asked.solid_pair, ("transmission", "tooth_pair"))
-SAMPLED: Needs = {
+SOLID = ComputedValue(asked.solid_pair, ("transmission", "tooth_pair"))
+SAMPLE_NEEDS: Needs = {
     **SHARING,
     "tolerances": CAUSES,
-    "pair": Computed(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
-    "lubrication_sections": Computed(asked.lubricated_samples, ("lubrication", "tooth_pair")),
+    "pair": ComputedValue(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
+    "lubrication_sections": ComputedValue(asked.lubricated_samples, ("lubrication", "tooth_pair")),
     "solid": SOLID,
 }
 SAMPLED_FROM = {
     **HARMONICS,
     **BODIES,
     **{name: From("contact", name, when=asked.stored_rubbing) for name in ("ltca", "pressure")},
-    "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.sampled_contact),
+    "flanks": From("compliance", "arrays", each_wildcards=asked.both_bodies, when=asked.sampled_contact),
 }
-SEARCHED: Needs = {
+SEARCH_NEEDS: Needs = {
     **PAIR,
     **ACCURACY,
     **SPEED,
@@ -27,20 +27,20 @@ SEARCHED: Needs = {
     "options": OPTIONS,
     "search": "search",
     "tolerances": "tolerances",
-    "pair": Computed(asked.pair_where(asked.searched_contact), asked.PAIR_SECTIONS),
+    "pair": ComputedValue(asked.pair_where(asked.searched_contact), asked.PAIR_SECTIONS),
     "solid": SOLID,
 }
 SEARCHED_FROM = {
     **HARMONICS,
     **BODIES,
-    "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.searched_contact),
+    "flanks": From("compliance", "arrays", each_wildcards=asked.both_bodies, when=asked.searched_contact),
 }
 
 ROWS = (
     Stage(
         name="tolerances_chunk",
         title="Samples of the machine with its tolerances",
-        needs=SAMPLED,
+        needs=SAMPLE_NEEDS,
         section="tolerances",
         upstream=SAMPLED_FROM,
         files={"chunk": File("tolerances/chunks/{design}_{first}_{last}.parquet")},
@@ -53,7 +53,7 @@ ROWS = (
         needs={"tolerances": "tolerances"},
         section="tolerances",
         upstream={
-            design: From("tolerances_chunk", "chunk", each=asked.tolerance_chunks(design))
+            design: From("tolerances_chunk", "chunk", each_wildcards=asked.tolerance_chunks(design))
             for design in ("samples", "indices")
         },
         files={
@@ -75,13 +75,13 @@ ROWS = (
             chapter="tolerances",
             upstream=from_stage("tolerances", "samples", "percentiles", "importance", "indices"),
         ),
-        asked=asked.tolerances,
+        condition=asked.tolerances,
         local=True,
     ),
     Stage(
         name="tolerances_map",
         title="Percentiles over torque and speed",
-        needs={**SAMPLED, "tolerances": (*CAUSES, "tolerances.confidence", "tolerances.load_map")},
+        needs={**SAMPLE_NEEDS, "tolerances": (*CAUSES, "tolerances.confidence", "tolerances.load_map")},
         section="tolerances",
         upstream=SAMPLED_FROM,
         files={
@@ -102,14 +102,14 @@ ROWS = (
             chapter="tolerances",
             upstream=from_stage("tolerances_map", "load_map"),
         ),
-        asked=asked.load_map,
+        condition=asked.load_map,
         resumable="load_map",
         minutes=240,
     ),
     Stage(
         name="search_island",
         title="Evolution of designs from one seed",
-        needs=SEARCHED,
+        needs=SEARCH_NEEDS,
         section="search",
         upstream=SEARCHED_FROM,
         files={"designs": File("search/islands/{seed}.parquet")},
@@ -120,9 +120,9 @@ ROWS = (
     Stage(
         name="search",
         title="Front of all islands, and its winners at full accuracy",
-        needs=SEARCHED,
+        needs=SEARCH_NEEDS,
         section="search",
-        upstream={**SEARCHED_FROM, "islands": From("search_island", "designs", each=asked.islands)},
+        upstream={**SEARCHED_FROM, "islands": From("search_island", "designs", each_wildcards=asked.islands)},
         files={
             "designs": File("search/designs.parquet", ("generation", "seed", "error")),
             "front": File("search/front.csv", may_be_empty=True),
@@ -136,7 +136,7 @@ ROWS = (
             upstream=from_stage("search", "designs", "front", "hypervolume", "winners"),
             needs={"objectives": "search.objectives"},
         ),
-        asked=asked.search,
+        condition=asked.search,
         minutes=60,
     ),
 )

@@ -271,7 +271,7 @@ def test_stored_answers_are_small_the_same_bytes_each_time_and_compare_equal_to_
 def test_how_many_tables_a_stored_answer_holds_is_said(capsys):
     """Nothing is compared with those that are not stored, and a user did not know how many these are."""
     assert main(["compare", "current/example", "current/example"]) == 0
-    with answers.opened("current/example") as folder:
+    with answers.open_answer("current/example") as folder:
         held, missing = len(answer_tables(folder)), len(tables_not_stored(folder))
     assert capsys.readouterr().out.splitlines()[1] == (
         f"current/example holds {held} tables. Not stored, and not compared: "

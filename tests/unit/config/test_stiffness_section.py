@@ -121,7 +121,7 @@ def test_the_stored_table_of_harmonics_is_read_back_as_it_was_written(tmp_path):
 def test_the_sine_and_cosine_of_a_table_are_those_of_k_over_the_mesh_phase():
     """The peak of 5 cos - 12 sin lies at the phase -atan(12 / 5); exchanged it would lie elsewhere."""
     rows = [{"order": 0, "cos_n_per_m": 4e8}, {"order": 1, "sin_n_per_m": -12e6, "cos_n_per_m": 5e6}]
-    series = stiffness_request(parse(MeshStiffness, {"source": "harmonics", "table": rows})).given
+    series = stiffness_request(parse(MeshStiffness, {"source": "harmonics", "table": rows})).given_series
     peak = np.arctan2(-12.0, 5.0) / (2.0 * np.pi)
     assert series(peak) == pytest.approx(4e8 + 13e6, rel=1e-14)
 
@@ -139,7 +139,7 @@ def test_any_csv_is_used_or_refused_in_one_line(tmp_path_factory, text, headed):
     except ConfigErrors as error:
         assert len(error.lines) == 1
     else:
-        assert stiffness_request(own).given.kept(own.harmonics_kept).minimum > 0.0
+        assert stiffness_request(own).given_series.truncate(own.harmonics_kept).minimum > 0.0
 
 
 @given(st.integers(2, 40), st.integers(0, 2**32 - 1))
@@ -153,7 +153,7 @@ def test_a_curve_over_the_pinions_angle_that_was_written_is_read_as_the_same_ser
     curve = pd.DataFrame({"pinion_angle_deg": 360.0 / teeth * cycles, "k_n_per_m": Harmonics(a, b)(cycles)})
     with TemporaryDirectory() as folder:
         read = section(Path(folder), curve.to_csv(index=False))
-    found = stiffness_request(read).given
+    found = stiffness_request(read).given_series
     np.testing.assert_allclose(found.sine, a, atol=1e-6 * 4e8 * 1e-6)
     np.testing.assert_allclose(found.cosine, b, atol=1e-6 * 4e8 * 1e-6)
     assert read.csv_pitch_deg == pytest.approx(360.0 / teeth) and "csv_pitch_deg" not in read.model_dump()

@@ -47,13 +47,13 @@ def pressed_teeth():
 def answer(system, nodal):
     """Forces (n, 3) on the masters, their displacements (n, 3), and the reactions (n, 3) where held."""
     force = np.zeros((len(system.points), 3))
-    force[system.loaded] = (system.spread.T @ nodal)[:, None] * system.loaded_normals
-    free = ~system.held.ravel()
+    force[system.loaded_nodes] = (system.spread.T @ nodal)[:, None] * system.loaded_normals
+    free = ~system.is_held.ravel()
     moved = np.zeros(free.size)
     matrix = stiffness(system.parts)
     moved[free] = solve_sparse(matrix[free][:, free], -force.ravel()[free][:, None]).ravel()
     reaction = (matrix @ moved).reshape(force.shape) + force
-    return -force, moved.reshape(force.shape), np.where(system.held, reaction, 0.0)
+    return -force, moved.reshape(force.shape), np.where(system.is_held, reaction, 0.0)
 
 
 @against(
@@ -94,8 +94,8 @@ def test_flanks_displaced_by_the_finite_elements_just_touch_where_pressed(presse
     for system, body, loads in zip(systems, bodies, (pair.loads(0, True), pair.loads(1, True)), strict=True):
         nodal = loads.T @ contact.force
         _, moved, _ = answer(system, nodal)
-        normal = system.spread @ np.sum(moved[system.loaded] * system.loaded_normals, axis=1)
-        np.testing.assert_allclose(-normal, body.own @ nodal, atol=1e-9 * np.abs(normal).max())
+        normal = system.spread @ np.sum(moved[system.loaded_nodes] * system.loaded_normals, axis=1)
+        np.testing.assert_allclose(-normal, body.loaded_tooth @ nodal, atol=1e-9 * np.abs(normal).max())
         approach -= loads @ normal
     clearance = pair.gap + approach - contact.rotation * pair.lever_arm
     largest = contact.rotation * pair.lever_arm.max()

@@ -20,7 +20,7 @@ from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.position_solver import PositionSolver
 from facegear.contact.search import cover_of, facing_points, find_candidates
-from facegear.geometry.opposite import located
+from facegear.geometry.opposite import locate_hits
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
 
@@ -37,7 +37,7 @@ def placed(model, position):
 def everywhere(model, placement, tooth):
     """Candidates from the separation at every point of the flank, none screened."""
     pinion, gear = model.flanks.pinion, model.flanks.gear
-    hits = located(model.design, separation(model.design, pinion.points, *placement, tooth, 1e-3))
+    hits = locate_hits(model.design, separation(model.design, pinion.points, *placement, tooth, 1e-3))
     on_gear = gear.coordinates(hits, True, 0.1 * model.design.module)[0]
     points = flank_points(pinion, np.arange(len(pinion.at)), hits.gap[0], pinion.lever_arm, on_gear)
     return candidates_of(pinion.lattice, gear.lattice, tooth, points, flank_cover(pinion), LIMIT)
@@ -128,7 +128,7 @@ def test_contact_sought_beside_a_known_one_is_the_same_among_fewer_hats(model_of
     monkeypatch.setattr(ltca, "PositionSolver", CountingSolver)
     expected = loaded_contact(model, POSITIONS, TORQUES)
     among_all, _ = list(sought), sought.clear()
-    same_results(loaded_contact(model, POSITIONS, TORQUES, known=known), expected)
+    same_results(loaded_contact(model, POSITIONS, TORQUES, known_contact=known), expected)
     assert len(sought) == len(POSITIONS)
     assert sum(sought) < 0.97 * sum(among_all)
 
@@ -139,7 +139,7 @@ def test_known_contact_that_has_little_to_do_with_the_pair_changes_no_result(mod
     turn = known.turn * np.array([part, 1.0, 1.0 / part])
     wrong = replace(known, turn=turn, near=np.roll(known.near, 1, axis=0))
     expected = loaded_contact(model, POSITIONS, TORQUES)
-    same_results(loaded_contact(model, POSITIONS, TORQUES, known=wrong), expected)
+    same_results(loaded_contact(model, POSITIONS, TORQUES, known_contact=wrong), expected)
 
 
 def test_known_contact_marks_what_carries_load_and_what_stands_beside_across_the_profile(model_of):
@@ -161,7 +161,7 @@ def test_contact_that_fillets_turn_back_is_none_to_go_by(model_of):
     model = model_of(coarse=True, rack_tip_radius=0.25)
     positions = np.arange(4) / 4
     results = loaded_contact(model, positions, [10.0])
-    assert min(result.ste - result.unloaded for result in results) < 0.0
+    assert min(result.ste - result.unloaded_error for result in results) < 0.0
     base_radius = model.design.pinion_base_radius
     assert known_contact(results, positions.tolist(), model.flanks.pinion.shape, base_radius) is None
 

@@ -41,7 +41,7 @@ def plan(torque=600.0, cuts=Refinement(4, 1, 2), sector=Sector()):  # noqa: B008
 def test_defaults_are_full_rings_with_everything_in_contact():
     made = contact_plan(parse(Contact, {}))
     assert made.sector == Sector()
-    assert made.options == ContactOptions(fillet=True, coupled=True, edges=True)
+    assert made.options == ContactOptions(fillet=True, is_coupled=True, edges=True)
 
 
 @pytest.mark.parametrize(

@@ -21,13 +21,13 @@ LARGEST, POSITIONS, ORDERS = 600.0, 8, 3
     ],
 )
 def test_forces_of_a_law_are_those_of_contact_within_the_error_that_it_states(model_of, coarse, errors):
-    model = model_of(coarse=coarse).assembled(AssemblyErrors(**errors))
+    model = model_of(coarse=coarse).with_assembly(AssemblyErrors(**errors))
     (table,), (error,) = fitted_tables([flank_contacts(model, POSITIONS, LARGEST)], ORDERS)
     torques = [0.11 * LARGEST, 0.47 * LARGEST, 0.93 * LARGEST]
     law = load_dependent_law([table])
     for position in (0.125, 0.5):
         for torque, found in zip(torques, loaded_contact(model, [position], torques), strict=True):
-            amount = np.array([[found.ste - found.unloaded]])
+            amount = np.array([[found.ste - found.unloaded_error]])
             assert amount[0, 0] < table.levels[-1]
             force = law.force(np.array([position]), amount)[0, 0]
             missed = abs(force - torque / model.design.pinion_base_radius)

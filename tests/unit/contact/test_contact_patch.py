@@ -40,7 +40,7 @@ def pressed_blocks(lower, upper, cuts):
     loads = [
         weight @ interpolation(where, grid) for where, grid in ((points, shape), (share, second.flank.shape))
     ]
-    matrix = sum(load @ (load @ body.own).T for load, body in zip(loads, bodies, strict=True))
+    matrix = sum(load @ (load @ body.loaded_tooth).T for load, body in zip(loads, bodies, strict=True))
     contact = solve_contact(
         0.5 * (matrix + matrix.T), np.zeros(len(area)), np.ones(len(area)), PRESSURE * area.sum()
     )

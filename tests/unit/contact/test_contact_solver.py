@@ -157,7 +157,7 @@ def test_force_that_pulls_and_a_gap_that_closes_too_far_count_as_violations():
 
 def test_no_point_that_can_carry_the_torque_is_reported_with_its_place():
     with pytest.raises(NotConverged, match=r"position 0\.25, torque 600 N m"):
-        solve_contact(np.eye(3), np.zeros(3), -np.ones(3), 600.0, where="position 0.25, torque 600 N m")
+        solve_contact(np.eye(3), np.zeros(3), -np.ones(3), 600.0, place_text="position 0.25, torque 600 N m")
     with pytest.raises(NotConverged, match="no candidate point can carry the torque"):
         solve_contact(np.eye(3), np.zeros(3), -0.05 * np.ones(3), 600.0)
 

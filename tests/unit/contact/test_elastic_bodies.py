@@ -13,13 +13,13 @@ from skfem import Basis, ElementHex1, ElementHex2, ElementTetP1, ElementVector, 
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from facegear.contact.bodies import dissection
-from facegear.contact.bodies.cellwise import coupled
+from facegear.contact.bodies.cellwise import cell_unknowns
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.elements import mesh_of
 from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.layer import tied_system
-from facegear.contact.bodies.ring import LEFT, RIGHT, apart, chain, joined, moved_faces, rest_stiffness
+from facegear.contact.bodies.ring import LEFT, RIGHT, apart, chain, join_chains, moved_faces, rest_stiffness
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.gear_flank import GearFlank, from_arrays, to_arrays
 from facegear.contact.options import Refinement
@@ -51,9 +51,9 @@ def slab():
     """A plane-strain spur tooth, coarse, and its body."""
     tooth = slab_tooth(spur(), MeshSizes(1.5e-3, 2e-3, 2.5e-3))
     elastic, _ = elastic_tooth(spur(), tooth, STEEL, "right")
-    held = elastic.held.copy()
+    held = elastic.is_held.copy()
     held[:, 1] = True
-    return tooth, replace(elastic, held=held)
+    return tooth, replace(elastic, is_held=held)
 
 
 @pytest.fixture(scope="module")
@@ -166,7 +166,7 @@ def test_finer_layers_make_the_body_softer_and_never_stiffer():
         middle = np.array(compliance.shape) // 2
         nodes = middle[0] * compliance.shape[1] + np.arange(compliance.shape[1])
         weights = np.array([1, 4, 1]) / 6
-        softness.append(weights @ compliance.own[np.ix_(nodes, nodes)] @ weights)
+        softness.append(weights @ compliance.loaded_tooth[np.ix_(nodes, nodes)] @ weights)
     assert (np.diff(softness) > 0).all()
 
 
@@ -177,7 +177,7 @@ def test_finer_layers_make_the_body_softer_and_never_stiffer():
     module="facegear.contact.bodies.compliance",
 )
 def test_influence_matrix_is_symmetric():
-    own = flank_compliance(DISC, CUTS).own
+    own = flank_compliance(DISC, CUTS).loaded_tooth
     agrees("influence matrix less its transpose, m/N", own, own.T, absolute=1e-10 * np.abs(own).max())
 
 
@@ -191,7 +191,7 @@ def test_influence_matrix_is_symmetric():
 def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, monkeypatch):
     monkeypatch.setattr(dissection, "LEAF", leaf)
     system = tied_system(DISC, CUTS)
-    free = ~system.held.ravel()
+    free = ~system.is_held.ravel()
     parts = [part.seen_by(sp.eye(free.size, format="csr")[:, free]) for part in system.parts]
     matrix = stiffness(parts)
     kept = np.arange(90, 0, -3)
@@ -210,7 +210,7 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
         relative=1e-7,
         absolute=1e-11 * np.abs(expected).max(),
     )
-    cells = coupled(parts, len(system.centres))
+    cells = cell_unknowns(parts, len(system.centres))
     assert (len(dissection.dissection(cells, system.centres, kept)) > 1) == (leaf < 10**6)
 
 
@@ -223,7 +223,7 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
 def test_both_sparse_solvers_give_the_same_displacements():
     pypardiso = pytest.importorskip("pypardiso", reason="extra `benchmark`, where MKL has a wheel")
     system = tied_system(DISC, CUTS)
-    free = ~system.held.ravel()
+    free = ~system.is_held.ravel()
     matrix = stiffness(system.parts)[free][:, free].tocsr()
     unit = np.zeros((matrix.shape[0], 1))
     unit[0] = 1.0
@@ -244,7 +244,7 @@ def test_a_singular_system_is_refused_in_one_line():
 
 
 def test_body_that_nothing_holds_is_refused_in_one_line():
-    loose = replace(DISC, held=np.zeros_like(DISC.held))
+    loose = replace(DISC, is_held=np.zeros_like(DISC.is_held))
     with pytest.raises(FacegearError) as error:
         flank_compliance(loose, Refinement())
     assert "\n" not in str(error.value)
@@ -261,7 +261,7 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, ring, places
     (tooth, elastic), (ring, stiffness) = slab, ring
     _, gauges = root_gauges(tooth, STEEL)
     compliance = flank_compliance(elastic, Refinement(), tooth.teeth, 2, "ring", gauges=gauges)
-    assert ring.closed
+    assert ring.is_closed
     flank = contact_side(spur(), tooth, "right").nodes.ravel()
     normals = elastic.normals.reshape(-1, 3)
     free = np.ones((len(ring.nodes), 3), dtype=bool)
@@ -275,7 +275,7 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, ring, places
     node = ring.tooth_nodes[places % tooth.teeth][flank[seen_at]]
     normal = tooth.rotated(normals[seen_at], places * tooth.pitch)
     expected = moved.reshape(-1, 3)[node] @ normal
-    own = compliance.own if places == 0 else compliance.block(places)
+    own = compliance.loaded_tooth if places == 0 else compliance.block(places)
     agrees("displacement of a unit force, m", own[seen_at, load_at], expected, relative=1e-8)
     _, number = hex_mesh(tooth.nodes, tooth.hexes)
     here = np.empty_like(tooth.nodes)
@@ -293,10 +293,12 @@ def test_gauges_on_a_tooth_change_nothing_of_how_the_teeth_of_a_ring_move_each_o
     with_gauges, without = (
         flank_compliance(elastic, CUTS, tooth.teeth, 2, gauges=rows) for rows in (gauges, None)
     )
-    assert len(without.readings) == len(with_gauges.readings) == len(without.others)
-    known = with_gauges.others
-    np.testing.assert_allclose(without.others, known, rtol=0.0, atol=1e-11 * np.abs(known).max())
-    np.testing.assert_allclose(without.own, with_gauges.own, rtol=0.0, atol=1e-11 * with_gauges.own.max())
+    assert len(without.readings) == len(with_gauges.readings) == len(without.neighbour_blocks)
+    known = with_gauges.neighbour_blocks
+    np.testing.assert_allclose(without.neighbour_blocks, known, rtol=0.0, atol=1e-11 * np.abs(known).max())
+    np.testing.assert_allclose(
+        without.loaded_tooth, with_gauges.loaded_tooth, rtol=0.0, atol=1e-11 * with_gauges.loaded_tooth.max()
+    )
 
 
 def test_sector_of_one_condensed_tooth_is_the_sector_meshed_whole():
@@ -326,7 +328,7 @@ def test_a_chain_of_teeth_is_the_one_joined_tooth_by_tooth(slab, teeth):
     faces = condense(tied_system(slab[1], Refinement())).faces
     joined_in_turn = faces
     for _ in range(teeth - 1):
-        joined_in_turn = joined(joined_in_turn, faces)
+        joined_in_turn = join_chains(joined_in_turn, faces)
     long = chain(faces, teeth)
     np.testing.assert_allclose(long, joined_in_turn, rtol=0.0, atol=1e-12 * np.abs(faces).max())
     assert apart(long) == (teeth > 3)
@@ -369,7 +371,7 @@ def test_two_halves_of_a_symmetric_tooth_give_way_as_the_whole_one(layers, eleme
         flank_compliance(body, cuts, tooth.teeth, 1, element=element, gauges=gauges)
         for body in (elastic, uncut)
     )
-    for name in ("own", "others", "readings"):
+    for name in ("loaded_tooth", "neighbour_blocks", "readings"):
         known = getattr(expected, name)
         np.testing.assert_allclose(
             getattr(halved, name), known, rtol=0.0, atol=1e-11 * np.abs(known).max(), err_msg=name
@@ -384,17 +386,17 @@ def test_only_a_tooth_that_is_its_own_mirror_image_is_halved():
     for other in (askew, wide):
         assert elastic_tooth(spur(), other, STEEL)[0].mirror.size == 0
     body, _ = elastic_tooth(spur(), tooth, STEEL)
-    held = body.held.copy()
+    held = body.is_held.copy()
     held[body.flank[0, 0]] = True
     with pytest.raises(ValueError, match="mirror image"):
-        replace(body, held=held)
+        replace(body, is_held=held)
 
 
 def test_sectors_bracket_the_ring_and_close_in_on_it(slab):
     tooth, elastic = slab
-    rigid = [flank_compliance(elastic, Refinement(), n, 1, "clamped").own.trace() for n in (5, 9)]
-    loose = [flank_compliance(elastic, Refinement(), n, 1, "free").own.trace() for n in (5, 9)]
-    ring = flank_compliance(elastic, Refinement(), tooth.teeth, 1, "ring").own.trace()
+    rigid = [flank_compliance(elastic, Refinement(), n, 1, "clamped").loaded_tooth.trace() for n in (5, 9)]
+    loose = [flank_compliance(elastic, Refinement(), n, 1, "free").loaded_tooth.trace() for n in (5, 9)]
+    ring = flank_compliance(elastic, Refinement(), tooth.teeth, 1, "ring").loaded_tooth.trace()
     assert rigid[0] < rigid[1] < ring < loose[1] < loose[0]
 
 

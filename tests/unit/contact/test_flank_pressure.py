@@ -251,7 +251,7 @@ def test_pressure_is_reported_only_away_from_edges_and_with_its_error(pressed_pa
     _, _, pressure = pressed_pair
     lines = pressure.lines
     for loads in pressure.loads:
-        inside = loads.where == INSIDE
+        inside = loads.edge == INSIDE
         assert np.isnan(loads.pressure[~inside]).all()
         assert (loads.error[inside] >= 0).all()
         at = loads.line[inside], loads.plane[inside]
@@ -273,7 +273,9 @@ def test_lines_of_pairs_that_carry_nothing_are_those_of_all_pairs_but_only_made_
     model, _, pressure = pressed_pair
     position, tooth, points = pressure.every_point(model.design)
     assert len(pressure.tooth) < len(tooth) == 4 * PAIRS.size
-    lines = unloaded_lines(model.design, position, tooth, pressure.unloaded, model.flanks.pinion.planes)
+    lines = unloaded_lines(
+        model.design, position, tooth, pressure.unloaded_errors, model.flanks.pinion.planes
+    )
     expected = flank_points(model.design, lines.roll, lines.y).position
     np.testing.assert_allclose(points, expected, rtol=0, atol=1e-12)
 
@@ -335,7 +337,9 @@ def test_crossed_bodies_aslant_to_the_planes_meet_hertz_and_the_half_space_withi
 def test_strip_fine_in_both_directions_has_the_pressure_of_the_line_load(pressed_pair):
     model, results, pressure = pressed_pair
     for number, result in enumerate(results):
-        strip = strip_at(model.design, pressure, number, result.unloaded, contact_modulus((STEEL, STEEL)))
+        strip = strip_at(
+            model.design, pressure, number, result.unloaded_error, contact_modulus((STEEL, STEEL))
+        )
         assert strip.y.size
         np.testing.assert_allclose(strip.line, strip.strip, rtol=0.01)
 

@@ -13,7 +13,7 @@ from facegear.contact.hertz import contact_modulus
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pressure import flank_pressure
 from facegear.contact.tables import pressure_arrays
-from facegear.geometry.placement import mirrored
+from facegear.geometry.placement import mirror_design
 from facegear.lubrication.contact_points import contact_points, loaded_contacts, stored_lines
 from facegear.lubrication.excitation import friction_ratios
 from facegear.lubrication.friction import BenedictKelley, Constant, Doleschel, Schlenk, Xu
@@ -33,7 +33,7 @@ TORQUES = [300.0, 1000.0]
 def stored(model, positions, torques):
     results = loaded_contact(model, even_positions(positions), torques)
     pressed = flank_pressure(results, model.flanks, (STEEL, STEEL))
-    unloaded = {one.position: one.unloaded for one in results}
+    unloaded = {one.position: one.unloaded_error for one in results}
     return pressure_arrays(results, model.flanks.pinion, pressed), unloaded
 
 
@@ -307,7 +307,7 @@ def test_the_back_flank_is_the_mirror_image_in_loss_and_in_friction_s_force(load
     moved = replace(design, assembly=replace(design.assembly, offset=3e-4))
     hats = at(hats, hats.torque == 1000.0)
     flanks = []
-    for pair, mirror in ((moved, np.ones(3)), (mirrored(moved), np.array([-1.0, 1.0, 1.0]))):
+    for pair, mirror in ((moved, np.ones(3)), (mirror_design(moved), np.array([-1.0, 1.0, 1.0]))):
         point, normal = hats.point * mirror, hats.normal * mirror
         velocity, closing = slip(*spins(pair), point, normal)
         seen = replace(hats, point=point, normal=normal, velocity=velocity, normal_velocity=closing)

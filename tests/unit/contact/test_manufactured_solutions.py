@@ -106,11 +106,11 @@ def test_a_condensed_body_moves_as_the_whole_one_under_the_same_loads():
     system = tied_system(cube, Refinement(2, 1, 1))
     loads = np.random.default_rng(0).uniform(0.5, 1.5, system.spread.shape[0])
     force = np.zeros((len(system.points), 3))
-    force[system.loaded] = (system.spread.T @ loads)[:, None] * system.loaded_normals
-    loose = ~system.held.ravel()
+    force[system.loaded_nodes] = (system.spread.T @ loads)[:, None] * system.loaded_normals
+    loose = ~system.is_held.ravel()
     moved = np.zeros(loose.size)
     matrix = stiffness(system.parts)
     moved[loose] = spsolve(matrix[loose][:, loose].tocsc(), force.ravel()[loose])
-    normal = (moved.reshape(-1, 3)[system.loaded] * system.loaded_normals).sum(axis=1)
+    normal = (moved.reshape(-1, 3)[system.loaded_nodes] * system.loaded_normals).sum(axis=1)
     computed = condense(system).flank @ loads
     agrees("displacement of a loaded node, m", computed, system.spread @ normal, relative=1e-10)

@@ -44,10 +44,10 @@ def slab_tensions(sizes):
     """Largest tension under 1 N at HEIGHTS of the paper's pinion in plane strain, by 27-node hexahedra."""
     tooth = slab_tooth(DESIGN, replace(sizes, width=0.64 * M))
     elastic, side = elastic_tooth(DESIGN, tooth, STEEL, "right")
-    held = elastic.held.copy()
+    held = elastic.is_held.copy()
     held[:, 1] = True
     gauges, rows = root_gauges(tooth, STEEL)
-    found = flank_compliance(replace(elastic, held=held), Refinement(), 9, 0, "free", gauges=rows)
+    found = flank_compliance(replace(elastic, is_held=held), Refinement(), 9, 0, "free", gauges=rows)
     tensions = []
     for height in HEIGHTS:
         at = np.stack([np.full(3, height * (side.flank_rows - 1)), np.arange(3.0)], axis=1)

@@ -5,7 +5,7 @@ import pytest
 
 from facegear.dynamics.at_instants import add_ring_forces, press_in, split_loads
 from facegear.mesh_law.law import beyond_edges
-from facegear.transmission.flanks import NO_LOAD, carried
+from facegear.transmission.flanks import NO_LOAD, significant_forces
 
 
 def test_loads_of_both_flanks_are_the_forces_of_either_sign_without_rounding():
@@ -15,7 +15,7 @@ def test_loads_of_both_flanks_are_the_forces_of_either_sign_without_rounding():
     split_loads(forces, NO_LOAD, loads)
     drive, back = np.split(loads, 2)
     assert (loads >= 0.0).all() and not (drive * back).any()
-    assert np.array_equal(drive - back, carried(forces)) and not loads[0, :5].any()
+    assert np.array_equal(drive - back, significant_forces(forces)) and not loads[0, :5].any()
 
 
 def test_contacts_are_pressed_in_by_what_lies_beyond_their_edges_without_the_error_of_the_instant():

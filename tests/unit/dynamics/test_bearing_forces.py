@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 import facegear
 from facegear.dynamics.bearing_forces import bearing_forces, bearing_history, bearing_table
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.track import SampledTrack, periodic_track, track
@@ -23,7 +23,7 @@ from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 from facegear.transmission.statics import static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -127,7 +127,7 @@ def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics
     capability="dynamics_response",
     module="facegear.dynamics.bearing_forces",
 )
-@pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (PRINTED, 0.0)])
+@pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (PRINTED_KINEMATICS, 0.0)])
 def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinematics, backlash):
     steady = {"stiffness": FLAT, "error": 8e-6, "backlash": backlash, "open_flanks": OpenFlanks.CONTACT_ONLY}
     model, found = loaded(kinematics, samples=1024, **steady)
@@ -135,14 +135,14 @@ def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinema
     assert found.motion is Motion.PERIODIC and found.periods == 1
     error = stacked_values(system.error, found.phases)[:, system.error_kind]
     closed = found.coordinates @ system.mesh_jacobian.T - error - system.upper
-    touches = (closed > 0.0).all(axis=0) | (kinematics is PRINTED)
+    touches = (closed > 0.0).all(axis=0) | (kinematics is PRINTED_KINEMATICS)
     assert ((closed < 0.0).all(axis=0) | touches).all()
     time = np.append(found.phases, 1.0) * TAU / found.frequency
     error_rate = CubicSpline(time, np.vstack([error, error[:1]]), bc_type="periodic")(time[:-1], 1)
     flank_rate = rate @ system.mesh_jacobian.T
     force = (4.1e8 * closed + machine.damping.mesh * (flank_rate - error_rate)) * touches
     by_meshes = (force * flank_rate).sum(axis=1).mean()
-    moving = rate @ model.reduced.basis.T
+    moving = rate @ model.reduction.basis.T
     by_masses = machine.damping.mass * (moving**2 @ mass_diagonal(machine.layout)).mean()
     at_bodies = moving.reshape(len(moving), -1, 4)[..., :3] * bearing_history(model, found)
     by_bearings = at_bodies.sum(axis=(1, 2)).mean()

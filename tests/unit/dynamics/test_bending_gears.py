@@ -10,8 +10,8 @@ from random_machines import kicked
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate
@@ -146,7 +146,7 @@ def test_steady_motion_of_gears_that_bend_balances_power_reactions_and_torques(r
     """
     bent, model, response = running
     linear, w = bent.linear, OMEGA
-    q = response.coordinates @ model.reduced.basis.T
+    q = response.coordinates @ model.reduction.basis.T
     rate = derivative(q, w)
     flanks = q @ linear.rows.T
     forces = np.concatenate([np.maximum(response.forces, 0.0), np.maximum(-response.forces, 0.0)], axis=1)

@@ -9,7 +9,7 @@ from facegear.dynamics.bearing_forces import bearing_table
 from facegear.dynamics.between_samples import finer, located_by_cycle, located_extremes
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.load_sharing.following import Running
+from facegear.load_sharing.running_machine import Running
 from facegear.strength.duty_loads import history_of
 from facegear.transmission.teeth import GEOMETRIC
 

@@ -9,7 +9,7 @@ from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.harmonics.series import Harmonics
@@ -53,8 +53,8 @@ def deflection(open_flanks):
     model = build_model(single_pair(open_flanks))
     omega = TAU * mesh_frequency(model.machine.layout, SPEED)
     run = record(model.system, omega, static_start(model), PERIODS, Settings(tolerance=1e-12))
-    deflections = model.reduced.mesh_jacobian[0] @ run.at(PHASES)[0].T
-    return deflections - model.machine.error.shifted(float(model.machine.error_phases[0]))(PHASES / TAU)
+    deflections = model.reduction.mesh_jacobian[0] @ run.at(PHASES)[0].T
+    return deflections - model.machine.error.shift(float(model.machine.error_phases[0]))(PHASES / TAU)
 
 
 @cache
@@ -65,7 +65,7 @@ def published_deflection():
     turns = np.diagonal(linear.stiffness) == 0.0
     mass = 1.0 / (linear.rows[0] ** 2 / np.diagonal(linear.mass))[turns].sum()
     force = machine.torques[0] / machine.layout.pinion_arm
-    error, lag = machine.error.shifted(float(machine.error_phases[0])), machine.phases[0]
+    error, lag = machine.error.shift(float(machine.error_phases[0])), machine.phases[0]
     assert not error.sine.any() and not lag
 
     def right(t, z):

@@ -12,7 +12,7 @@ from facegear.dynamics.bearing_forces import (
     bearing_table,
     shaft_bearing_history,
 )
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.track import track
@@ -74,7 +74,7 @@ def harmonic(machine):
 def test_transmission_error_shakes_tilting_pinions_and_engines_as_the_closed_form_says(running):
     machine, model, response = running
     assert (response.motion, response.period) == (Motion.PERIODIC, 1)
-    moving = response.coordinates @ model.reduced.basis.T
+    moving = response.coordinates @ model.reduction.basis.T
     moving -= moving.mean(axis=0)
     exact = np.real(harmonic(machine) * np.exp(2j * np.pi * response.phases[:, None]))
     line, size = machine.drive_line, np.abs(exact).max()
@@ -163,7 +163,7 @@ def test_shafts_springs_masses_and_meshes_take_no_more_power_than_is_brought_in(
     flank_rate = rate @ system.mesh_jacobian.T
     force = (K * closed + machine.damping.mesh * (flank_rate - error_rate)) * touches
     by_meshes = (force * flank_rate).sum(axis=1).mean()
-    moving = rate @ model.reduced.basis.T
+    moving = rate @ model.reduction.basis.T
     by_rest = np.einsum("ki,ij,kj->k", moving, machine.linear.damping, moving).mean()
     in_springs = sum(
         spring.damping * (np.diff(moving[:, [spring.first, spring.second]]) ** 2).mean()

@@ -9,29 +9,29 @@ from random_machines import FINE, frequency, kicked, machines, speeds
 from recorded_motion import Trajectory, record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import error_series, mirrored
+from facegear.transmission.flanks import error_series, mirror_series
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.matrices import flank_jacobian, mass_diagonal
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
 
 def contacts(machine):
     """k and e of each contact of the system: meshes as printed, flanks where meshes are geometric."""
     if machine.layout.kinematics.flanks_apart:
-        both = *machine.mesh_stiffness, *map(mirrored, machine.mesh_stiffness)
+        both = *machine.mesh_stiffness, *map(mirror_series, machine.mesh_stiffness)
         phases = np.tile(machine.phases, 2)
-        return [own.shifted(lag) for own, lag in zip(both, phases, strict=True)], error_series(machine)
-    stiffness = [machine.stiffness.shifted(float(phase)) for phase in machine.phases]
-    return stiffness, [machine.error.shifted(float(phase)) for phase in machine.error_phases]
+        return [own.shift(lag) for own, lag in zip(both, phases, strict=True)], error_series(machine)
+    stiffness = [machine.stiffness.shift(float(phase)) for phase in machine.phases]
+    return stiffness, [machine.error.shift(float(phase)) for phase in machine.error_phases]
 
 
 def pressed(system, deflection, state):
@@ -152,7 +152,7 @@ def test_energy_audit_over_a_period(machine, speed):
     damper = force - stiffness * beyond
     place = np.einsum("kp,kpn->kn", powers, run.coordinates[step])
     # d/dt of kinetic + bearing + mesh energy: torques in, damping out, k'(t) stores, e'(t) pushes.
-    power = velocity @ model.reduced.load - velocity**2 @ system.damping - (damper * rate).sum(axis=1)
+    power = velocity @ model.reduction.load - velocity**2 @ system.damping - (damper * rate).sum(axis=1)
     power -= ring_dissipation(model, place, velocity)
     power += (0.5 * slope * beyond**2).sum(axis=1) - (force * error_rate).sum(axis=1)
 
@@ -199,7 +199,7 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
         order = np.arange(run.coordinates.shape[1])
         displacement = ahead**order @ run.coordinates[step]
         slope = (order[1:] * ahead ** order[:-1]) @ run.coordinates[step][1:]
-        ends.append((model.reduced.basis @ displacement, omega * (model.reduced.basis @ slope)))
+        ends.append((model.reduction.basis @ displacement, omega * (model.reduction.basis @ slope)))
     (angle, spin), (later_angle, later_spin) = ((q[layout.spins], v[layout.spins]) for q, v in ends)
     inertia = mass_diagonal(layout)[layout.spins]
     gained = inertia * (later_spin - spin + machine.damping.mass * (later_angle - angle))
@@ -241,7 +241,7 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
 @pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
     for torque, speed in ((800.0, 4500.0), (1500.0, 9000.0), (1500.0, 12_000.0)):
-        error = 50e-6 if kinematics is PRINTED else 5e-6
+        error = 50e-6 if kinematics is PRINTED_KINEMATICS else 5e-6
         machine = make_machine(make_layout(kinematics=kinematics), torque=torque, error=error)
         settings_ = Settings(tolerance=1e-12, periodic_residual=1e-9)
         model = build_model(machine)

@@ -12,7 +12,7 @@ from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start, steady_state
 from facegear.dynamics.steady_state.statistics import moments
@@ -105,10 +105,12 @@ def test_short_run_agrees_with_the_full_equations(name):
     model = build_model(machine)
     start = static_start(model)
     kick = np.random.default_rng(1).normal(size=start.velocity.size)
-    start = replace(start, velocity=0.02 * kick / np.abs(model.reduced.mesh_jacobian).max())
+    start = replace(start, velocity=0.02 * kick / np.abs(model.reduction.mesh_jacobian).max())
     omega = TAU * mesh_frequency(machine.layout, speed)
     end = min(TAU, omega * 3e-4)
-    full = np.concatenate([model.reduced.basis @ start.displacement, model.reduced.basis @ start.velocity])
+    full = np.concatenate(
+        [model.reduction.basis @ start.displacement, model.reduction.basis @ start.velocity]
+    )
     expected = full_run(machine, speed, full, end / omega)
     run = record(model.system, omega, start, 1, FINE)
     found = run.at(np.array([end]))[1][0]

@@ -13,9 +13,9 @@ from facegear.config.dynamics import SECOND_LOOKS
 from facegear.config.load import load_config
 from facegear.config.machines import MachineInputs
 from facegear.config.model import resolved_values
-from facegear.dynamics.courses import alone
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.run_plans import alone
 from facegear.dynamics.steady_state import second_look
 from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
 from facegear.dynamics.steady_state.orbits import change
@@ -277,7 +277,7 @@ def test_a_run_that_comes_near_a_known_stable_orbit_is_over_with_the_same_period
     start, settings = integrator.by_phase(oscillator.start), Settings()
     first = settle(integrator, start, settings)
     states = integrator.run(first.state, first.period).ends
-    again = settle(integrator, start, settings, known=KnownOrbit(first.orbit, states))
+    again = settle(integrator, start, settings, known_orbit=KnownOrbit(first.orbit, states))
     assert first.orbit is not None and again.period == first.period
     assert again.periods_run <= first.periods_run
     assert change(integrator, again.state, states[-1]) < 1e-4
@@ -291,8 +291,8 @@ def test_a_run_is_over_once_a_known_orbit_of_several_periods_draws_it_in():
     known = known_orbit(integrator, first.orbit)
     assert first.period == 2 and known is not None
     aside = integrator.run(first.state, 1).state + 5e-3
-    again = settle(integrator, aside, Settings(), known=known)
-    assert again.known and again.period == 2
+    again = settle(integrator, aside, Settings(), known_orbit=known)
+    assert again.is_known_orbit and again.period == 2
     assert again.periods_run == 16, "the first look"
     assert near(integrator, again.state, known.states) < 1e-9
     assert near(integrator, again.ends[-1], known.states) > 1e-6, "far beyond the error of the steps"

@@ -6,13 +6,13 @@ from random_machines import FINE, frequency, machines, speeds
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
 
 @against(
@@ -22,7 +22,7 @@ from facegear.transmission.printed import PRINTED
     module="facegear.dynamics.steady_state.simulate",
 )
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=PRINTED, backlash=0.0, mass_damping=800.0), speed=speeds)
+@given(machine=machines(kinematics=PRINTED_KINEMATICS, backlash=0.0, mass_damping=800.0), speed=speeds)
 def test_without_backlash_the_response_is_hills(machine, speed):
     """Harmonic balance of the linear system with periodic k, solved to rounding in the frequency domain."""
     model = build_model(machine)
@@ -32,7 +32,7 @@ def test_without_backlash_the_response_is_hills(machine, speed):
     size, orders = system.size, np.arange(-harmonics, harmonics + 1)
     matrix = np.zeros((orders.size * size, orders.size * size), dtype=complex)
     right = np.zeros(orders.size * size, dtype=complex)
-    right[harmonics * size : (harmonics + 1) * size] = model.reduced.load
+    right[harmonics * size : (harmonics + 1) * size] = model.reduction.load
     mesh_jacobian = system.mesh_jacobian
     k = np.stack([fourier(machine.stiffness, p, harmonics) for p in machine.phases], axis=1)
     e = np.stack([fourier(machine.error, p, harmonics) for p in machine.error_phases], axis=1)
@@ -73,7 +73,7 @@ def test_without_backlash_the_response_is_hills(machine, speed):
 
 def fourier(series: Harmonics, phase: float, harmonics: int) -> np.ndarray:
     """Complex coefficients of orders -harmonics .. harmonics of a shifted series."""
-    shifted = series.shifted(phase)
+    shifted = series.shift(phase)
     result = np.zeros(2 * harmonics + 1, dtype=complex)
     for j in range(shifted.order + 1):
         value = 0.5 * (shifted.cosine[j] - 1j * shifted.sine[j])

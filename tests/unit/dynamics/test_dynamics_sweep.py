@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 from scipy.signal import find_peaks
 
-from facegear.dynamics.courses import alone
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate, started
+from facegear.dynamics.run_plans import alone
+from facegear.dynamics.steady_state.simulate import build_model, simulate, start_run
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import maxima, resonance
+from facegear.dynamics.sweeps.chunk_arrays import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.jump_margin import jump_margin
 from facegear.dynamics.sweeps.maxima import local_maxima
 from facegear.dynamics.sweeps.plan import JumpRange, SweepPlan
-from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
 from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep
@@ -151,8 +151,8 @@ def test_each_speed_starts_where_the_first_watch_of_the_one_before_has_ended(mod
     hasty = replace(SETTINGS, settle=64, window=32)
     speeds, state = np.array([4300.0, 15_000.0, 15_050.0]), None
     for speed, (same, response) in zip(speeds, run_speeds(model, speeds, hasty, None), strict=True):
-        motion = alone(started(model, speed, hasty, state))
-        expected, state = alone(motion.followed()), motion.state
+        motion = alone(start_run(model, speed, hasty, state))
+        expected, state = alone(motion.follow()), motion.state
         assert same == speed
         assert response.label == expected.label
         np.testing.assert_array_equal(response.deflections, expected.deflections)

@@ -10,17 +10,17 @@ from random_machines import FINE, frequency, kicked, machines, speeds
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import mirrored as backwards
+from facegear.transmission.flanks import mirror_series as backwards
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.matrices import mass_diagonal
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 from facegear.transmission.teeth import GEOMETRIC
 
 
@@ -39,7 +39,7 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
         machine,
         torques=factor * machine.torques,
         half_backlash=factor * machine.half_backlash,
-        error=machine.error.scaled(factor),
+        error=machine.error.scale(factor),
         imperfections=replace(
             machine.imperfections,
             error=factor * machine.imperfections.error,
@@ -63,11 +63,11 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
     module="facegear.dynamics.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=PRINTED), speed=speeds)
+@given(machine=machines(kinematics=PRINTED_KINEMATICS), speed=speeds)
 def test_negated_torques_and_error_negate_the_motion(machine, speed):
     model = build_model(machine)
     start = kicked(model)
-    mirrored = build_model(replace(machine, torques=-machine.torques, error=machine.error.scaled(-1.0)))
+    mirrored = build_model(replace(machine, torques=-machine.torques, error=machine.error.scale(-1.0)))
     first = record(model.system, frequency(model, speed), start, 2, FINE)
     second = record(
         mirrored.system, frequency(model, speed), State(-start.displacement, -start.velocity), 2, FINE
@@ -121,12 +121,12 @@ def resting_on_rings():
 def mirrored_start(model: Model, mirrored: Model) -> State:
     """The mirror image of static equilibrium; bodies that float freely have no other way to match."""
     layout = model.machine.layout
-    place = model.reduced.basis @ static_start(model).displacement
+    place = model.reduction.basis @ static_start(model).displacement
     bodies = 4 * len(layout.bodies)
     place[0:bodies:4] *= -1.0
     place[layout.spins] *= -1.0
     place[bodies + 1 :: 2] *= -1.0
-    start = mirrored.reduced.basis.T @ (mass_diagonal(layout) * place)
+    start = mirrored.reduction.basis.T @ (mass_diagonal(layout) * place)
     return State(start, np.zeros_like(start))
 
 

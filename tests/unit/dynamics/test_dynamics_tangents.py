@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.steady_state.passed import Passed
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import build_model, static_start
+from facegear.dynamics.steady_state.state_history import StateHistory
 from facegear.transmission.machine import mesh_frequency
 
 TOLERANCE = 1e-8
@@ -56,9 +56,9 @@ def test_a_disturbance_is_the_difference_of_two_motions(losing_contact):
 @settings(max_examples=100, deadline=None)
 @given(st.integers(1, 12), st.lists(st.integers(1, 40), min_size=1, max_size=12))
 def test_a_run_remembers_its_last_states_in_order_however_long_its_blocks(kept, blocks):
-    passed, total = Passed(kept, (1, 1)), 0
+    passed, total = StateHistory(kept, (1, 1)), 0
     for block in blocks:
-        passed.room_for(block)[:, 0, 0] = np.arange(total, total + block)
+        passed.reserve(block)[:, 0, 0] = np.arange(total, total + block)
         total += block
         assert passed.states[:, 0, 0].tolist() == list(range(max(total - kept, 0), total))
     passed.forget()

@@ -8,7 +8,7 @@ from lumped_machines import make_layout, make_machine
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.harmonics.series import Harmonics
@@ -106,8 +106,8 @@ def test_moments_about_both_diameters_are_balanced_in_motion():
         powers = np.arange(run.coordinates.shape[1])
         place = ahead_**powers @ run.coordinates[at]
         speed = omega * (order * ahead_ ** (order - 1)) @ run.coordinates[at][1:]
-        ends.append((model.reduced.basis @ place, model.reduced.basis @ speed))
-    tilts = (weights / omega) @ (coordinates @ model.reduced.basis.T)
+        ends.append((model.reduction.basis @ place, model.reduction.basis @ speed))
+    tilts = (weights / omega) @ (coordinates @ model.reduction.basis.T)
     for g, gear in enumerate(layout.gears):
         at = slice(28 + 2 * g, 30 + 2 * g)
         moved, gained = (ends[1][part][at] - ends[0][part][at] for part in (0, 1))

@@ -14,7 +14,7 @@ from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
 import facegear
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import ConfigError, ConfigErrors
@@ -70,7 +70,7 @@ def test_a_periodic_torque_shakes_the_machine_as_its_linear_response_says(excita
     assert (response.motion, response.period) == (Motion.PERIODIC, 1)
     motion = loaded.excited_motion(machine, excitation, SPEED)
     turns = np.exp(2j * np.pi * excitation.mesh_harmonic * response.phases[:, None])
-    moving = response.coordinates @ model.reduced.basis.T
+    moving = response.coordinates @ model.reduction.basis.T
     moving = moving - moving.mean(axis=0)
     rows = machine.linear.rows[:2]
     exact = np.real((rows @ motion) * turns)
@@ -92,7 +92,7 @@ def test_a_torque_that_parts_flanks_moves_them_as_scipy_says():
     excitation = Excitation(1, 46.0, 23, 2500.0, 0.3)
     machine = make_excited(excitation, shaft=False, masses={})
     model, omega = build_model(machine), TAU * 23 * SPEED / 60.0
-    push = model.reduced.basis.T @ machine.straining_torque(1)
+    push = model.reduction.basis.T @ machine.straining_torque(1)
 
     def acting(cycles, y, v, pressed):
         return 2500.0 * np.cos(2.0 * TAU * cycles[0] + 0.3) * push

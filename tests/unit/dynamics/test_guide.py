@@ -12,7 +12,7 @@ from oscillators import backlash_oscillator
 
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.guide import RETURNS, drawn_in, guide_of, guided
+from facegear.dynamics.steady_state.guide import RETURNS, drawn_in, guide_of, settle_by_guide
 from facegear.dynamics.steady_state.orbits import ROUNDING, change
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start, steady_state
 from facegear.transmission.imperfections import perfect
@@ -80,7 +80,7 @@ def test_the_orbit_that_a_guide_leads_to_repeats_to_rounding_though_its_last_ste
     for shift in (0.3, 1.0):
         model = build_model(series_machine(shift))
         integrator = Integrator(model.system, nominal.frequency)
-        settled = guided(integrator, integrator.by_phase(static_start(model)), guide)
+        settled = settle_by_guide(integrator, integrator.by_phase(static_start(model)), guide)
         end = integrator.run(settled.state, 1, fine=True).state
         assert settled.residual <= ROUNDING
         assert change(integrator, settled.state, end) <= 3.0 * ROUNDING
@@ -95,7 +95,7 @@ def test_scratch_space_is_shared_by_systems_of_the_same_sizes_alone_and_changes_
     first.run(start, 3)
     assert beside.work is first.work and alone.work is not first.work
     assert np.array_equal(beside.run(start, 3).ends, alone.run(start, 3).ends)
-    assert np.array_equal(beside.returned(start), alone.run(start, 1, fine=True).state)
+    assert np.array_equal(beside.advance_period(start), alone.run(start, 1, fine=True).state)
     assert Integrator(moved.system, 2e3, order=7, like=first).work is not first.work
     assert Integrator(build_model(tight).system, 2e3, like=first).work is not first.work
 
@@ -116,4 +116,4 @@ def test_only_an_orbit_of_one_mesh_period_that_draws_in_makes_a_guide():
     assert guide_of(integrator, orbit) is not None
     assert guide_of(integrator, None) is None
     assert guide_of(integrator, replace(orbit, period=2)) is None
-    assert guide_of(integrator, replace(orbit, multipliers=orbit.multipliers / orbit.holding)) is None
+    assert guide_of(integrator, replace(orbit, multipliers=orbit.multipliers / orbit.spectral_radius)) is None

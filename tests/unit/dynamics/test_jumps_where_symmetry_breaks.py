@@ -12,7 +12,7 @@ from facegear.dynamics.branches.family import speed_family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.switching import through
-from facegear.dynamics.sweeps.sweep import collect, joined, run_chunk, run_speeds
+from facegear.dynamics.sweeps.sweep import collect, join_pieces, run_chunk, run_speeds
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 
 GRIDS = [
@@ -84,7 +84,7 @@ def test_a_step_that_leaves_a_stable_motion_is_no_jump_and_errs_by_the_whole_ste
     model, plan = build_symmetric_model(), make_plan("up", (9300.0, 9400.0, 2))
     runs = [run_speeds(model, np.array(speeds), plan.settings, None) for speeds in ([9300.0], FROM_ABOVE)]
     before, after = (collect(model, run) for run in runs)
-    piece = joined([before, after.tail(3)])
+    piece = join_pieces([before, after.tail(3)])
     (jump,) = whole_sweep(model, plan, {"up": [(before.part(slice(0)), piece)]})["up"].jumps
     assert (jump.kind, jump.error) == ("step", 100.0)
     assert (jump.before.speed, jump.after.speed) == (9300.0, 9400.0)

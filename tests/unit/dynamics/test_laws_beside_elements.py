@@ -11,8 +11,8 @@ from references import against, agrees
 from scipy.integrate import solve_ivp
 from test_bending_gears import machine as build_bending_gears
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.mesh_law.power import PowerLaw
 from facegear.transmission.imperfections import perfect
@@ -76,7 +76,7 @@ def assert_follows_its_accelerations(machine):
     model = build_model(machine)
     integrator = Integrator(model.system, frequency(model, SPEED_RPM), 1e-11)
     kick = np.random.default_rng(5).normal(size=(2, model.system.size))
-    kick *= 0.2 * model.system.scale / np.abs(model.reduced.mesh_jacobian).max()
+    kick *= 0.2 * model.system.scale / np.abs(model.reduction.mesh_jacobian).max()
     start = integrator.by_phase(static_start(model)) + kick
 
     def rates(phase, state):

@@ -11,7 +11,7 @@ from oscillators import backlash_oscillator, one_degree
 from random_machines import FINE, frequency, machines, speeds
 from recorded_motion import record
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.symmetries import mesh_images, symmetries

@@ -17,14 +17,14 @@ from test_dynamics_hard_cases import CASES
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.side_by_side import WIDTH, _groups, run_many, run_stretches
 from facegear.dynamics.steady_state.simulate import build_model, static_start
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
 from facegear.mesh_law.load_dependent import load_dependent_law
 from facegear.mesh_law.power import PowerLaw
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.machine import FlankTables, OpenFlanks
 from facegear.transmission.mesh_friction import PARTS, MeshFriction
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 from facegear.transmission.teeth import GEOMETRIC
 
 SAME = 1e-9
@@ -91,7 +91,7 @@ def integrators(name, count=3):
     model = build_model(machine)
     found = [Integrator(model.system, frequency(model, speed * (1.0 + 0.02 * i))) for i in range(count)]
     kicks = np.random.default_rng(2).normal(size=(count, 2, model.system.size))
-    kicks *= 0.3 * model.system.scale / np.abs(model.reduced.mesh_jacobian).max()
+    kicks *= 0.3 * model.system.scale / np.abs(model.reduction.mesh_jacobian).max()
     start = static_start(model)
     return found, [one.by_phase(start) + kick for one, kick in zip(found, kicks, strict=True)]
 
@@ -114,17 +114,17 @@ def apart(found, starts, periods):
 @pytest.mark.parametrize("name", [*MACHINES, *OSCILLATORS])
 def test_a_machine_moves_beside_others_as_it_does_alone(name):
     found, starts = integrators(name)
-    assert len(_groups([Stretch(*each, 3) for each in zip(found, starts, strict=True)])) == 1
+    assert len(_groups([RunRequest(*each, 3) for each in zip(found, starts, strict=True)])) == 1
     agrees("state beside others, scaled", apart(found, starts, 3), 0.0, absolute=SAME)
 
 
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=PRINTED), speed=speeds, seed=st.integers(0, 99))
+@given(machine=machines(kinematics=PRINTED_KINEMATICS), speed=speeds, seed=st.integers(0, 99))
 def test_any_lumped_machine_moves_beside_others_as_it_does_alone(machine, speed, seed):
     model = build_model(machine)
     found = [Integrator(model.system, frequency(model, speed * factor)) for factor in (1.0, 1.1)]
     kick = np.random.default_rng(seed).normal(size=(2, model.system.size))
-    kick *= 0.2 * model.system.scale / np.abs(model.reduced.mesh_jacobian).max()
+    kick *= 0.2 * model.system.scale / np.abs(model.reduction.mesh_jacobian).max()
     start = static_start(model)
     assert apart(found, [one.by_phase(start) + kick for one in found], 2) < SAME
 
@@ -168,7 +168,7 @@ def test_machines_of_several_structures_run_each_among_its_own():
     ]
     found = [Integrator(system, 0.8) for system in mixed]
     starts = [np.array([[1.2], [0.1 * i]]) for i in range(len(mixed))]
-    stretches = [Stretch(one, start, 4) for one, start in zip(found, starts, strict=True)]
+    stretches = [RunRequest(one, start, 4) for one, start in zip(found, starts, strict=True)]
     assert sorted(_groups(stretches)) == [[0, 2, 4], [1, 6], [3], [5]]
     assert apart(found, starts, 4) < SAME
 
@@ -208,7 +208,7 @@ def disturbance(one):
 def test_a_disturbance_and_averages_beside_others_are_those_alone(name):
     found, starts = integrators(name)
     stretches = [
-        Stretch(one, start, periods, disturbance(one), samples=8, batches=2, growth=True)
+        RunRequest(one, start, periods, disturbance(one), samples=8, batches=2, growth=True)
         for one, start, periods in zip(found, starts, (4, 2, 3), strict=True)
     ]
     for stretch, run in zip(stretches, run_stretches(stretches, fewest=1), strict=True):
@@ -235,6 +235,6 @@ def same(found, expected, within=SAME, scale=0.0):
 def test_of_machines_beside_others_only_the_one_that_leaves_all_bounds_fails():
     one = Integrator(backlash_oscillator(0.75), 0.75)
     starts = [np.array([[1.0], [0.0]]), np.full((2, 1), np.nan), np.array([[1.1], [0.0]])]
-    runs = run_stretches([Stretch(one, start, 2) for start in starts], fewest=1)
+    runs = run_stretches([RunRequest(one, start, 2) for start in starts], fewest=1)
     assert [isinstance(run, NotConverged) for run in runs] == [False, True, False]
     assert np.abs(runs[2].ends - one.run(starts[2], 2).ends).max() < SAME

@@ -17,8 +17,8 @@ from oscillators import one_degree
 from references import against, agrees
 from scipy.linalg import block_diag
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.mesh_law.linear import LinearLaw
 from facegear.mesh_law.power import PowerLaw

@@ -10,8 +10,8 @@ from oscillators import backlash_oscillator, meissner
 from test_bending_gears import machine as bending_gears
 
 from facegear._kernels import motion
-from facegear.dynamics.integrator.compiled import make_runner, packed_system
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import make_runner, packed_system
 from facegear.dynamics.steady_state.simulate import build_model
 
 

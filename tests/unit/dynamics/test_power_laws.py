@@ -23,7 +23,7 @@ from facegear.mesh_law.power import PowerLaw
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import mesh_frequency
 from facegear.transmission.matrices import bearing_diagonal, flank_jacobian, mass_diagonal
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 from facegear.transmission.statics import static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -168,7 +168,7 @@ def test_statics_press_a_mesh_in_by_the_inverse_of_its_law(torque):
 
 @pytest.mark.parametrize("torque", [600.0, -600.0])
 def test_statics_on_one_line_of_action_take_the_law_on_both_flanks(torque):
-    machine = one_mesh(PRINTED, torque, 1)
+    machine = one_mesh(PRINTED_KINEMATICS, torque, 1)
     found = static_equilibrium(machine)
     force = torque / machine.layout.pinion_arm
     assert found.forces[0] == pytest.approx(force, rel=1e-9)

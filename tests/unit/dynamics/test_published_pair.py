@@ -14,7 +14,7 @@ from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.harmonics.series import Harmonics
@@ -70,11 +70,11 @@ def computed_deflection():
     machine = model.machine
     standing = np.zeros(machine.linear.size)
     standing[machine.torque_coordinates[0]] = machine.error(np.zeros(1))[0] / RADIUS
-    displacement = model.reduced.basis.T @ machine.linear.momentum(standing)
+    displacement = model.reduction.basis.T @ machine.linear.momentum(standing)
     start = State(displacement, np.zeros_like(displacement))
     run = record(model.system, FREQUENCY * NATURAL, start, PERIODS, Settings(tolerance=1e-12))
     assert (run.states == 0).any() and (run.states == 1).any(), "contact is lost"
-    return (model.reduced.mesh_jacobian[0] @ run.at(PHASES)[0].T - machine.error(PHASES / TAU)) / HALF
+    return (model.reduction.mesh_jacobian[0] @ run.at(PHASES)[0].T - machine.error(PHASES / TAU)) / HALF
 
 
 def published_deflection():

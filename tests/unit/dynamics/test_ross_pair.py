@@ -61,7 +61,7 @@ def deflection():
     model, omega = build_model(machine), 0.95 * np.sqrt(STIFFNESS / mass)
     response = simulate(model, omega / TEETH[0] * 30.0 / np.pi, Settings(tolerance=1e-10, samples=1024))
     assert (response.motion, response.period) == (Motion.PERIODIC, 1)
-    return response.coordinates @ model.reduced.basis.T @ machine.linear.rows[0]
+    return response.coordinates @ model.reduction.basis.T @ machine.linear.rows[0]
 
 
 @against(

@@ -10,8 +10,8 @@ from recorded_motion import record
 from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate
@@ -82,7 +82,7 @@ def rubbed(model):
     """Friction of each flank on all bodies, written out once more."""
     machine = model.machine
     ratios = flank_ratios(machine.friction.ratios, machine.phases)
-    rows = np.tile(friction_rows(machine.layout), (2, 1, 1)) @ model.reduced.basis
+    rows = np.tile(friction_rows(machine.layout), (2, 1, 1)) @ model.reduction.basis
 
     def acting(cycles, y, v, pressed):
         at = stacked_values(ratios.reshape(-1, *ratios.shape[2:]), cycles).reshape(rows.shape[:2])
@@ -173,8 +173,8 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
         """Displacements, their rates, cycles, overlaps and rates of overlap at phases of a step."""
         powers = (phases[:, None] - run.starts[step]) ** np.arange(coordinates.shape[0])
         slopes = np.arange(1, coordinates.shape[0])
-        q = powers @ coordinates @ model.reduced.basis.T
-        rate = omega * (powers[:, :-1] * slopes) @ coordinates[1:] @ model.reduced.basis.T
+        q = powers @ coordinates @ model.reduction.basis.T
+        rate = omega * (powers[:, :-1] * slopes) @ coordinates[1:] @ model.reduction.basis.T
         cycles = phases / TAU
         orders = np.arange(errors.shape[2])
         e = stacked_values(errors, cycles)

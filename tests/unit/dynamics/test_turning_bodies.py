@@ -43,7 +43,7 @@ ROTORS = {
 def test_a_rotor_let_go_whirls_as_the_closed_form_says(polar, damping, softening):
     rotor = Rocking(BODY, J, STIFFNESS, polar, (1e-3, 0.0), turning_damping=damping, softening=softening)
     model = build_model(machine_with(rotor))
-    basis, linear = model.reduced.basis, model.machine.linear
+    basis, linear = model.reduction.basis, model.machine.linear
     moved, rates = np.zeros((2, linear.size))
     moved[-2:], rates[-2:] = (1e-4, -2e-4), (0.3, 0.1)
     start = static_start(model)
@@ -91,7 +91,7 @@ def running(request):
 def test_transmission_error_shakes_a_turning_body_as_the_closed_form_says(running):
     machine, model, response = running
     assert (response.motion, response.period) == (Motion.PERIODIC, 1)
-    moving = response.coordinates @ model.reduced.basis.T
+    moving = response.coordinates @ model.reduction.basis.T
     moving -= moving.mean(axis=0)
     exact, _, _ = harmonic(machine)
     exact = np.real(exact * np.exp(2j * np.pi * response.phases[:, None]))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import facegear
 from facegear.errors import FacegearError
-from facegear.exchange.rexs import LOST, Shaft, Spur, Unit, read_rexs, write_rexs
+from facegear.exchange.rexs import LOST_CONTENT, Shaft, Spur, Unit, read_rexs, write_rexs
 from facegear.variants.gear_unit import gear_unit, known_of_rexs
 
 CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
@@ -81,7 +81,7 @@ def test_only_parts_and_units_of_rexs_are_written_and_every_reference_leads_some
 
 def test_what_is_lost_stands_in_the_file(machine):
     text = machine.read_text()
-    assert all(lost in text for lost in LOST)
+    assert all(lost in text for lost in LOST_CONTENT)
 
 
 @pytest.mark.parametrize(

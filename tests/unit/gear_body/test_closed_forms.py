@@ -20,7 +20,7 @@ UNIT = Material(1.0, 0.3)
 def test_free_ring_bends_in_its_plane_with_the_coriolis_and_stress_factors_of_a_thin_one():
     ring = gear_bodies.rectangular(0.99, 1.01, 0.02, UNIT, held=False, across=2)
     for n in (2, 3, 4):
-        modes = order_modes(ring, n, np.inf, expected=2)
+        modes = order_modes(ring, n, np.inf, expected_count=2)
         in_plane = (modes.shapes[2::3] ** 2).sum(axis=0) < 0.1 * (modes.shapes**2).sum(axis=0)
         mode = int(np.flatnonzero(in_plane)[0])
         agrees("gyroscopic factor", modes.gyroscopic_factors[mode], -2 * n / (n**2 + 1), absolute=4e-4)
@@ -67,7 +67,7 @@ def test_thin_disc_held_at_its_bore_is_a_kirchhoff_plate():
         load[rim] = 1.0
         for n in range(5):
             solve = held_solver(plate, n)
-            frequency = order_modes(plate, n, np.inf, solve, expected=0).frequencies[0]
+            frequency = order_modes(plate, n, np.inf, solve, expected_count=0).frequencies[0]
             each.append((2 * np.pi * frequency * np.sqrt(thickness), solve(load)[rim]))
         found.append(np.array(each).T)
     frequencies, compliances = 2 * found[1] - found[0]

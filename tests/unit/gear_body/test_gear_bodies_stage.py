@@ -14,7 +14,7 @@ from facegear.config.base import parse
 from facegear.config.gear_body import BodySection
 from facegear.config.load import load_config
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.tables import COUPLINGS, mode_table
 from facegear.results.gear_bodies import GearBodiesResult
@@ -116,12 +116,12 @@ def test_gears_alike_are_solved_once(monkeypatch):
     monkeypatch.setattr(stage, "solve_body", lambda *given: solved.append(given) or "body")
     one = parse(BodySection, DISC)
     other = one.model_copy(update={"density_kg_per_m3": 7800.0})
-    assert stage._solved({"lower": one, "upper": one}, FLEXIBLE.tooth_pair) == {
+    assert stage._solve_bodies({"lower": one, "upper": one}, FLEXIBLE.tooth_pair) == {
         "lower": "body",
         "upper": "body",
     }
     assert len(solved) == 1
-    stage._solved({"lower": one, "upper": other}, FLEXIBLE.tooth_pair)
+    stage._solve_bodies({"lower": one, "upper": other}, FLEXIBLE.tooth_pair)
     assert len(solved) == 3
 
 
@@ -143,7 +143,7 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
     common = parse(BodySection, DISC)
     fitted = common.model_copy(update={"teeth": "fitted"})
     bodies = {"lower": common, "upper": fitted}
-    said = stage._fitted(bodies, stage._solved(bodies, FLEXIBLE.tooth_pair))
+    said = stage._fitted_layers(bodies, stage._solve_bodies(bodies, FLEXIBLE.tooth_pair))
     assert said == "; upper: teeth fitted, 0.5237 of the ring, 0.0300 of E and 0.1000 of G round the axis"
     for section in bodies.values():
         varied_bodies._solve_body(section, FLEXIBLE.tooth_pair)

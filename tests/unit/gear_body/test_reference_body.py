@@ -169,7 +169,7 @@ def test_layer_of_teeth_lowers_the_frequencies_as_real_teeth_do():
     layer = Layer(0.250, 0.275, 0.012, 0.012 + 2.25 * 3.75e-3)
     section = replace(gear_bodies.section(), layer=layer)
     body = body_matrices(section, body_mesh(section))
-    found = [order_modes(body, order, np.inf, expected=1).frequencies[0] for order in (0, 2, 6)]
+    found = [order_modes(body, order, np.inf, expected_count=1).frequencies[0] for order in (0, 2, 6)]
     agrees("first frequency with teeth, Hz", found, [852.4, 651.1, 2632.6], relative=5e-3)
 
 

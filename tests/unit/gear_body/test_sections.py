@@ -146,11 +146,11 @@ def test_parameters_and_the_polygon_of_their_corners_are_one_body(tmp_path):
     polygon, wheel = body_shape(given, PAIR), body_shape(flat, PAIR)
     assert section_properties(polygon) == pytest.approx(section_properties(wheel), rel=1e-6)
     for shape in (polygon, wheel):
-        held = shape.edges[np.array(shape.held)]
+        held = shape.edges[np.array(shape.is_edge_held)]
         assert held.shape == (1, 2, 2) and held[..., 0] == pytest.approx(0.120)
     named = given.model_copy(update={"held_edges": (1,)})
     first = body_shape(named, PAIR)
-    held = np.sort(first.edges[np.array(first.held)][0], axis=0)
+    held = np.sort(first.edges[np.array(first.is_edge_held)][0], axis=0)
     assert held == pytest.approx(np.array([[0.12, 0.0], [0.14, 0.0]]))
 
 
@@ -161,7 +161,7 @@ def test_rim_alone_is_a_disc_or_ring_held_at_its_bore():
     mass, polar, *_ = section_properties(disc)
     assert mass == pytest.approx(7850 * np.pi * (0.275**2 - 0.1**2) * 0.012, rel=1e-12)
     assert polar == pytest.approx(0.5 * mass * (0.275**2 + 0.1**2), rel=1e-12)
-    assert disc.edges[np.array(disc.held)][0, :, 0] == pytest.approx(0.1)
+    assert disc.edges[np.array(disc.is_edge_held)][0, :, 0] == pytest.approx(0.1)
 
 
 def test_mesh_fills_the_section_with_quadrilaterals_and_follows_the_plane_below_the_teeth():

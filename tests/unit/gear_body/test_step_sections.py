@@ -71,7 +71,7 @@ def test_body_of_a_step_file_is_that_of_its_parameters(tmp_path, build):
     given = parse(BodySection, {"step": str(step(tmp_path / "gear.step", build))})
     shape = body_shape(given, PAIR)
     assert section_properties(shape) == pytest.approx(section_properties(SHAPE), rel=1e-9)
-    assert shape.held == SHAPE.held
+    assert shape.is_edge_held == SHAPE.is_edge_held
     same = body_shape(parse(BodySection, {"corners_mm": CORNERS.round(9).tolist()}), PAIR)
     drawn, typed = body_mesh(shape), body_mesh(same)
     assert np.array_equal(drawn.nodes, typed.nodes) and np.array_equal(drawn.quads, typed.quads)

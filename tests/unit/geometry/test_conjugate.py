@@ -11,7 +11,7 @@ from references import against, agrees
 from facegear.geometry.backlash import normal_backlash
 from facegear.geometry.conjugate import conjugate_contact, exact_contact
 from facegear.geometry.design import Relief
-from facegear.geometry.placement import mirrored
+from facegear.geometry.placement import mirror_design
 from facegear.geometry.unloaded import searched_contact, unloaded_contact
 
 POSES = {
@@ -42,7 +42,7 @@ def posed(pair):
 @pytest.mark.parametrize("pose", POSES)
 def test_a_displaced_pair_touches_where_the_published_numbers_have_it(posed, pose):
     design = posed(*pose)
-    flanks = [exact_contact(design), exact_contact(mirrored(design))]
+    flanks = [exact_contact(design), exact_contact(mirror_design(design))]
     errors = [1e6 * flank.transmission_error for flank in flanks]
     expected = np.array(POSES[pose])
     agrees("transmission error, um", [errors[0], -errors[1]], expected[:, 0], absolute=1e-9)

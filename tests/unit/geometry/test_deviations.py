@@ -14,7 +14,7 @@ from facegear.geometry.design import GearModifications, Relief
 from facegear.geometry.deviations import derivative, deviation
 from facegear.geometry.nominal import flank_face
 from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import conjugate_angle, mirrored, to_left_flank
+from facegear.geometry.placement import conjugate_angle, mirror_design, to_left_flank
 from facegear.geometry.separation import FLANK, separation
 from facegear.geometry.unloaded import unloaded_contact
 
@@ -149,7 +149,7 @@ def test_material_on_a_flank_sets_its_own_side_ahead_and_leaves_the_other(pair):
     thick = with_grid(design, "pinion", sampled(design, "pinion", constant(7 * UM)))
     thick = with_grid(thick, "face_gear", sampled(design, "face_gear", constant(3 * UM), (9, 9)), "left")
     plain = unloaded_contact(design, [0.03]).transmission_error
-    drive, back = (unloaded_contact(one, [0.03]).transmission_error for one in (thick, mirrored(thick)))
+    drive, back = (unloaded_contact(one, [0.03]).transmission_error for one in (thick, mirror_design(thick)))
     assert drive - plain == pytest.approx(10 * UM, abs=1e-9)
     assert back == pytest.approx(plain, abs=1e-12)
 

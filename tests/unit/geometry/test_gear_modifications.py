@@ -11,7 +11,7 @@ from facegear.geometry import face_gear, gear_modifications
 from facegear.geometry.curvature import opposite_curvatures
 from facegear.geometry.design import GearModifications, Relief
 from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import mirrored, to_left_flank
+from facegear.geometry.placement import mirror_design, to_left_flank
 from facegear.geometry.separation import FLANK, separation
 from facegear.geometry.unloaded import unloaded_contact
 
@@ -52,7 +52,7 @@ def test_rays_end_at_the_flank_that_is_displaced_along_its_normal(pair, kind):
     roll, psi = (angle.ravel() for angle in flank_grid(design))
     nominal, normal = face_gear.flank_point(design, roll, psi), face_gear.flank_normal(design, roll, psi)
     radius = np.hypot(nominal[:, 0], nominal[:, 1])
-    taken = gear_modifications.removed(design, radius, design.gear_tip_plane - nominal[:, 2])
+    taken = gear_modifications.removed_depth(design, radius, design.gear_tip_plane - nominal[:, 2])
     found = seen_from(design, nominal - taken[:, None] * normal, normal, 10 * UM)
     assert (found.part == FLANK).all()
     agrees("gap at 50 um, m", found.gap[0], 10 * UM, absolute=0.1 * UM)
@@ -86,7 +86,7 @@ def test_a_gear_that_nothing_is_taken_off_is_the_gear_itself_to_the_bit(pair):
 
 def test_both_flanks_are_modified_alike(pair):
     design = modified(pair(25), KINDS["bias"])
-    assert mirrored(design).face_gear == design.face_gear
+    assert mirror_design(design).face_gear == design.face_gear
 
 
 def test_crowned_flanks_are_curved_more_by_the_second_derivative_of_what_is_taken_off(pair):

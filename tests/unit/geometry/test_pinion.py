@@ -86,6 +86,8 @@ def test_root_relief_keeps_its_amount_into_the_fillet(pair):
     roll = start + np.array(
         [-0.05, 0.0, 0.5e-3 / design.pinion_base_radius, 2e-3 / design.pinion_base_radius]
     )
-    np.testing.assert_allclose(pinion.removed(relieved, roll, 0.262), [12e-6, 12e-6, 6e-6, 0.0], atol=1e-15)
+    np.testing.assert_allclose(
+        pinion.removed_depth(relieved, roll, 0.262), [12e-6, 12e-6, 6e-6, 0.0], atol=1e-15
+    )
     offset = fillet_points(design, 1.0, 0.262).position - fillet_points(relieved, 1.0, 0.262).position
     assert np.linalg.norm(offset) == pytest.approx(12e-6, rel=1e-9)

@@ -19,7 +19,7 @@ from facegear.geometry.design import (
 )
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.outline import pinion_outline
-from facegear.geometry.pinion import removed
+from facegear.geometry.pinion import removed_depth
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.geometry.validate import MAX_RELIEF, check
 from facegear.mesh.quality import scaled_jacobians
@@ -87,7 +87,7 @@ def test_an_accepted_crowning_takes_no_more_off_the_ends_of_the_face_than_the_la
         assert least > 1e3 * length
         design = changed(design, pinion__lead_crowning=Relief(amount, start, 1.001e-3 * least))
         check(design)
-    taken = removed(design, design.pinion_tip_roll, end)
+    taken = removed_depth(design, design.pinion_tip_roll, end)
     assert taken <= MAX_RELIEF * design.module * (1 + 1e-9)
 
 

@@ -15,18 +15,18 @@ def test_series_is_the_sum_of_its_sines_and_cosines():
 
 def test_shifted_series_is_the_series_delayed():
     t = np.linspace(0.0, 1.0, 11)
-    np.testing.assert_allclose(SERIES.shifted(0.37)(t), SERIES(t - 0.37), atol=1e-13)
+    np.testing.assert_allclose(SERIES.shift(0.37)(t), SERIES(t - 0.37), atol=1e-13)
 
 
 def test_mean_is_the_average_over_a_period_and_amplitudes_are_phase_free():
     t = np.arange(64) / 64
     assert SERIES(t).mean() == pytest.approx(SERIES.mean)
-    np.testing.assert_allclose(SERIES.shifted(0.2).amplitudes, SERIES.amplitudes)
+    np.testing.assert_allclose(SERIES.shift(0.2).amplitudes, SERIES.amplitudes)
 
 
 def test_kept_series_drops_the_higher_orders_only():
-    assert SERIES.kept(1).order == 1
-    np.testing.assert_array_equal(SERIES.kept(1).cosine, SERIES.cosine[:2])
+    assert SERIES.truncate(1).order == 1
+    np.testing.assert_array_equal(SERIES.truncate(1).cosine, SERIES.cosine[:2])
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from facegear.config.model import Config
 from facegear.config.stiffness import MeshStiffness, given_series
 from facegear.dynamics.response_tables import response_table
 from facegear.load_sharing import reference
-from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.load_sharing.collect import NOMINAL, collect_tables
 from facegear.load_sharing.groups import split_groups
 from facegear.load_sharing.reference import (
     REFERENCE_COLUMNS,
@@ -81,7 +81,7 @@ def chain(own):
     for columns, table in tables.items():
         assert tuple(table.columns) == columns
     groups = split_groups(machine.layout)
-    found = collected({(NOMINAL, NOMINAL): tables[SUMMARY_COLUMNS]})
+    found = collect_tables({(NOMINAL, NOMINAL): tables[SUMMARY_COLUMNS]})
     assert found["group"].to_list() == [group.name for group in groups]
     return sharing, found
 

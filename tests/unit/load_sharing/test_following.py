@@ -6,11 +6,11 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.dynamics.following import follow, slow_polynomials
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.load_sharing.following import running, running_table
 from facegear.load_sharing.hunting import hunting_cycle
+from facegear.load_sharing.running_machine import running, running_table
 from facegear.transmission.flanks import slow_errors
 from facegear.transmission.imperfections import Imperfections, Runout, perfect
 from facegear.transmission.layout import Role

@@ -140,7 +140,7 @@ def test_lost_contact_shows_where_a_coefficient_reaches_its_bound(paper_machine)
     sharing = load_sharing(paper_machine, 7500.0, SETTINGS, OPTIONS)
     inputs = sharing.groups[0]
     at_bound = inputs.coefficients == 2.0
-    np.testing.assert_array_equal(at_bound, inputs.lost & ~np.isnan(inputs.coefficients))
+    np.testing.assert_array_equal(at_bound, inputs.lost_contact & ~np.isnan(inputs.coefficients))
 
 
 @against(
@@ -221,7 +221,7 @@ def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_s
         for samples in (64, 4096)
     )
     for one, other in zip(few.groups, many.groups, strict=True):
-        assert one.average.half_width == 0.0 < one.average.lost
+        assert one.average.half_width == 0.0 < one.average.lost_fraction
         agrees("mean coefficient", one.average.mean, other.average.mean, absolute=1e-3)
         assert one.coefficients.shape[1] == 64
 

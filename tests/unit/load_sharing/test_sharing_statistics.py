@@ -13,13 +13,13 @@ def averaged(values, periodic=False):
 def test_undefined_instants_are_counted_and_not_averaged_in():
     found = averaged([[1.0, np.nan, 2.0, np.nan]])
     assert found.mean == 1.5
-    assert found.undefined == 0.5
+    assert found.undefined_fraction == 0.5
 
 
 def test_a_machine_without_any_load_has_no_coefficient():
     found = averaged(sharing_coefficient(np.zeros((3, 8, 2))))
     assert np.isnan(found.mean)
-    assert found.undefined == 1.0
+    assert found.undefined_fraction == 1.0
 
 
 def test_periodic_motion_has_an_exact_mean():

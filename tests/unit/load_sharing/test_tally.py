@@ -35,9 +35,9 @@ def test_one_pass_counts_what_the_definitions_say(seed, cycles, empty):
     assert found.open == (loads[shared] == 0.0).any(axis=0).mean()
     works_back = back.mean(axis=1) > drive.mean(axis=1)
     idle = np.where(works_back[:, None], drive, back)
-    assert found.reversed == pytest.approx((idle > 0.0).any(axis=0).mean())
+    assert found.reversed_fraction == pytest.approx((idle > 0.0).any(axis=0).mean())
 
 
 def test_without_groups_nothing_is_shared():
     found = tally(np.ones((20, 8)), 8, ())
-    assert found.coefficients.size == 0 and found.open == 0.0 and found.reversed == 1.0
+    assert found.coefficients.size == 0 and found.open == 0.0 and found.reversed_fraction == 1.0

@@ -20,7 +20,7 @@ def test_three_teeth_share_two_cuts(tooth):
 
 def test_full_ring_closes_without_duplicate_nodes(tooth):
     ring = sector(tooth, tooth.teeth)
-    assert ring.closed
+    assert ring.is_closed
     assert len(ring.nodes) == tooth.teeth * (len(tooth.nodes) - len(tooth.cut_left))
     places = np.round(ring.nodes / 1e-9)
     in_order = places[np.lexsort(places.T)]

@@ -8,12 +8,12 @@ from force_tables import power_table, two_pairs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.mesh_law.force_table import ForceTable, lagging
+from facegear.mesh_law.force_table import ForceTable, shift_tables
 from facegear.mesh_law.load_dependent import load_dependent_law
 from facegear.transmission.block_statics import Springs, settle_all
 
 AMOUNTS = np.append(np.linspace(0.0, 5.0, 83), [1e-6, 3e-5])
-LAW = load_dependent_law(lagging(2 * [power_table(12, 0.3)], [0.0, 0.2]))
+LAW = load_dependent_law(shift_tables(2 * [power_table(12, 0.3)], [0.0, 0.2]))
 
 
 def test_the_table_gives_forces_and_slopes_of_its_levels_back():
@@ -77,15 +77,15 @@ def test_compiled_statics_see_the_same_law():
 
 @given(st.floats(0.0, 1.0), st.floats(1e-9, 6.0), st.floats(-1.0, 1.0))
 def test_a_table_that_comes_later_or_runs_backwards_is_the_same_function_of_the_phase(cycle, amount, lag):
-    (table,) = lagging([two_pairs(9, 6, 1.5)], [0.1])
-    first, later = lagging(2 * [table], [0.0, lag])
+    (table,) = shift_tables([two_pairs(9, 6, 1.5)], [0.1])
+    first, later = shift_tables(2 * [table], [0.0, lag])
 
     def force(of: ForceTable, phase):
         return load_dependent_law([of]).force(np.array([phase]), np.array([[amount]]))[0, 0]
 
     assert force(first, cycle) == pytest.approx(force(table, cycle), abs=1e-11)
     assert force(later, cycle) == pytest.approx(force(table, cycle - lag), abs=1e-11)
-    assert force(table.mirrored(), cycle) == pytest.approx(force(table, -cycle), abs=1e-11)
+    assert force(table.mirror(), cycle) == pytest.approx(force(table, -cycle), abs=1e-11)
 
 
 @given(st.floats(0.0, 1.0), st.floats(-6.0, 6.0))
@@ -124,7 +124,7 @@ def test_a_table_without_any_force_has_no_harmonics_and_no_breaks():
 def test_contacts_are_evaluated_as_if_each_stood_alone():
     """Contacts are open throughout, in one piece, or in many: none changes the force of another one."""
     phases = np.linspace(0.0, 1.0, 40, endpoint=False)
-    tables = lagging(4 * [two_pairs(9, 6, 1.5)], [0.0, 0.2, 0.5, 0.7])
+    tables = shift_tables(4 * [two_pairs(9, 6, 1.5)], [0.0, 0.2, 0.5, 0.7])
     last = tables[0].levels[-1]
     beyond = np.zeros((2, 40, 4))
     beyond[..., 1] = 0.1 * tables[0].levels[1]

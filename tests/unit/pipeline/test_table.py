@@ -15,7 +15,7 @@ from facegear.config.load import load_config
 from facegear.config.machines import MachineInputs
 from facegear.pipeline.listing import listing
 from facegear.pipeline.needs import resolved_needs, stage_needs, stages_before
-from facegear.pipeline.reported import REPORTED, table_name
+from facegear.pipeline.reported import REPORT_TABLES, table_name
 from facegear.pipeline.stage import FIGURES, Case, load
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import reached_functions
@@ -93,8 +93,8 @@ def test_what_is_taken_from_a_stage_is_a_file_of_it_that_is_read_again_and_stand
         drawn = stage.figures.upstream if stage.figures else {}
         for source in (*stage.upstream.values(), *drawn.values()):
             file = STAGES[source.stage].files[source.file]
-            assert file.readable or file.each, (stage.name, source)
-            assert source.each or set(source.where) == set(STAGES[source.stage].wildcards)
+            assert file.readable or file.each_text, (stage.name, source)
+            assert source.each_wildcards or set(source.wildcards) == set(STAGES[source.stage].wildcards)
 
 
 def test_the_files_of_a_stage_lie_beside_its_manifest_and_hold_its_wildcards():
@@ -145,7 +145,7 @@ def test_the_page_shows_the_table_as_it_is():
 
 
 def test_the_report_is_given_every_table_that_its_chapters_read():
-    reported = [STAGES[stage].files[file] for stage, files in REPORTED.items() for file in files]
+    reported = [STAGES[stage].files[file] for stage, files in REPORT_TABLES.items() for file in files]
     stems = [table_name(file.path) for file in reported]
     assert len(set(stems)) == len(stems)
     sources = [path.read_text() for path in (ROOT / "facegear/report").glob("*.py")]

@@ -10,7 +10,7 @@ from matplotlib.text import Text
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
 from facegear.plots.campbell import campbell
 from facegear.plots.compare import curves_compared
-from facegear.plots.contact import closed, contact_pattern
+from facegear.plots.contact import close_pitch, contact_pattern
 from facegear.plots.draw_matplotlib import draw
 from facegear.plots.dynamics import drawn_machine
 from facegear.plots.load_sharing import sharing_figure
@@ -63,7 +63,7 @@ def test_a_contact_curve_ends_where_the_next_pitch_begins():
     )
     rows[list(SHARES)] = 0.0
     rows.loc[0, ["load_share_pair_0", "load_share_pair_p1"]] = [0.4, 0.6]
-    end = closed(rows).iloc[-1]
+    end = close_pitch(rows).iloc[-1]
     assert end["position"] == 1.0
     assert end["ste_um"] == 5.0
     assert end[["load_share_pair_m1", "load_share_pair_0"]].to_list() == [0.4, 0.6]
@@ -190,7 +190,7 @@ def test_every_pinion_has_a_panel_where_parts_or_torques_differ(singled, torque,
     pinions = [{"name": name, "role": role, "torque_n_m": own} for name, role, own in roles]
     singles = {"single_pinions": singled, "single_meshes": {}, "single_gears": {}}
     drawn = drawn_machine({"pinions": pinions, "face_gears": ["lower", "upper"], **singles}, 23)
-    assert drawn.shown == shown
+    assert drawn.pinions_shown == shown
 
 
 def test_the_legend_of_a_campbell_diagram_with_all_marks_lies_inside_it():

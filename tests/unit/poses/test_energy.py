@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.geometry.conjugate import contact_at
 from facegear.geometry.conjugate_slopes import conjugate_slopes
 from facegear.geometry.design import AssemblyErrors
 from facegear.mesh_law.force_table import ForceTable
 from facegear.poses.energy import mesh_energy
-from facegear.poses.fixed_point import operating_pose, pose_at, prepared
+from facegear.poses.fixed_point import operating_pose, pose_at, with_ideal_directions
 from facegear.poses.surface import STIFFNESS, Nodes, PoseSurface
 from facegear.poses.tables import scaled_load
 from facegear.transmission.elastic_gears import ElasticGears
@@ -60,12 +60,12 @@ def test_approach_and_reactions_are_the_derivatives_of_the_energy(surface, torqu
 
     def complementary(torque, path, angle):
         at = mesh_energy(surface, torque, path, angle)
-        return at.force * at.approach - at.stored
+        return at.force * at.approach - at.energy
 
     by_force = sixth_order(lambda d: complementary(torque + d, path, angle), 1e-3 * torque) * PINION_BASE
     assert by_force == pytest.approx(here.approach, rel=1e-8)
     by_path = sixth_order(lambda d: complementary(torque, path + d, angle), 2e-5)
-    assert by_path == pytest.approx(here.by_path, rel=1e-6, abs=1e-6 * here.stored / 1e-3)
+    assert by_path == pytest.approx(here.by_path, rel=1e-6, abs=1e-6 * here.energy / 1e-3)
     by_angle = sixth_order(lambda d: complementary(torque, path, angle + d), 2e-6)
     assert by_angle == pytest.approx(here.by_angle, rel=1e-6)
     law = sixth_order(lambda d: mesh_energy(surface, torque, path + d, angle).approach, 2e-5)
@@ -125,7 +125,7 @@ def bending_machine(places=None, sides=(Side.LOWER, Side.UPPER)):
 
 def model_of(machine, surface):
     """All coordinates at rest, with all slopes of rims that bend."""
-    return static(prepared(machine, surface)).linear
+    return static(with_ideal_directions(machine, surface)).linear
 
 
 def generalized_forces(machine, surface, displacements):
@@ -138,7 +138,7 @@ def generalized_forces(machine, surface, displacements):
         result = pose_at(machine, surface, at_rest)
         directions = result.machine.directions
         rows = replace(directions, slopes=np.zeros_like(directions.slopes))(model).rows[:meshes]
-        pressed = rows @ displacements + result.closing[:meshes]
+        pressed = rows @ displacements + result.flank_closure[:meshes]
         misses.append(np.log(machine.stiffness.mean * result.factor * pressed) - logs[-1])
         if len(logs) == 1:
             logs.append(logs[-1] + misses[-1])
@@ -148,7 +148,7 @@ def generalized_forces(machine, surface, displacements):
             step = logs[-1] - logs[-2]
             rise = np.where(step == 0.0, -1.0, (misses[-1] - misses[-2]) / np.where(step == 0.0, 1.0, step))
             logs.append(logs[-1] - misses[-1] / np.minimum(rise, -0.1))
-    return forces[0, :meshes] @ static(result.machine).linear.rows[:meshes], float(result.stored.sum())
+    return forces[0, :meshes] @ static(result.machine).linear.rows[:meshes], float(result.energy.sum())
 
 
 def random_motion(machine, model, seed):
@@ -201,7 +201,7 @@ def work_and_energy(machine, surface, first, last):
     def at(fraction):
         result = operating_pose(scaled_load(machine, fraction), surface)
         moved = mean_equilibrium(static(result.machine)).displacements[0]
-        return linear.loads @ moved, 0.5 * moved @ linear.stiffness @ moved + result.stored.sum()
+        return linear.loads @ moved, 0.5 * moved @ linear.stiffness @ moved + result.energy.sum()
 
     points, weights = np.polynomial.legendre.leggauss(4)
     # by parts: the integral of f L . dq is [f L . q] less the integral of L . q df

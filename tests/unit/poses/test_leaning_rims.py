@@ -15,7 +15,7 @@ from facegear.gear_body.compliance import flank_direction, mean_compliance, slop
 from facegear.gear_body.matrices import body_matrices
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.modes import held_solver, order_modes
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.poses.fixed_point import operating_pose
 from facegear.poses.surface import PoseSurface
@@ -159,7 +159,7 @@ def test_a_rim_whose_only_wave_is_a_tilt_has_the_poses_of_a_rigid_gear_that_tilt
             absolute=1e-6 * np.abs(expected).max(),
         )
     agrees("forces, N", bent.forces, rigid.forces, relative=1e-7)
-    agrees("energies, J", bent.stored, rigid.stored, relative=1e-7)
+    agrees("energies, J", bent.energy, rigid.energy, relative=1e-7)
 
 
 def test_modes_of_a_body_lean_its_rim_as_its_static_answer_does(surface):

@@ -13,12 +13,12 @@ from facegear.config.load import load_config
 from facegear.config.tooth_pair import pair_design
 from facegear.geometry.conjugate import conjugate_contact
 from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.placement import body_rotation, mirrored, pinion_to_gear
+from facegear.geometry.placement import body_rotation, mirror_design, pinion_to_gear
 from facegear.poses.exact_pose import body_motion, in_mesh_frame, pose_of
 from facegear.poses.mesh_poses import mesh_poses, pose_rows
 from facegear.transmission.layout import Role, Tilt
 from facegear.transmission.linear_model import LinearModel
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 from facegear.transmission.teeth import GEOMETRIC
 
 PITCHES = 143 * 30.0 / 360.0
@@ -105,7 +105,7 @@ def test_a_pose_of_two_moved_bodies_is_the_published_one(design, side):
     posed = replace(design, assembly=errors)
     turned = design.pinion_base_radius * pose.ahead + design.gear_base_radius * pose.behind
     drive = conjugate_contact(posed).transmission_error
-    back = -conjugate_contact(mirrored(posed)).transmission_error
+    back = -conjugate_contact(mirror_design(posed)).transmission_error
     computed = [1e6 * (error + turned) for error in (drive, back)]
     agrees("transmission errors, um", computed, published[4:], absolute=6e-7)
 

@@ -160,7 +160,7 @@ def test_what_the_exact_contact_closes_beyond_first_order_is_the_square_of_the_m
     offset = np.where(result.forces < 0.0, -result.poses.offset, result.poses.offset)
     across = offset * np.sin(angle) + result.poses.axial_shift * np.cos(angle)
     second = across**2 / (2.0 * pair.shaper_lift * np.sin(angle))
-    drive, back = np.split(result.closing, 2)
+    drive, back = np.split(result.flank_closure, 2)
     closing = np.where(result.forces < 0.0, back, drive)
     inputs = np.array([layout.pinions[i].role is Role.INPUT for i, _ in layout.meshes])
     assert closing[inputs].max() < 1e-7 and closing[~inputs].min() > 0.7e-6

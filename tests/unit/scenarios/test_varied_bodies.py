@@ -16,7 +16,7 @@ from facegear.config.model import resolved_values
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.quantities import quasi_static_quantities
 from facegear.results.chain import Chain

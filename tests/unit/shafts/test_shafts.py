@@ -9,7 +9,7 @@ from references import against, agrees
 from facegear.errors import InvalidInput
 from facegear.rigid_body import carry_motion
 from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, Shaft, condensed, deflections
+from facegear.shafts.condensed_shaft import Bearing, Shaft, condense_shaft, deflections
 
 STEEL = Elasticity(206e9, 0.3)
 THRUST = 1e8
@@ -33,10 +33,10 @@ def overhung():
     "analytic",
     "notes of the project, bodies.md 6: two bearings, pinion between them and overhung",
     capability="shafts",
-    module="facegear.shafts.condensed",
+    module="facegear.shafts.condensed_shaft",
 )
 def test_compliance_of_a_pinion_between_two_bearings_and_overhung_has_its_known_numbers():
-    inside, outside = condensed(between()), condensed(overhung())
+    inside, outside = condense_shaft(between()), condense_shaft(overhung())
     compliance, stiffness = inside.compliance, inside.stiffness
     digits = {"relative": 5e-7}
     agrees("deflection by force between, m/N", compliance[0, 0], 4.60795e-9, **digits)
@@ -89,7 +89,7 @@ def closed_form(length, reach, diameter, bore, first, second):
     "analytic",
     "a beam on two springs, bodies.md 6",
     capability="shafts",
-    module="facegear.shafts.condensed",
+    module="facegear.shafts.condensed_shaft",
 )
 @given(
     st.floats(0.05, 0.4),
@@ -103,7 +103,7 @@ def test_every_even_shaft_follows_the_closed_form(length, fraction, diameter, ho
     reach = fraction * length
     segments = (Segment(2.0 * length, diameter, hollow * diameter),)
     shaft = Shaft(segments, STEEL, (bearing(0.0, first, THRUST), bearing(length, second)), reach)
-    found = condensed(shaft).compliance
+    found = condense_shaft(shaft).compliance
     ff, fm, mm = closed_form(length, reach, diameter, hollow * diameter, first, second)
     size = np.sqrt(ff * mm)
     agrees("deflection by force, m/N", found[[0, 1], [0, 1]], ff, relative=1e-8)
@@ -112,9 +112,9 @@ def test_every_even_shaft_follows_the_closed_form(length, fraction, diameter, ho
 
 
 def test_cutting_a_shaft_into_elements_changes_nothing():
-    whole = condensed(between())
+    whole = condense_shaft(between())
     for pieces in (2, 3, 24):
-        cut = condensed(between(pieces))
+        cut = condense_shaft(between(pieces))
         size = np.sqrt(np.outer(whole.compliance.diagonal(), whole.compliance.diagonal()))
         assert (np.abs(cut.compliance - whole.compliance) < 1e-9 * size).all()
         np.testing.assert_allclose(cut.reactions, whole.reactions, atol=1e-8)
@@ -126,7 +126,7 @@ def test_a_stepped_shaft_approaches_the_cone_that_its_steps_inscribe():
     def steps(count):
         middles = (np.arange(count) + 0.5) / count
         segments = tuple(Segment(0.2 / count, 0.06 - 0.03 * float(at)) for at in middles)
-        return condensed(Shaft(segments, STEEL, (Bearing(0.0, 1e16 * np.eye(5)),), 0.2)).compliance[0, 0]
+        return condense_shaft(Shaft(segments, STEEL, (Bearing(0.0, 1e16 * np.eye(5)),), 0.2)).compliance[0, 0]
 
     z, weight = np.polynomial.legendre.leggauss(40)
     z, weight = 0.1 * (z + 1.0), 0.1 * weight
@@ -147,7 +147,7 @@ def test_forces_and_moments_of_all_bearings_balance_the_pinions_load(load, pinio
     segments = (Segment(0.1, 0.05, 0.02), Segment(0.08, 0.06), Segment(0.12, 0.04, 0.01))
     positions = (0.02, 0.3 * far)
     bearings = (Bearing(positions[0], matrix), bearing(positions[1], 2e8))
-    found = condensed(Shaft(segments, STEEL, bearings, pinion)).bearing_loads(np.array(load))
+    found = condense_shaft(Shaft(segments, STEEL, bearings, pinion)).bearing_loads(np.array(load))
     # A load at a distance along z is one at the pinion: virtual work with the rigid motions of the shaft.
     total = sum(carry_motion(at - pinion).T @ own for at, own in zip(positions, found, strict=True))
     np.testing.assert_allclose(total, load, atol=1e-8 * (1.0 + np.abs(load).max()))
@@ -157,7 +157,7 @@ def test_a_bearing_matrix_that_couples_all_motions_is_felt_in_all():
     coupled = np.diag([2e8, 2e8, 1e8, 1e5, 1e5]) + 0.0
     coupled[2, 4] = coupled[4, 2] = 1e6
     shaft = Shaft((Segment(0.12, 0.04),), STEEL, (Bearing(0.0, coupled), bearing(0.12, 2.5e8)), 0.05)
-    found = condensed(shaft)
+    found = condense_shaft(shaft)
     assert abs(found.compliance[0, 2]) > 1e-3 * found.compliance[0, 0]
     np.testing.assert_allclose(found.stiffness @ found.compliance, np.eye(5), atol=1e-7)
 
@@ -167,7 +167,7 @@ def test_a_stiff_shaft_leaves_its_bearings_alone():
     for factor in (1.0, 1e4):
         stiff = Elasticity(factor * STEEL.young, STEEL.poisson)
         own = between()
-        found = condensed(Shaft(own.segments, stiff, own.bearings, own.pinion)).compliance
+        found = condense_shaft(Shaft(own.segments, stiff, own.bearings, own.pinion)).compliance
         rigid = (7 / 12) ** 2 / 1.5e8 + (5 / 12) ** 2 / 2.5e8
         away.append(found[0, 0] / rigid - 1.0)
     assert away[0] > 0.1
@@ -190,7 +190,7 @@ def test_cowper_s_coefficient_of_a_thin_tube_and_of_a_solid_shaft():
             "position of a shaft's bearing = 0.2: must be on the shaft, from 0 to 0.1 m",
         ),
         (
-            lambda: condensed(Shaft((Segment(0.1, 0.04),), STEEL, (bearing(0.05, 1e8, 1e8),), 0.05)),
+            lambda: condense_shaft(Shaft((Segment(0.1, 0.04),), STEEL, (bearing(0.05, 1e8, 1e8),), 0.05)),
             "must be such that they hold it along its axis and against tilting",
         ),
     ],
@@ -203,7 +203,7 @@ def test_a_shaft_that_cannot_be_is_refused(change, line):
 @pytest.mark.parametrize("shaft", [between(), between(3), overhung()])
 def test_a_deflected_shaft_rests_on_its_springs_and_carries_its_pinion_where_that_stands(shaft):
     load = np.array([3000.0, -800.0, 200.0, 0.0, 40.0])
-    sits = condensed(shaft)
+    sits = condense_shaft(shaft)
     at = [bearing.position for bearing in shaft.bearings]
     springs = [bearing.stiffness for bearing in shaft.bearings]
     moved = deflections(shaft, np.array([*at, shaft.pinion])) @ load
@@ -216,7 +216,7 @@ def test_a_deflected_shaft_rests_on_its_springs_and_carries_its_pinion_where_tha
     "analytic",
     "rigid line beyond the last load",
     capability="shafts",
-    module="facegear.shafts.condensed",
+    module="facegear.shafts.condensed_shaft",
 )
 def test_beyond_its_last_load_a_shaft_is_straight():
     at = np.array([0.12, 0.13, 0.15])

@@ -5,8 +5,8 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.pipeline.run import machine_inputs
 from facegear.transmission.flanks import constant_errors, flank_gaps

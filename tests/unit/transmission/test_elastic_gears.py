@@ -11,7 +11,7 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.gear_body.excitation import phase_factors
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears, coordinates
 from facegear.transmission.layout import Side
@@ -230,9 +230,9 @@ def test_phases_of_the_pinions_let_forces_add_up_in_one_wave_and_cancel_in_anoth
 
 def test_mesh_behind_a_body_is_as_soft_at_every_instant_as_both_springs_in_series():
     series = Harmonics(np.array([0.0, 2e7, -6e6, *np.zeros(9)]), np.array([4.1e8, 3e7, 5e6, *np.zeros(9)]))
-    soft, cycles = series.softened(4e-10), np.linspace(0, 1, 7)
+    soft, cycles = series.add_compliance(4e-10), np.linspace(0, 1, 7)
     assert soft(cycles) == pytest.approx(1 / (1 / series(cycles) + 4e-10), rel=1e-9)
-    same = series.softened(0.0)
+    same = series.add_compliance(0.0)
     assert same.cosine == pytest.approx(series.cosine, abs=1.0) and same.sine == pytest.approx(
         series.sine, abs=1.0
     )

@@ -14,7 +14,7 @@ from gear_bodies import ANGLE, gearbox, mesh_forces
 from references import against, agrees
 
 from facegear.gear_body.compliance import flank_direction, influence
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.stages.gear_waves import _left_out
 from facegear.transmission.loaded_contacts import loaded_contacts
 from facegear.transmission.machine import FlankTables

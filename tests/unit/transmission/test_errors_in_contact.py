@@ -9,7 +9,7 @@ from lumped_machines import make_layout, make_machine
 from facegear.config.load import load_config
 from facegear.config.tooth_pair import pair_design
 from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.placement import mirrored
+from facegear.geometry.placement import mirror_design
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.transmission.flanks import constant_errors
 from facegear.transmission.imperfections import perfect
@@ -28,9 +28,9 @@ def design():
 def closed_by(design, **assembly):
     """How much further the flank pushes the gear on: (drive, back), m along the line of action."""
     ways = []
-    for pair in (design, mirrored(design)):
+    for pair in (design, mirror_design(design)):
         moved = replace(pair, assembly=AssemblyErrors(**assembly))
-        moved = mirrored(moved) if pair is not design else moved
+        moved = mirror_design(moved) if pair is not design else moved
         errors = [unloaded_contact(one, PHI).transmission_error[0] for one in (moved, pair)]
         ways.append(errors[0] - errors[1])
     return np.array(ways)

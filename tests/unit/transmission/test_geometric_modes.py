@@ -18,7 +18,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.loaded_contacts import forces_by_active_sets, loaded_contacts
 from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 from facegear.transmission.matrices import bearing_matrix, mass_diagonal
 from facegear.transmission.modal_tables import contact_table
 from facegear.transmission.mode_classes import ModeClass, name_modes
@@ -118,7 +118,7 @@ def test_inputs_float_along_one_line_and_idlers_along_none():
     assert multiplicities(printed) == [6, 1, 1, 2, 1, 5, 1, 1, 1, 1, 1, 1, 2, 1, 1, 1, 1]
     assert multiplicities(geometric) == [6, 1, 1, 1, 1, 2] + 16 * [1]
     classes = [name.mode_class for name in name_modes(LAYOUT, lumped_model(LAYOUT), geometric)]
-    coupled = [ModeClass.COUPLED]
+    coupled = [ModeClass.PINION_AND_GEAR]
     expected = 6 * [ModeClass.RIGID] + coupled + 2 * [ModeClass.PINION] + coupled + 2 * [ModeClass.PINION]
     assert classes == expected + 16 * coupled
 
@@ -232,7 +232,7 @@ def test_no_mode_of_a_pinion_in_its_clearance_hangs_on_the_last_digits_of_a_torq
         flaws = replace(machine.imperfections, position=place)
         near = replace(machine, torques=factor * machine.torques, imperfections=flaws)
         found.append(vibrating_machine(near))
-    firm = found[0].decided & found[1].decided
+    firm = found[0].is_decided & found[1].is_decided
     one, other = (modes.modes.frequencies[firm] for modes in found)
     np.testing.assert_allclose(one, other, rtol=1e-4, atol=1e-6)
     assert firm.all() or any(machine.contacts.any_undecided() for machine in found)
@@ -286,4 +286,4 @@ def test_a_contact_that_carries_next_to_nothing_is_undecided_and_so_are_the_mode
     found = vibrating_machine(make_machine(layout, 800.0, share))
     states = [str(one) for one in found.contacts.flank_states()]
     assert states == ["closed", "open", "open", state]
-    assert found.decided.all() == (state != "undecided")
+    assert found.is_decided.all() == (state != "undecided")

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import eigsh
 from facegear.gear_body.matrices import body_matrices, rigid_motions
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.modes import order_modes
-from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduced_body import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.section import inertia_about, section_properties
 from facegear.load_sharing import sensitivity
@@ -44,7 +44,7 @@ def matrices():
 @cache
 def body() -> ReducedBody:
     """Thirty modes of one nodal diameter and a few of none, without damping."""
-    orders = (order_modes(matrices(), 0, 6e3), order_modes(matrices(), 1, np.inf, expected=29))
+    orders = (order_modes(matrices(), 0, 6e3), order_modes(matrices(), 1, np.inf, expected_count=29))
     solved = SimpleNamespace(
         orders=orders,
         section=gear_bodies.section(),

@@ -7,7 +7,7 @@ from free_machines import natural_modes, rigid_rotation
 from lumped_machines import drive_rows
 from references import against, agrees
 
-from facegear.transmission.lumped import lumped_model
+from facegear.transmission.lumped_bodies import lumped_model
 from facegear.transmission.mode_classes import ModeClass, name_modes
 
 TABLE_2 = [0.0] * 6 + [756.7, 757.3, 757.9, 757.9, 833.5] + [1171.8] * 5
@@ -47,7 +47,7 @@ def test_the_papers_three_classes_come_out_of_the_shapes(paper):
     assert by_class[ModeClass.RIGID] == set(range(1, 7))
     assert by_class[ModeClass.PINION] == PINION_ORDERS
     assert by_class[ModeClass.GEAR] == GEAR_ORDERS
-    assert by_class[ModeClass.COUPLED] == COUPLED_ORDERS
+    assert by_class[ModeClass.PINION_AND_GEAR] == COUPLED_ORDERS
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.transmission.layout import Role, Side
-from facegear.transmission.ratings import body_table, mesh_table, rated
+from facegear.transmission.ratings import body_table, compute_ratings, mesh_table
 from facegear.transmission.teeth import GEOMETRIC
 
 ROLES = st.lists(st.sampled_from([Role.INPUT, Role.IDLER, Role.TAIL]), min_size=0, max_size=4)
@@ -31,7 +31,7 @@ def geometric(roles, sides, torque, tail_share):
 @given(ROLES, SIDES, st.floats(10.0, 5000.0), st.floats(0.0, 0.5), st.floats(100.0, 20000.0))
 def test_power_in_is_power_out_for_any_layout_of_geometric_meshes(more, sides, torque, tail_share, speed):
     machine = geometric([Role.INPUT, *more], sides, torque, tail_share)
-    found = rated(machine, speed)
+    found = compute_ratings(machine, speed)
     assert found.power_in > 0.0
     agrees("power out less power in over power in", found.imbalance, 0.0, absolute=1e-14)
     assert found.ratio == pytest.approx(found.pinion_speed / found.gear_speed, rel=1e-14) == 143 / 23
@@ -89,7 +89,7 @@ def test_equation_13_as_printed_misses_the_balance_by_the_ratio_of_its_lever_arm
     machine = make_machine(make_layout(), torque=1000.0, tail_share=0.0)
     layout = machine.layout
     expected = 1.0 - layout.gear_radius / layout.pinion_radius * 23 / 143
-    found = rated(machine, 5000.0)
+    found = compute_ratings(machine, 5000.0)
     agrees(
         "missing share of the power",
         (found.power_in - found.power_out) / found.power_in,

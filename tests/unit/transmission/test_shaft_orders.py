@@ -97,13 +97,13 @@ def test_a_runout_is_the_first_order_of_its_turn_alone(amplitude, phase):
 def test_turned_slowly_the_forces_are_those_of_the_equilibria():
     machine = machine_with(5e-6)
     orders, loaded = turn_orders(machine), loaded_machine(machine)
-    found = mesh_amplitudes(loaded.at_rest(orders), loaded.closed)
+    found = mesh_amplitudes(loaded.at_rest(orders), loaded.contact_mask)
     still = hunting_cycle(machine, SAMPLES)
     assert (still.loads > 0.0).all()
     for row in (0, 1, 4, np.flatnonzero(orders.order == 22)[0]):
         expected = spectrum(still.loads, orders.order[row], 23)
         agrees("force at an order, N", found[row], expected, relative=1e-6, absolute=1e-3)
-    slow = mesh_amplitudes(loaded.forces(orders, 0.1, 23), loaded.closed)
+    slow = mesh_amplitudes(loaded.forces(orders, 0.1, 23), loaded.contact_mask)
     np.testing.assert_allclose(slow, found, rtol=1e-4, atol=1e-3)
 
 
@@ -117,13 +117,13 @@ def test_running_the_forces_are_those_of_the_motion_followed_in_time():
     """While no flank parts and the mesh stiffness is constant."""
     machine, speed = machine_with(5e-6), 2500.0
     orders, loaded = turn_orders(machine), loaded_machine(machine)
-    found = mesh_amplitudes(loaded.forces(orders, speed, 23), loaded.closed)
+    found = mesh_amplitudes(loaded.forces(orders, speed, 23), loaded.contact_mask)
     run = follow(build_model(machine), speed, 0, 23, SAMPLES)
     assert run.memory < 1e-6
     drive, back = np.split(run.flank_forces, 2, axis=1)
     forces = np.maximum(drive, back)
     assert (forces > 0.0).all()
-    still = mesh_amplitudes(loaded.at_rest(orders), loaded.closed)
+    still = mesh_amplitudes(loaded.at_rest(orders), loaded.contact_mask)
     for order in (1, 2, 3, 5, 22, 24):
         row = int(np.flatnonzero(orders.order == order)[0])
         agrees("force at an order, N", found[row], spectrum(forces, order, 23), relative=0.01, absolute=0.5)

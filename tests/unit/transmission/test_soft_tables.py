@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from facegear.mesh_law.force_table import ForceTable
 from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
-from facegear.transmission.soft_tables import softened
+from facegear.transmission.soft_tables import soften_table
 
 ONE_WAVE = power_table(16, 0.2, first=0.05)
 SMOOTH = ForceTable(
@@ -22,7 +22,7 @@ COMPLIANCES = (0.01, 0.2, 2.0, 10.0)
 
 @cache
 def behind(table: ForceTable, compliance: float) -> LoadDependentLaw:
-    return load_dependent_law([softened(table, compliance)])
+    return load_dependent_law([soften_table(table, compliance)])
 
 
 @pytest.mark.parametrize(("table", "accuracy"), [(SMOOTH, 5e-4), (PAIRS, 5e-4)])
@@ -41,7 +41,7 @@ def test_force_behind_a_spring_stands_where_teeth_and_spring_have_given_way(
 
 def test_spring_makes_every_slope_softer_than_itself_and_keeps_forces_rising():
     for table in (SMOOTH, PAIRS):
-        soft = softened(table, 0.5)
+        soft = soften_table(table, 0.5)
         assert soft.levels.size == 2 * table.levels.size - 1 and not soft.forces[0].any()
         assert soft.steepest < min(1.0 / 0.5, table.steepest) and soft.min_slope >= table.min_slope
-        assert softened(table, 0.0) is table
+        assert soften_table(table, 0.0) is table

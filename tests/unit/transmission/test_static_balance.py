@@ -17,7 +17,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Layout, Role, Side
 from facegear.transmission.matrices import bearing_matrix, flank_jacobian
-from facegear.transmission.printed import PRINTED
+from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 from facegear.transmission.statics import mean_equilibrium, static_bearing_forces, static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -122,7 +122,7 @@ def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
     module="facegear.transmission.statics",
 )
 @settings(max_examples=10, deadline=None)
-@given(coupled_machines(PRINTED, backlash=0.0))
+@given(coupled_machines(PRINTED_KINEMATICS, backlash=0.0))
 def test_printed_statics_with_coupled_bearings_are_the_linear_solution(machine):
     directions = drive_rows(machine.layout)
     applied = np.zeros(28)

@@ -104,7 +104,7 @@ def test_phases_are_the_fractions_of_the_pitch_with_half_a_turn_for_the_lower_ge
     layout = layout_of()
     geometric = mesh_phases(layout, PhaseConvention.GEOMETRIC)
     np.testing.assert_allclose(geometric, [0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 0.5])
-    printed = mesh_phases(layout, PhaseConvention.PRINTED)
+    printed = mesh_phases(layout, PhaseConvention.AS_PRINTED)
     np.testing.assert_allclose(printed, [0.5, 0.5, 0.5, 0.5, 0.5, 0.0, 0.5, 0.5, 0.5, 0.5])
 
 

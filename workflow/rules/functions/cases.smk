@@ -23,11 +23,11 @@ def asked_case(stage, name):
 
 def files_read(source, name, reader=None):
     """Files of an earlier stage that an argument of a reader is read from, for a case; a list if several."""
-    stage, several = STAGES[source.stage], source.each or STAGES[source.stage].files[source.file].each
-    file, case = stage.files[source.file], asked_case(reader, name)
-    texts = [{"each": text} for text in file.each(BASE)] if file.each else [{}]
+    file, case = STAGES[source.stage].files[source.file], asked_case(reader, name)
+    several = source.each_wildcards or file.each_text
+    texts = [{"each": text} for text in file.each_text(BASE)] if file.each_text else [{}]
     found = []
-    for place in source.places(case) if source.wanted(case) else []:
+    for place in source.file_wildcards(case) if source.is_needed(case) else []:
         place = {"case": name, **place}
         shared_by = sources(source.stage)[place["case"]]
         found += [f"results/{shared_by}/{file.at({**place, **text})}" for text in texts]

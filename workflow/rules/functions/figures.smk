@@ -1,7 +1,7 @@
 DRAWN = [
     stage
     for stage in STAGES.values()
-    if stage.figures and stage.asked and stage.asked(BASE) and stage.figures.named(BASE)
+    if stage.figures and stage.condition and stage.condition(BASE) and stage.figures.figure_names(BASE)
 ]
 """Stages that the config asks for and of which there is something to draw."""
 CHAPTERS = {
@@ -29,7 +29,7 @@ def drawn_needs(stages):
 
 def drawn_names(stages):
     """Names of the figures of some stages."""
-    return [name for stage in stages for name in stage.figures.named(BASE)]
+    return [name for stage in stages for name in stage.figures.figure_names(BASE)]
 
 
 def shown(name, chapter):

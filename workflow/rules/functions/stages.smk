@@ -31,8 +31,8 @@ def outputs(stage, case="{case}"):
     """Paths of a stage's files by name, its manifest among them; a list where it writes several of a kind."""
     files = {
         name: (
-            [f"results/{case}/{file.at({'each': each})}" for each in file.each(BASE)]
-            if file.each
+            [f"results/{case}/{file.at({'each': each})}" for each in file.each_text(BASE)]
+            if file.each_text
             else f"results/{case}/{file.path}"
         )
         for name, file in stage.files.items()

@@ -1,5 +1,5 @@
 from facegear.pipeline import asked, studies
-from facegear.pipeline.reported import REPORTED
+from facegear.pipeline.reported import REPORT_TABLES
 
 
 def files_of(rule, case):
@@ -9,7 +9,7 @@ def files_of(rule, case):
 
 def targets(case):
     """All files of a case but its report: only what its config asks for."""
-    made = [stage for stage in STAGES.values() if stage.asked and stage.asked(case_of(case))]
+    made = [stage for stage in STAGES.values() if stage.condition and stage.condition(case_of(case))]
     names = [stage.name for stage in made]
     names += [
         f"{chapter}{FIGURES}" for chapter, stages in CHAPTERS.items() if any(one in made for one in stages)
@@ -21,7 +21,7 @@ def targets(case):
 def report_tables(wildcards):
     """Tables that the report of a case reads."""
     case = case_of(wildcards.case)
-    wanted = [(name, file) for name, files in REPORTED.items() for file in files]
+    wanted = [(name, file) for name, files in REPORT_TABLES.items() for file in files]
     tables = [path for one in wanted for path in where_made(*one)(wildcards)]
     tables += [shared("duty_loads", "duty_loads")(wildcards)] if asked.machine_loads(case) else []
     return tables + (files_of(rules.scorecard, wildcards.case)[:1] if REPRODUCTION else [])
@@ -52,7 +52,7 @@ def where_made(stage, file):
     """Function of the wildcards giving a file of a stage, none where a case does not ask for it."""
 
     def files(wildcards):
-        made = STAGES[stage].asked(case_of(wildcards.case))
+        made = STAGES[stage].condition(case_of(wildcards.case))
         return [shared(stage, file)(wildcards)] if made else []
 
     return files

@@ -12,11 +12,11 @@ from facegear.config.machines import MachineInputs
 from facegear.dynamics.branches.continuation import ContinuationSettings
 from facegear.dynamics.branches.explore import explore, lies_on
 from facegear.dynamics.branches.family import Family, speed_family
-from facegear.dynamics.branches.margins import several, stability_limits, stable_at
+from facegear.dynamics.branches.margins import coexistence_ranges, stability_limits, stable_at
+from facegear.dynamics.branches.motion_arrays import special_arrays
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.stored import special_arrays
 from facegear.dynamics.branches.survey import survey
 from facegear.dynamics.branches.tables import end_table
 from facegear.dynamics.motion import Settings, State
@@ -39,7 +39,7 @@ def two_sided():
 def oscillator_survey():
     period_map, u = two_sided(), float(np.log(0.4))
     state = State(np.array([1.674260831215]), np.array([0.364887573423]))
-    start = at_parameter(period_map, period_map.weighted(state, u), u)
+    start = at_parameter(period_map, period_map.to_weighted(state, u), u)
     return period_map, survey((period_map, start), [], RANGE, 2, 9)
 
 
@@ -56,7 +56,7 @@ def test_an_image_is_marked_and_its_special_points_are_not_counted_twice():
     _, found = oscillator_survey()
     assert [branch.image_of for branch in found.branches] == [None, None, 1]
     assert end_table(found.branches)["image_of"].tolist() == ["", "", "1"]
-    ((low, high, numbers),) = several(found.branches)
+    ((low, high, numbers),) = coexistence_ranges(found.branches)
     assert (low, high) == (0.3, pytest.approx(0.348540186191, rel=1e-8))
     assert numbers == (1, 2)
     assert set(special_arrays(found.branches)["number"]) <= {0, 1}
@@ -65,7 +65,7 @@ def test_an_image_is_marked_and_its_special_points_are_not_counted_twice():
 def test_images_have_the_margins_of_their_original():
     period_map, found = oscillator_survey()
     limits = stability_limits(found.branches, [(period_map.family, 0.33, RANGE)], 0.33)
-    by_branch = {n: [(one.direction, one.reached) for one in limits if one.branch == n] for n in (1, 2)}
+    by_branch = {n: [(one.direction, one.end_value) for one in limits if one.branch == n] for n in (1, 2)}
     assert by_branch[1] == by_branch[2]
     assert by_branch[1]
 
@@ -81,7 +81,7 @@ def machine_survey():
     period_map = PeriodMap(speed_family(model), 1, 1e-7)
     u = float(np.log(9400.0))
     response = simulate(model, 9400.0, Settings(tolerance=1e-7))
-    start = at_parameter(period_map, period_map.weighted(response.state, u), u)
+    start = at_parameter(period_map, period_map.to_weighted(response.state, u), u)
     motions = [(period_map, motion.point, "starts") for motion in motions_of_starts(model, period_map, 8, 2)]
     run = ContinuationSettings(9400.0, 9500.0)
     return model, period_map, survey((period_map, start), motions, run, 1, 9)
@@ -89,7 +89,7 @@ def machine_survey():
 
 def motions_of_starts(model, period_map, count, seed):
     """Motions of one mesh period at 9450 rpm on which random starts end."""
-    rest = period_map.weighted(static_start(model), float(np.log(9450.0)))
+    rest = period_map.to_weighted(static_start(model), float(np.log(9450.0)))
     aside = np.random.default_rng(seed).uniform(-0.3, 0.3, size=(count, rest.size))
     motions = explore(period_map, 9450.0, rest + aside, QUICK)
     return [motion for motion in motions if motion.point is not None and motion.period == 1]

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from oscillators import backlash_oscillator
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, follow, turned
+from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, follow, reverse_tangent
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.switching import doubled
+from facegear.dynamics.branches.switching import doubled_branch
 
 WIDE = ContinuationSettings(0.25, 2.8)
 
@@ -33,7 +33,9 @@ def assert_same_points(branch, other):
 
 def doubled_from_both_ends(parent, run):
     """Pairs of one branch of twice the period, from the doublings at both its ends."""
-    children = [(special, doubled(parent.period_map, special, run)) for special in parent.of(Kind.DOUBLING)]
+    children = [
+        (special, doubled_branch(parent.period_map, special, run)) for special in parent.of(Kind.DOUBLING)
+    ]
     return [
         (first, second)
         for number, (_, first) in enumerate(children)
@@ -61,7 +63,7 @@ def test_a_graze_beside_the_doubling_that_a_branch_begins_at_is_found():
 
 def test_period_four_branches_have_the_same_points_from_both_doublings():
     parent = oscillator_branch(0.05, 0.1, 1.0, WIDE)
-    twice = doubled(parent.period_map, parent.of(Kind.DOUBLING)[0], WIDE)
+    twice = doubled_branch(parent.period_map, parent.of(Kind.DOUBLING)[0], WIDE)
     pairs = doubled_from_both_ends(twice, WIDE)
     assert pairs
     for first, second in pairs:
@@ -71,6 +73,8 @@ def test_period_four_branches_have_the_same_points_from_both_doublings():
 @pytest.mark.parametrize("largest", [1.2, 0.05])
 def test_a_branch_has_the_same_points_backwards_with_other_steps(largest):
     branch = oscillator_branch(0.037, 0.171, 1.48, WIDE)
-    back = follow(branch.period_map, turned(branch.points[-1]), replace(WIDE, ds_max=largest), both=False)
+    back = follow(
+        branch.period_map, reverse_tangent(branch.points[-1]), replace(WIDE, ds_max=largest), both_ways=False
+    )
     assert len(branch.of(Kind.GRAZE)) >= 1
     assert_same_points(branch, back)

@@ -13,7 +13,7 @@ from facegear.dynamics.branches.continuation import (
     BranchEnd,
     ContinuationSettings,
     follow,
-    turned,
+    reverse_tangent,
 )
 from facegear.dynamics.branches.explore import crossings, distance
 from facegear.dynamics.branches.family import Family, speed_family
@@ -39,7 +39,9 @@ def listed(branch: Branch):
 def assert_same_from_the_other_end(branch: Branch, run: ContinuationSettings):
     """Assert equal special points by another way along the branch, and no turning round on either."""
     assert branch.ends == (BranchEnd.LIMIT, BranchEnd.LIMIT)
-    back = follow(branch.period_map, turned(branch.points[-1]), replace(run, ds_max=0.11), both=False)
+    back = follow(
+        branch.period_map, reverse_tangent(branch.points[-1]), replace(run, ds_max=0.11), both_ways=False
+    )
     assert back.ends[1] is BranchEnd.LIMIT
     assert back.points[-1].value == pytest.approx(branch.points[0].value, rel=1e-12)
     there, again = sorted(listed(branch)), sorted(listed(back))
@@ -169,5 +171,5 @@ def test_a_machine_whose_meshes_damp_nothing_gives_one_list_from_both_ends():
     period_map = PeriodMap(speed_family(model), 1, 1e-9)
     state = simulate(model, 5000.0, Settings(tolerance=1e-7)).state
     run = ContinuationSettings(4900.0, 5200.0)
-    branch = branch_at(period_map, period_map.weighted(state, float(np.log(5000.0))), 5000.0, run)
+    branch = branch_at(period_map, period_map.to_weighted(state, float(np.log(5000.0))), 5000.0, run)
     assert_same_from_the_other_end(branch, run)

@@ -17,13 +17,13 @@ from facegear.dynamics.branches.continuation import (
     BranchEnd,
     ContinuationSettings,
     follow,
-    turned,
+    reverse_tangent,
 )
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.switching import broken, doubled
+from facegear.dynamics.branches.switching import doubled_branch, symmetry_broken_branch
 from facegear.dynamics.motion import State
 
 WIDE = ContinuationSettings(0.5, 2.2)
@@ -49,7 +49,9 @@ def two_sided():
 
 def orbit(period_map, speed, place, velocity):
     u = float(np.log(speed))
-    return at_parameter(period_map, period_map.weighted(State(np.array([place]), np.array([velocity])), u), u)
+    return at_parameter(
+        period_map, period_map.to_weighted(State(np.array([place]), np.array([velocity])), u), u
+    )
 
 
 def state_of(period_map, point):
@@ -150,7 +152,7 @@ def test_oracle_b_has_its_folds_and_doublings():
 @pytest.mark.parametrize("start", [0, 1])
 def test_period_two_curve_of_oracle_b_joins_both_doublings(start):
     parent = branch_a(0.1)
-    branch = doubled(parent.period_map, parent.of(Kind.DOUBLING)[start], WIDE)
+    branch = doubled_branch(parent.period_map, parent.of(Kind.DOUBLING)[start], WIDE)
     assert branch.ends == (BranchEnd.DOUBLING, BranchEnd.DOUBLING)
     agrees(
         "ends of the period-two branch",
@@ -248,7 +250,7 @@ def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
         absolute=1e-8,
     )
     assert abs(special.point.tangent[-1]) > 0.1
-    aside = broken(period_map, special, ContinuationSettings(0.345, 0.6))
+    aside = symmetry_broken_branch(period_map, special, ContinuationSettings(0.345, 0.6))
     point = aside.points[-1]
     deepest, shallowest = point.extrema[0][0][0], point.extrema[0][1][0]
     assert abs(deepest + shallowest) > 1e-3
@@ -333,7 +335,7 @@ def test_a_brief_loss_of_contact_at_resonance_is_met_by_long_steps():
 def test_same_points_with_other_steps_from_either_end(largest):
     period_map = backlash()
     expected = branch_a()
-    start = turned(orbit(period_map, 2.2, *state_of(period_map, expected.points[-1])))
+    start = reverse_tangent(orbit(period_map, 2.2, *state_of(period_map, expected.points[-1])))
     branch = follow(period_map, start, ContinuationSettings(0.25, 2.6, ds_max=largest, first=0.005))
     again = [(s.kind, pytest.approx(s.point.value, rel=1e-9)) for s in branch.specials[::-1]]
     assert [(s.kind, s.point.value) for s in expected.specials] == again

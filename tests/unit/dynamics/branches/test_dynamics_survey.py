@@ -11,16 +11,16 @@ from oscillators import backlash_oscillator
 from references import against, agrees
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, follow, turned
+from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, follow, reverse_tangent
 from facegear.dynamics.branches.explore import crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
-from facegear.dynamics.branches.margins import passed_by, several, stability_limits
+from facegear.dynamics.branches.margins import coexistence_ranges, passed_by, stability_limits
 from facegear.dynamics.branches.operating_tables import jump_table
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter, without_neutral
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.survey import survey
-from facegear.dynamics.branches.swept import Swept
+from facegear.dynamics.branches.sweep_orbits import SweptMotion
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 
@@ -67,7 +67,7 @@ def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
     motions = [(period_map.over(one.period), one.point, "starts") for one in found]
     seen = survey((period_map, start), motions, WIDE, 2, 9)
     assert len(seen.branches) == 1
-    ((low, high, numbers),) = several(seen.branches)
+    ((low, high, numbers),) = coexistence_ranges(seen.branches)
     agrees("range of speeds with two motions", (low, high), (0.708031618722, 0.828463984388), relative=1e-8)
     assert numbers == (0, 0)
     assert len(crossings(seen.branches[0], 0.75)) == 3
@@ -87,7 +87,7 @@ def test_margins_are_the_distances_to_the_folds():
     period_map = oscillator()
     branch = branch_at(period_map, np.array([1.1, 0.0]), 0.3, WIDE)
     found = stability_limits([branch], [(period_map.family, 0.75, WIDE)], 0.75)
-    reached = {(loss.direction, round(loss.reached, 6)) for loss in found if loss.special}
+    reached = {(loss.direction, round(loss.end_value, 6)) for loss in found if loss.special}
     assert reached == {("up", 0.828464), ("down", 0.708032)}
     assert all(loss.special is None or loss.special.kind is Kind.FOLD for loss in found)
 
@@ -105,7 +105,7 @@ def test_a_jump_from_a_motion_that_has_not_settled_is_named_by_the_sweeps_last_p
     branch = branch_at(oscillator(), np.array([1.1, 0.0]), 0.3, WIDE)
     columns = ["direction", "speed_before_rpm", "speed_after_rpm", "class_before"]
     jumps = pd.DataFrame([("up", 0.828, 0.829, "not settled")], columns=columns)
-    last = Swept("up", 0.8275, "period-1", 1, None, np.nan)
+    last = SweptMotion("up", 0.8275, "period-1", 1, None, np.nan)
     named = jump_table(jumps, [last], [branch], 1e-3, 1e-3)
     assert named["kind"][0] == "fold"
     assert named["speed_rpm"][0] == pytest.approx(0.828463984388, rel=1e-9)
@@ -122,7 +122,7 @@ def machine_branch():
     model = build_model(make_machine(torque=1300.0))
     period_map = PeriodMap(speed_family(model), 1, 1e-9)
     response = simulate(model, 5000.0, Settings(tolerance=1e-7))
-    start = at_parameter(period_map, period_map.weighted(response.state, np.log(5000.0)), np.log(5000.0))
+    start = at_parameter(period_map, period_map.to_weighted(response.state, np.log(5000.0)), np.log(5000.0))
     return model, period_map, follow(period_map, start, ContinuationSettings(5000.0, 9000.0))
 
 
@@ -174,7 +174,7 @@ def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine
     _, period_map, branch = machine_branch
     run = ContinuationSettings(5000.0, 9000.0)
     run = replace(run, first=factor * run.first, ds_max=factor * run.ds_max)
-    back = follow(period_map, turned(branch.points[-1]), run, both=False)
+    back = follow(period_map, reverse_tangent(branch.points[-1]), run, both_ways=False)
     assert (branch.ends, back.ends[1]) == ((BranchEnd.LIMIT, BranchEnd.LIMIT), BranchEnd.LIMIT)
     first, second = without_ripples(*listed(branch)), without_ripples(*listed(back))
     assert first[0] == second[0]
@@ -193,7 +193,7 @@ def test_machine_has_the_same_points_at_other_tolerances(machine_branch, toleran
     _, period_map, branch = machine_branch
     other = replace(period_map, tolerance=tolerance, memory={})
     start = at_parameter(other, branch.points[0].z, branch.points[0].u)
-    again = follow(other, start, ContinuationSettings(5000.0, 9000.0), both=False)
+    again = follow(other, start, ContinuationSettings(5000.0, 9000.0), both_ways=False)
     first, second = listed(branch), listed(again)
     assert first[0] == second[0]
     agrees("speed of a special point, rpm", first[1], second[1], relative=4e-7)
@@ -216,7 +216,10 @@ def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machi
     fold = branch.of(Kind.FOLD)[0]
     point = at_parameter(twice, 2 * crossings(branch, fold.point.value * 0.999)[0].z, fold.point.u - 1e-3)
     again = follow(
-        twice, point, ContinuationSettings(fold.point.value * 0.998, fold.point.value * 1.001), both=False
+        twice,
+        point,
+        ContinuationSettings(fold.point.value * 0.998, fold.point.value * 1.001),
+        both_ways=False,
     )
     agrees(
         "speed of a fold of the machine, rpm",

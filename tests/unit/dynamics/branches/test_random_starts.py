@@ -17,12 +17,12 @@ SPEED = 6200.0
 def in_basis(model, turn):
     """Return the same model in other coordinates: those of its basis times `turn` (n, n)."""
     reduced = replace(
-        model.reduced,
-        basis=model.reduced.basis @ turn,
-        mesh_jacobian=model.reduced.mesh_jacobian @ turn,
-        load=model.reduced.load @ turn,
+        model.reduction,
+        basis=model.reduction.basis @ turn,
+        mesh_jacobian=model.reduction.mesh_jacobian @ turn,
+        load=model.reduction.load @ turn,
     )
-    return replace(model, reduced=reduced, system=machine_system(model.machine, reduced))
+    return replace(model, reduction=reduced, system=machine_system(model.machine, reduced))
 
 
 def turned_within_groups(omega_squared):
@@ -45,12 +45,12 @@ def test_starts_do_not_depend_on_the_basis_that_the_processor_gives_the_modes(mo
 
     monkeypatch.setattr(machine, "explore", places)
     model = build_model(make_machine())
-    turn = turned_within_groups(model.reduced.omega_squared)
+    turn = turned_within_groups(model.reduction.omega_squared)
     assert np.abs(turn - np.diag(np.diagonal(turn))).max() > 0.1
     other = in_basis(model, turn)
     for one in (model, other):
         random_starts(one, branch_plan(None, SPEED), SPEED)
-    first, second = (np.array(q) @ one.reduced.basis.T for q, one in zip(seen, (model, other), strict=True))
+    first, second = (np.array(q) @ one.reduction.basis.T for q, one in zip(seen, (model, other), strict=True))
     for i in range(2):
         assert np.abs(first[:, i]).max() > 0.0
         assert np.abs(second[:, i] - first[:, i]).max() < 1e-12 * np.abs(first[:, i]).max()
@@ -61,7 +61,7 @@ def test_starts_fill_a_box_of_displacements_and_of_rotations_at_the_mesh_radius(
     box.
     """
     model = build_model(make_machine())
-    linear, basis = model.machine.linear, model.reduced.basis
+    linear, basis = model.machine.linear, model.reduction.basis
     found = scattered(model, 2e-5, 4000, 1) @ basis.T
     inside = linear.momentum(basis) @ basis.T
     expected = (2e-5) ** 2 / 3.0 * (inside.T / linear.lengths**2 @ inside)

@@ -1,6 +1,6 @@
-"""Chunks of a sweep as named arrays and back: the one writer and reader of their files.
+"""Store chunks of a sweep as named arrays: the one writer and reader of their files.
 
-Files hold finite numbers; where a number may not exist (NaN) an array `..._known` says where it does.
+Files hold finite numbers. Where a number may not exist (NaN) an array `..._known` says where it does.
 """
 
 import numpy as np
@@ -16,6 +16,7 @@ MAY_LACK = (
     "first_look_period",
     "second_look_period",
 )
+"""Fields of a piece that may be NaN."""
 PER_SPEED = (
     "speeds",
     "motion",
@@ -26,23 +27,37 @@ PER_SPEED = (
     "modal_order",
     *MAY_LACK,
 )
+"""Fields of a piece with one value for each speed."""
 DIMENSIONS = {
     **dict.fromkeys(NAMES, 2),
     **{name: 3 for name in NAMES if name.startswith("translation_")},
     **dict.fromkeys(PER_SPEED, 1),
     "spectrum": 3,
 }
+"""Number of dimensions of each field."""
 _PER_PART: dict[str, tuple[int | None, ...]] = {
     **{name: (None,) * DIMENSIONS[name] for name in NAMES},
     **{f"{name}_known": (None,) for name in MAY_LACK},
 }
 SHAPES = {f"{part}_{name}": shape for part in ("before", "own") for name, shape in _PER_PART.items()}
+"""Arrays of a file with their shapes; None is any length."""
 
 
-def to_arrays(before: Piece, own: Piece) -> dict[str, AnyArray]:
-    """Arrays of a chunk's overlap and own speeds."""
+def to_arrays(before: Piece, own_piece: Piece) -> dict[str, AnyArray]:
+    """Return a chunk as arrays.
+
+    Parameters
+    ----------
+    before, own_piece : Piece
+        Results at the overlap and at the own speeds.
+
+    Returns
+    -------
+    dict
+        Arrays with the names and shapes of SHAPES, such as (speeds, meshes).
+    """
     arrays: dict[str, AnyArray] = {}
-    for part, piece in (("before", before), ("own", own)):
+    for part, piece in (("before", before), ("own", own_piece)):
         arrays |= {f"{part}_{name}": getattr(piece, name) for name in NAMES}
         for name in MAY_LACK:
             values = getattr(piece, name)
@@ -52,7 +67,18 @@ def to_arrays(before: Piece, own: Piece) -> dict[str, AnyArray]:
 
 
 def from_arrays(arrays: Arrays) -> tuple[Piece, Piece]:
-    """Overlap and own speeds of a stored chunk."""
+    """Return the chunk that to_arrays() has stored.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays of SHAPES.
+
+    Returns
+    -------
+    tuple of Piece
+        Results at the overlap and at the own speeds.
+    """
     pieces = []
     for part in ("before", "own"):
         values = {name: arrays[f"{part}_{name}"] for name in NAMES}

@@ -18,19 +18,34 @@ def lumped_model(
     damping: tuple[float, float] = (0.0, 0.0),
     clearance: Array | None = None,
 ) -> LinearModel:
-    """The linear part of a layout; what is left out is zero.
+    """Return the linear part of a layout; what is left out is zero.
 
-    torques (bodies,), N m; forces (bodies, 3), N; damping: of the masses (1/s) and of the bearings (s);
-    clearance (pinions,): radial clearance of the bearings, m.
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    torques : (bodies,) array or None
+        Torques on the bodies, N m.
+    forces : (bodies, 3) array or None
+        Forces on the bodies along x, y, z, N.
+    damping : tuple[float, float]
+        Factors of the masses (1/s) and of the bearings (s).
+    clearance : (pinions,) array or None
+        Radial clearance of the bearings, m.
+
+    Returns
+    -------
+    LinearModel
+        SI units.
     """
     alone = _alone(layout)
-    turning, pushing = np.zeros((2, layout.dof))
+    turning, external_forces = np.zeros((2, layout.dof))
     turning[layout.spins] = 0.0 if torques is None else torques
-    pushing[alone.translations] = 0.0 if forces is None else forces
+    external_forces[alone.translations] = 0.0 if forces is None else forces
     return replace(
         alone,
         torques=turning,
-        forces=pushing,
+        forces=external_forces,
         mass_damping=damping[0],
         bearing_damping=damping[1],
         rings=_rings(layout, np.zeros(len(layout.pinions)) if clearance is None else clearance),
@@ -39,15 +54,15 @@ def lumped_model(
 
 @lru_cache(maxsize=16)
 def _alone(layout: Layout) -> LinearModel:
-    """Without loads, damping and clearance: what all machines of a layout have in common, shared by them."""
-    nothing = np.zeros(layout.dof)
+    """Return the model without loads, damping and clearance, which all machines of a layout share."""
+    zeros = np.zeros(layout.dof)
     return LinearModel(
         labels=layout.dof_names,
         mass=np.diag(mass_diagonal(layout)),
         stiffness=bearing_matrix(layout),
         rows=flank_jacobian(layout),
-        torques=nothing,
-        forces=nothing,
+        torques=zeros,
+        forces=zeros,
         lengths=_lengths(layout),
         translations=DOF_PER_BODY * np.arange(len(layout.bodies))[:, None] + np.arange(3),
         mass_damping=0.0,
@@ -63,7 +78,7 @@ def _rings(layout: Layout, clearance: Array) -> Rings:
 
 
 def _lengths(layout: Layout) -> Array:
-    """Turns count at the mesh, tilts at the mesh radius."""
+    """Return the length of a unit of each coordinate: turns count at the mesh, tilts at the mesh radius."""
     lengths = np.ones(layout.dof)
     radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
     lengths[layout.spins] = radii

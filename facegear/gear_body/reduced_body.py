@@ -1,4 +1,4 @@
-"""A gear body by its modes alone: what a machine takes of it."""
+"""Gear body reduced to its modes, as a machine uses it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -72,8 +72,19 @@ class ReducedBody:
         """`slope` of every mode, (m,), 1/m."""
         return np.broadcast_to(self.slope, self.order.shape)
 
-    def joined(self, length: float) -> Array:
-        """Static compliance of W_p, V_p and `length` (m) times the slope, (orders, 3, 3), m/N."""
+    def compliance_with_slope(self, length: float) -> Array:
+        """Return the static compliance of W_p, V_p and `length` times the slope.
+
+        Parameters
+        ----------
+        length : float
+            Factor on the slope, m.
+
+        Returns
+        -------
+        (orders, 3, 3) array
+            m/N.
+        """
         whole = np.zeros((len(self.static), 3, 3))
         whole[:, :2, :2] = self.static
         leaning = np.broadcast_to(self.leaning, (len(self.static), 3)) * np.array([1.0, 1.0, length])
@@ -83,33 +94,62 @@ class ReducedBody:
     @property
     def modal(self) -> Array:
         """The part of `static` that the modes hold, (orders, 2, 2), m/N."""
-        held = np.zeros((max(len(self.static), 1 + self.order.max(initial=0)), 2, 2))
-        given = self.mesh / (2.0 * np.pi * self.frequency)
-        np.add.at(held, self.order, np.einsum("im,jm->mij", given, given))
-        return held[: len(self.static)]
+        compliances = np.zeros((max(len(self.static), 1 + self.order.max(initial=0)), 2, 2))
+        scaled_motions = self.mesh / (2.0 * np.pi * self.frequency)
+        np.add.at(compliances, self.order, np.einsum("im,jm->mij", scaled_motions, scaled_motions))
+        return compliances[: len(self.static)]
 
     @property
     def residual(self) -> Array:
-        """What the static compliance below a mesh has beyond the modes, (orders, 2, 2), m/N."""
+        """Residual compliance: the static compliance below a mesh beyond the modes, (orders, 2, 2), m/N."""
         return self.static - self.modal
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, AnyArray], gear: str) -> Self:
-        """From what `arrays` gave for a gear."""
-        return cls(**{own.name: arrays[f"{gear}_{own.name}"] for own in fields(cls)})
-
-    def arrays(self, gear: str) -> dict[str, AnyArray]:
-        """All of it by names that begin with the gear's."""
-        return {f"{gear}_{own.name}": getattr(self, own.name) for own in fields(self)}
-
-    def residual_of_flanks(self, directions: Array) -> Array:
-        """Return the compliance (f, f) between flanks of one mesh that the modes leave out, m/N.
+        """Read the body of a gear from the arrays that `arrays` gave.
 
         Parameters
         ----------
-        directions : (f, 2)
-            Axial and tangential part of a unit force on each flank.
+        arrays : Mapping[str, AnyArray]
+            Arrays (...) by name, SI units.
+        gear : str
+            Name of the gear.
+
+        Returns
+        -------
+        Self
+            SI units.
+        """
+        return cls(**{entry.name: arrays[f"{gear}_{entry.name}"] for entry in fields(cls)})
+
+    def arrays(self, gear: str) -> dict[str, AnyArray]:
+        """Return all fields as arrays.
+
+        Parameters
+        ----------
+        gear : str
+            Name of the gear, with which the names of the arrays begin.
+
+        Returns
+        -------
+        dict of str to array of any shape (...)
+            SI units.
+        """
+        return {f"{gear}_{entry.name}": getattr(self, entry.name) for entry in fields(self)}
+
+    def residual_of_flanks(self, directions: Array) -> Array:
+        """Return the compliance between flanks of one mesh that the modes leave out.
 
         Motions along the axis and round it are a quarter wave apart, so that they do not mix.
+
+        Parameters
+        ----------
+        directions : (f, 2) array
+            Axial and tangential part of a unit force on each flank, dimensionless.
+
+        Returns
+        -------
+        (f, f) array
+            m/N.
         """
         return np.asarray((directions * np.diagonal(self.residual.sum(axis=0))) @ directions.T)

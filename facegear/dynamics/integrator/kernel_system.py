@@ -1,4 +1,4 @@
-"""A system as the kernels take it (facegear/_kernels/src/motion/system.hpp), and at one mesh frequency."""
+"""Convert a system for the kernels (facegear/_kernels/src/motion/system.hpp), also at one mesh frequency."""
 
 from functools import cache, lru_cache
 from typing import Any
@@ -13,10 +13,26 @@ from facegear.dynamics.integrator.system import System
 
 TAU = 2.0 * np.pi
 MIN_CLEARANCE = 1e-12
+"""Clearance, over the length scale, up to which it is rounding."""
 
 
 def pack(system: System, frequency: float, tolerance: float) -> motion.Machine:
-    """A system at an angular mesh frequency w in rad/s, whose steps are held to a tolerance."""
+    """Convert a system at one mesh frequency for the kernels.
+
+    Parameters
+    ----------
+    system : System
+        Equations of motion.
+    frequency : float
+        Angular mesh frequency, rad/s.
+    tolerance : float
+        Local error of a step over the length scale, dimensionless.
+
+    Returns
+    -------
+    motion.Machine
+        The system at this frequency.
+    """
     return motion.machine(packed_system(system), frequency, tolerance, fastest(system, frequency))
 
 
@@ -194,6 +210,6 @@ def _fastest(system: System) -> tuple[float, float]:
 
 
 @kept_by_content(8)
-def _largest_root(own: Array, rows: Array, factors: Array) -> float:
+def _largest_root(diagonal: Array, rows: Array, factors: Array) -> float:
     """Largest eigenvalue of diag(own (n,)) + rows^T diag(factors (m,)) rows, rows (m, n)."""
-    return float(np.linalg.eigvalsh(np.diag(own) + (rows.T * factors) @ rows)[-1])
+    return float(np.linalg.eigvalsh(np.diag(diagonal) + (rows.T * factors) @ rows)[-1])

@@ -1,4 +1,4 @@
-"""e(t) of the pair itself: its transmission error without load, with assembly errors and reliefs."""
+"""Transmission error e(t) of the pair itself without load, with assembly errors and reliefs."""
 
 import numpy as np
 import pandas as pd
@@ -12,23 +12,46 @@ ROUNDING_UM = 1e-4
 
 
 def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
-    """Fourier series (m) of the contact table's unloaded_ste_um up to `order`, and what the cut misses (m).
+    """Return the Fourier series of the contact table's unloaded_ste_um, and its cut error.
 
     Positive where the drive flank comes late. The mean is taken off: it turns the pinions, and what it does
     to the backlash stands in that of the pair as assembled. An error that is constant is exactly zero.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table of the contact analysis.
+    order : int
+        Last order of the series.
+
+    Returns
+    -------
+    tuple of Harmonics and float
+        Series in m, and the largest error of the cut, m.
     """
     samples = unloaded_samples(ltca)
     if np.ptp(samples) <= ROUNDING_UM:
         return Harmonics(np.zeros(order + 1), np.zeros(order + 1)), 0.0
     fit = fit_harmonics(1e-6 * (samples - samples.mean()))
-    series = fit.series.kept(order)
+    series = fit.series.truncate(order)
     cosine = series.cosine.copy()
     cosine[0] = 0.0
     return Harmonics(series.sine, cosine), float(fit.truncation[order])
 
 
 def unloaded_samples(ltca: pd.DataFrame) -> Array:
-    """Unloaded transmission error (p,) um of a contact table at its positions, rising."""
+    """Return the unloaded transmission error of a contact table at its positions, rising.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table of the contact analysis.
+
+    Returns
+    -------
+    (p,) array
+        um.
+    """
     torque, position, error = (
         ltca[name].to_numpy(float) for name in ("torque_n_m", "position", "unloaded_ste_um")
     )
@@ -37,6 +60,17 @@ def unloaded_samples(ltca: pd.DataFrame) -> Array:
 
 
 def peak_to_peak(series: Harmonics) -> float:
-    """Of a series over a period, m."""
+    """Return the peak-to-peak value of a series over a period.
+
+    Parameters
+    ----------
+    series : Harmonics
+        The series, m.
+
+    Returns
+    -------
+    float
+        m.
+    """
     points = np.linspace(0.0, 1.0, 64 * (series.order + 1), endpoint=False)
     return float(np.ptp(series(points)))

@@ -14,9 +14,11 @@ from facegear.transmission.layout import DOF_PER_BODY, Layout
 
 
 @dataclass(frozen=True)
-class Printed:
-    """Both flanks of a mesh share one line of action; any radii are multiplied by the cosine of the pressure
-    angle, and the angles of the pinions know no sense of rotation.
+class PrintedKinematics:
+    """Kinematics of equation (13): both flanks of a mesh share one line of action.
+
+    Any radii are multiplied by the cosine of the pressure angle, and the angles of the pinions know no sense
+    of rotation.
     """
 
     name: str = "printed"
@@ -24,22 +26,79 @@ class Printed:
     follows_rotation: bool = False
 
     def require(self, layout: Layout) -> None:
-        """Any radii will do."""
+        """Accept any radii.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout to check.
+        """
 
     def arm(self, radius: float, pressure_angle: float) -> float:
-        """The radius times the cosine of the pressure angle."""
+        """Return the torque over the mesh force that balances it: the radius times the cosine of the pressure
+        angle.
+
+        Parameters
+        ----------
+        radius : float
+            Radius that a layout gives to a body, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
         return radius * float(np.cos(pressure_angle))
 
     def mesh_radius(self, layout: Layout) -> float:
-        """The given radius of the face gear."""
+        """Return the given radius of the face gear.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        float
+            m.
+        """
         return layout.gear_radius
 
     def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
-        """The radius at which forces act along the base radius."""
+        """Return the radius at which forces act along the base radius.
+
+        Parameters
+        ----------
+        base_radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
         return float(base_radius / np.cos(pressure_angle))
 
     def flank_rows(self, layout: Layout) -> Array:
-        """Drive flanks as equation (13) has them; back flanks are the same, pulled."""
+        """Return the derivative of the flanks' deflections by the DOF.
+
+        Drive flanks are as equation (13) has them; back flanks are their negative.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        (2 meshes, dof) array
+            Drive flanks first; m/m, and m/rad for rotations.
+        """
         cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
         angles = layout.angles
         rows = np.zeros((len(layout.meshes), layout.dof))
@@ -55,4 +114,5 @@ class Printed:
         return np.concatenate([rows, -rows])
 
 
-PRINTED = Printed()
+PRINTED_KINEMATICS = PrintedKinematics()
+"""The only object of its class."""

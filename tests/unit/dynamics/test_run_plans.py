@@ -1,15 +1,15 @@
-"""A course that asks for stretches of a motion comes to the same by itself and beside others."""
+"""A run plan returns the same by itself and beside others."""
 
 import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.courses import alone, side_by_side
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.run_plans import alone, side_by_side
 from facegear.dynamics.side_by_side import FEWEST, WIDTH, _in_lanes
 from facegear.dynamics.steady_state.settle import settle, settling
-from facegear.dynamics.stretch import Stretch
+from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
 
 SETTINGS = Settings(tolerance=1e-10, periodic_residual=1e-9)
@@ -34,10 +34,10 @@ def test_runs_settle_beside_others_where_each_settles_alone():
 
 
 def asking(integrator, start, periods):
-    """A course of stretches of one period each; what fails ends it with the number of those run before."""
+    """A run plan of runs of one period each; a failure ends it with the number of runs before it."""
     for number in range(periods):
         try:
-            start = (yield Stretch(integrator, start, 1)).state
+            start = (yield RunRequest(integrator, start, 1)).state
         except NotConverged:
             return number
         if number == 1:
@@ -45,18 +45,18 @@ def asking(integrator, start, periods):
     return start
 
 
-def test_a_stretch_that_fails_fails_in_its_own_course():
+def test_a_run_that_fails_fails_in_its_own_plan():
     found, starts = oscillators()
     ended = side_by_side([asking(one, start, 2) for one, start in zip(found[1:], starts[1:], strict=True)])
     assert all(np.isnan(state).all() for state in ended)
-    courses = [asking(found[0], starts[0], 3), *(settling(one, starts[0], SETTINGS) for one in found[1:])]
-    failed, *settled = side_by_side(courses)
+    plans = [asking(found[0], starts[0], 3), *(settling(one, starts[0], SETTINGS) for one in found[1:])]
+    failed, *settled = side_by_side(plans)
     assert failed == 2
     assert all(each.period for each in settled)
     assert alone(asking(found[0], starts[0], 3)) == 2
 
 
-def test_what_a_course_does_not_catch_is_raised():
+def test_what_a_plan_does_not_catch_is_raised():
     found, starts = oscillators()
     beyond = [starts[0] * np.nan, *starts[1:]]
     with pytest.raises(NotConverged, match="beyond all bounds"):

@@ -1,4 +1,4 @@
-"""Motions found by random starts as arrays, so that a stage that was stopped goes on from them."""
+"""Store motions found by random starts as arrays, so that a stage that was stopped continues from them."""
 
 from collections.abc import Sequence
 
@@ -19,10 +19,24 @@ SHAPES = {
     "has_orbit": (None,),
     "state": (None, None),
 }
+"""Arrays of the motions at one speed, with their shapes; None is any length."""
 
 
 def to_arrays(speed_rpm: float, motions: Sequence[SettledMotion]) -> dict[str, AnyArray]:
-    """Arrays of SHAPES."""
+    """Return the motions at one speed as arrays.
+
+    Parameters
+    ----------
+    speed_rpm : float
+        Pinion speed, rpm.
+    motions : sequence of SettledMotion
+        Motions found at it.
+
+    Returns
+    -------
+    dict
+        Arrays with the names and shapes of SHAPES, such as (motions,).
+    """
     return {
         "speed_rpm": np.array(speed_rpm),
         "label": np.array([motion.label for motion in motions]),
@@ -34,7 +48,27 @@ def to_arrays(speed_rpm: float, motions: Sequence[SettledMotion]) -> dict[str, A
 
 
 def from_arrays(period_map: PeriodMap, arrays: Arrays) -> tuple[float, list[SettledMotion]]:
-    """Speed and motions of to_arrays(). Raises NotConverged if an orbit is not found again."""
+    """Return the motions that to_arrays() has stored, with their orbits solved for again.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    arrays : Arrays
+        Arrays of SHAPES.
+
+    Returns
+    -------
+    float
+        Pinion speed, rpm.
+    list of SettledMotion
+        Motions found at it.
+
+    Raises
+    ------
+    NotConverged
+        If an orbit is not found again.
+    """
     speed = float(arrays["speed_rpm"])
     counts = arrays["count"].astype(int)
     motions = []
@@ -51,23 +85,51 @@ def from_arrays(period_map: PeriodMap, arrays: Arrays) -> tuple[float, list[Sett
 
 
 SPECIAL_SHAPES = {"kind": (None,), "period": (None,), "x": (None, None), "number": (None,)}
+"""Arrays of special points, with their shapes; None is any length."""
 LOCUS_KINDS = (Kind.FOLD, Kind.DOUBLING)
+"""Kinds of special points of which loci are followed; stored as their index."""
 
 
 def special_arrays(branches: Sequence[Branch]) -> dict[str, AnyArray]:
-    """Folds and period doublings as arrays of SPECIAL_SHAPES; images, which have the same, are left out."""
-    located = [(b, n, s) for n, b in enumerate(branches) if b.image_of is None for s in b.of(*LOCUS_KINDS)]
+    """Return the folds and period doublings of branches as arrays; images, which have the same, are left out.
+
+    Parameters
+    ----------
+    branches : sequence of Branch
+        Branches followed.
+
+    Returns
+    -------
+    dict
+        Arrays with the names and shapes of SPECIAL_SHAPES, such as (points,).
+    """
+    special_list = [
+        (b, n, s) for n, b in enumerate(branches) if b.image_of is None for s in b.of(*LOCUS_KINDS)
+    ]
     size = branches[0].points[0].x.size
     return {
-        "kind": np.array([LOCUS_KINDS.index(special.kind) for _, _, special in located], dtype=int),
-        "period": np.array([branch.period_map.period for branch, _, _ in located], dtype=int),
-        "number": np.array([number for _, number, _ in located], dtype=int),
-        "x": np.array([special.point.x for _, _, special in located]).reshape(-1, size),
+        "kind": np.array([LOCUS_KINDS.index(special.kind) for _, _, special in special_list], dtype=int),
+        "period": np.array([branch.period_map.period for branch, _, _ in special_list], dtype=int),
+        "number": np.array([number for _, number, _ in special_list], dtype=int),
+        "x": np.array([special.point.x for _, _, special in special_list]).reshape(-1, size),
     }
 
 
 def special_points(period_map: PeriodMap, arrays: Arrays) -> list[tuple[PeriodMap, Kind, Array]]:
-    """Map, kind and x of the special points of special_arrays()."""
+    """Return the special points that special_arrays() has stored.
+
+    Parameters
+    ----------
+    period_map : PeriodMap
+        Map over whole mesh periods.
+    arrays : Arrays
+        Arrays of SPECIAL_SHAPES.
+
+    Returns
+    -------
+    list of tuple
+        Period map, kind and x (2 n + 1,) of each special point, dimensionless.
+    """
     return [
         (period_map.over(int(period)), LOCUS_KINDS[int(kind)], x)
         for kind, period, x in zip(arrays["kind"], arrays["period"], arrays["x"], strict=True)

@@ -1,4 +1,4 @@
-"""The pairs whose drive flanks the carrying flanks of a machine at its pose are."""
+"""Pairs of gears whose drive flanks are the loaded flanks of a machine at its pose."""
 
 from dataclasses import dataclass, replace
 
@@ -9,8 +9,8 @@ from facegear.geometry.design import PairDesign
 from facegear.geometry.flank_errors import FLANKS, GEARS, pair_at
 from facegear.poses.fixed_point import OperatingPose
 
-SAME = 1e-9
-"""Errors (m, rad) that differ by less are the same."""
+ERROR_TOLERANCE = 1e-9
+"""Difference of errors (m, rad) below which they count as the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,9 +22,9 @@ class CarryingPairs:
     designs
         Each pair, its assembly that of the pose.
     torques
-        What each carries on the pinion, N m; 0 where none does.
+        Torque of each on the pinion, N m; 0 where it carries none.
     numbers : (m,)
-        Which of them the carrying flank of each mesh is, the drive flank where none carries.
+        Index of the pair of the carrying flank of each mesh, of the drive flank where none carries.
     """
 
     designs: list[PairDesign]
@@ -33,19 +33,32 @@ class CarryingPairs:
 
 
 def carrying_pairs(result: OperatingPose, design: PairDesign) -> CarryingPairs:
-    """Of a converged pose and the design as assembled."""
+    """Return the different pairs of a machine at a converged pose.
+
+    Parameters
+    ----------
+    result : OperatingPose
+        Converged pose.
+    design : PairDesign
+        Design as assembled.
+
+    Returns
+    -------
+    CarryingPairs
+        Torques in N m.
+    """
     designs: list[PairDesign] = []
     torques: list[float] = []
-    known: dict[tuple[object, ...], int] = {}
+    number_of_key: dict[tuple[object, ...], int] = {}
     numbers = []
     for mesh, force in enumerate(result.forces.tolist()):
         back, torque = force < 0.0, float(result.torque[mesh])
         errors = result.poses.errors(mesh, back)
         parts = (errors.offset, errors.shaft_angle_error, errors.axial_shift)
-        key = (back, *(round(part / SAME) for part in parts), f"{torque:.9g}")
-        if key not in known:
-            known[key] = len(designs)
+        key = (back, *(round(part / ERROR_TOLERANCE) for part in parts), f"{torque:.9g}")
+        if key not in number_of_key:
+            number_of_key[key] = len(designs)
             designs.append(replace(pair_at(design, GEARS[0], FLANKS[back]), assembly=errors))
             torques.append(torque)
-        numbers.append(known[key])
+        numbers.append(number_of_key[key])
     return CarryingPairs(designs, torques, np.array(numbers))

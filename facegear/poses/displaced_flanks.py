@@ -1,4 +1,4 @@
-"""Unloaded contact of a pair whose two bodies stand displaced: where its flanks meet, and how far they close.
+"""Unloaded contact of a pair with displaced bodies: where its flanks meet, and how far they close.
 
 The pinion's displacement is given in the machine's frame at the pinion: x along the tangent as the upper
 gear's teeth move, y along the gears' axis towards the upper gear, z outwards along the pinion. The gear's
@@ -14,7 +14,7 @@ from facegear.arrays import Array
 from facegear.geometry.conjugate import PairNumbers, exact_contact
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.flank_errors import FLANKS, errors_at
-from facegear.geometry.placement import RigidMotion, mirrored, pinion_angle
+from facegear.geometry.placement import RigidMotion, mirror_design, pinion_angle
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.poses.exact_pose import Pose, assembled_motion, body_motion, in_mesh_frame, pose_of
 
@@ -94,7 +94,7 @@ class DisplacedFlank:
     to_outer_end: float
 
     @property
-    def closing(self) -> float:
+    def closure(self) -> float:
         """The part of `approach` beyond the first order."""
         return self.approach - self.deflection
 
@@ -106,30 +106,44 @@ def displaced_flanks(
 
     Parameters
     ----------
-    design
+    design : PairDesign
         Pair as assembled.
-    mesh
+    mesh : MeshPlace
         Where the mesh is in its machine.
-    pinion, gear
-        Displacements of both bodies, of any size for which flanks face each other.
-    position
+    pinion : Displacement
+        Displacement of the pinion, of any size for which flanks face each other.
+    gear : Displacement
+        Displacement of the gear, of any such size.
+    position : float
         Place of a pitch (0 to 1) at which flanks with modifications are searched; the others have the same
-        contact everywhere.
+        contact everywhere. Dimensionless.
 
-    Raises NotConverged where the flanks do not face each other.
+    Returns
+    -------
+    dict of str to DisplacedFlank
+        By names of FLANKS, m and rad.
+
+    Raises
+    ------
+    NotConverged
+        If the flanks do not face each other.
     """
-    moved = _motions(design, mesh, pinion, gear)
+    motions = _motions(design, mesh, pinion, gear)
     nominal = errors_at(design.assembly, mesh.gear, FLANKS[0])
-    built = assembled_motion(nominal, design.mean_radius)
-    whole = RigidMotion(moved[0].matrix @ built.matrix, moved[0].points(built.shift[None])[0])
-    pose = pose_of(whole, moved[1], design.mean_radius)
-    contacts = [_contact(_seen(design, pose.errors, flank), pose, flank, position) for flank in FLANKS]
+    assembled_pinion = assembled_motion(nominal, design.mean_radius)
+    whole = RigidMotion(
+        motions[0].matrix @ assembled_pinion.matrix, motions[0].points(assembled_pinion.shift[None])[0]
+    )
+    pose = pose_of(whole, motions[1], design.mean_radius)
+    contacts = [
+        _contact(_pair_of_flank(design, pose.errors, flank), pose, flank, position) for flank in FLANKS
+    ]
     still = Pose(nominal, 0.0, 0.0, 0.0)
-    rest = [_contact(_seen(design, nominal, flank), still, flank, position)[0] for flank in FLANKS]
+    rest = [_contact(_pair_of_flank(design, nominal, flank), still, flank, position)[0] for flank in FLANKS]
     ends = PairNumbers.of_design(design)
     return {
         flank: DisplacedFlank(
-            design=_seen(design, pose.errors, flank),
+            design=_pair_of_flank(design, pose.errors, flank),
             outward=pose.outward,
             path=path,
             slope=slope,
@@ -143,30 +157,32 @@ def displaced_flanks(
     }
 
 
-def _seen(design: PairDesign, errors: AssemblyErrors, flank: str) -> PairDesign:
+def _pair_of_flank(design: PairDesign, errors: AssemblyErrors, flank: str) -> PairDesign:
     """Return the pair whose drive flank a flank is, by the errors that the drive flank meets."""
-    posed = replace(design, assembly=errors)
-    return posed if flank == FLANKS[0] else mirrored(posed)
+    design_at_pose = replace(design, assembly=errors)
+    return design_at_pose if flank == FLANKS[0] else mirror_design(design_at_pose)
 
 
 def _contact(design: PairDesign, pose: Pose, flank: str, position: float) -> tuple[float, float, float]:
     """Return transmission error (m) with the turns of both bodies, path (m) and slope (rad) of a flank."""
     sign = 1.0 if flank == FLANKS[0] else -1.0
-    turned = sign * (design.pinion_base_radius * pose.ahead + design.gear_base_radius * pose.behind)
+    rotation_error = sign * (design.pinion_base_radius * pose.ahead + design.gear_base_radius * pose.behind)
     exact = exact_contact(design)
     if exact is not None:
-        return exact.transmission_error + turned, exact.y, exact.psi
+        return exact.transmission_error + rotation_error, exact.y, exact.psi
     phi1 = sign * (float(pinion_angle(design, position)) + pose.ahead)
     contact = unloaded_contact(design, phi1)
-    return float(contact.transmission_error[0]) + turned, float(contact.path[1][0]), float("nan")
+    return float(contact.transmission_error[0]) + rotation_error, float(contact.path[1][0]), float("nan")
 
 
 def _motions(
     design: PairDesign, mesh: MeshPlace, pinion: Displacement, gear: Displacement
 ) -> tuple[RigidMotion, RigidMotion]:
     """Return the motions of both bodies in the mesh frame, from where they were assembled."""
-    own, other = _turns(design, mesh, pinion, gear)
-    return in_mesh_frame(body_motion(*own), mesh.sign), in_mesh_frame(body_motion(*other), mesh.sign)
+    pinion_turn, gear_turn = _turns(design, mesh, pinion, gear)
+    return in_mesh_frame(body_motion(*pinion_turn), mesh.sign), in_mesh_frame(
+        body_motion(*gear_turn), mesh.sign
+    )
 
 
 def _turns(
@@ -178,11 +194,11 @@ def _turns(
     """
     cosine, sine = np.cos(mesh.azimuth), np.sin(mesh.azimuth)
     to_pinion = np.array([[cosine, sine, 0.0], [0.0, 0.0, 1.0], [sine, -cosine, 0.0]])
-    own = np.array(pinion.shift), np.array(pinion.turn) * [1.0, 1.0, -1.0]
-    other = np.array(gear.shift), np.array(gear.turn) * [1.0, 1.0, mesh.sign]
+    pinion_parts = np.array(pinion.shift), np.array(pinion.turn) * [1.0, 1.0, -1.0]
+    gear_parts = np.array(gear.shift), np.array(gear.turn) * [1.0, 1.0, mesh.sign]
     middle = np.array([0.0, 0.0, design.mean_radius])
     height = np.array([0.0, mesh.sign * mesh.tilt_height, 0.0])
-    return (*own, middle), (to_pinion @ other[0], to_pinion @ other[1], height)
+    return (*pinion_parts, middle), (to_pinion @ gear_parts[0], to_pinion @ gear_parts[1], height)
 
 
 def _first_order(
@@ -190,9 +206,9 @@ def _first_order(
 ) -> float:
     """Return the approach of a flank (m) to first order: along the ideal normal at the pitch point."""
     point = np.array([0.0, mesh.sign * design.pinion_pitch_radius, design.gear_pitch_radius])
-    moved = [
+    displacements = [
         shift + np.cross(turn, point - pivot) for shift, turn, pivot in _turns(design, mesh, pinion, gear)
     ]
     angle, sign = design.pressure_angle, 1.0 if flank == FLANKS[0] else -1.0
     normal = mesh.sign * np.array([sign * np.cos(angle), np.sin(angle), 0.0])
-    return float(normal @ (moved[0] - moved[1]))
+    return float(normal @ (displacements[0] - displacements[1]))

@@ -11,7 +11,7 @@ from facegear.number_format import count_noun
 from facegear.rigid_body import MOTIONS, carry_motion, is_held
 from facegear.shafts.beam import Elasticity, Segment, clamped_compliance
 
-ROUNDED = 1e-12
+LENGTH_ROUNDING = 1e-12
 """Part of a shaft's length by which rounding may put a bearing or the pinion beyond its end."""
 
 
@@ -41,7 +41,7 @@ class Shaft:
             ("position of a shaft's pinion", self.pinion),
             *(("position of a shaft's bearing", bearing.position) for bearing in self.bearings),
         ):
-            if not 0.0 <= position <= self.length * (1.0 + ROUNDED):
+            if not 0.0 <= position <= self.length * (1.0 + LENGTH_ROUNDING):
                 raise InvalidInput(name, position, f"on the shaft, from 0 to {self.length:g} m")
 
     @property
@@ -52,7 +52,7 @@ class Shaft:
 
 @dataclass(frozen=True, eq=False)
 class CondensedShaft:
-    """What a pinion sits on: motions and loads are x, y, z, tilt_x, tilt_y at its middle, SI units.
+    """Support of a pinion: motions and loads are x, y, z, tilt_x, tilt_y at its middle, SI units.
 
     Attributes
     ----------
@@ -78,33 +78,74 @@ class CondensedShaft:
         return _symmetric(np.linalg.inv(self.compliance[:3, :3]))
 
     def bearing_loads(self, loads: Array) -> Array:
-        """Loads (..., bearings, 5) on the bearings by those (..., 5) of the pinion on the shaft."""
+        """Return the loads on the bearings by the loads of the pinion on the shaft.
+
+        Parameters
+        ----------
+        loads : (..., 5) array
+            N and N m.
+
+        Returns
+        -------
+        (..., bearings, 5) array
+            N and N m.
+        """
         return np.einsum("bij,...j->...bi", self.reactions, loads)
 
 
-def condensed(shaft: Shaft) -> CondensedShaft:
-    """Static condensation. Raises InvalidInput where the bearings do not hold the shaft.
+def condense_shaft(shaft: Shaft) -> CondensedShaft:
+    """Condense a shaft statically to the middle of its pinion.
 
     The shaft is clamped at its beginning and moved as a rigid one besides: the motions of its bearings and
     the rigid motion follow from what they give way and from the balance of all loads.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        The shaft.
+
+    Returns
+    -------
+    CondensedShaft
+        SI units.
+
+    Raises
+    ------
+    InvalidInput
+        If the bearings do not hold the shaft.
     """
     distances = [bearing.position - shaft.pinion for bearing in shaft.bearings]
     if not is_held(distances, [bearing.stiffness for bearing in shaft.bearings], shaft.length):
         condition = "such that they hold it along its axis and against tilting"
         raise InvalidInput("bearings of a shaft", count_noun(len(shaft.bearings), "bearing"), condition)
-    reactions, drifted = _balanced(shaft)
-    return CondensedShaft(_symmetric(_moved(shaft, shaft.pinion, reactions, drifted)), reactions)
+    reactions, rigid_motion = _solve_balance(shaft)
+    return CondensedShaft(_symmetric(_motion_at(shaft, shaft.pinion, reactions, rigid_motion)), reactions)
 
 
 def deflections(shaft: Shaft, at: AnyArray) -> Array:
-    """Motions (n, 5, 5) of the shaft at distances (n,) from its beginning (m) by the loads of its pinion."""
-    reactions, drifted = _balanced(shaft)
-    return np.array([_moved(shaft, float(position), reactions, drifted) for position in at])
+    """Return the motions of a shaft along its length by the loads of its pinion.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        The shaft.
+    at : (n,) array
+        Distances from its beginning, m.
+
+    Returns
+    -------
+    (n, 5, 5) array
+        m/N, rad/N, m/(N m) and rad/(N m).
+    """
+    reactions, rigid_motion = _solve_balance(shaft)
+    return np.array([_motion_at(shaft, float(position), reactions, rigid_motion) for position in at])
 
 
-def _balanced(shaft: Shaft) -> tuple[Array, Array]:
-    """Loads on the bearings (bearings, 5, 5) and the rigid motion of the beginning (5, 5) by the pinion's."""
-    at = _loaded(shaft)
+def _solve_balance(shaft: Shaft) -> tuple[Array, Array]:
+    """Return the loads on the bearings (bearings, 5, 5) and the rigid motion of the beginning (5, 5) by the
+    pinion's loads.
+    """
+    at = _load_positions(shaft)
     compliance = clamped_compliance(shaft.segments, shaft.material, at)
     count = len(shaft.bearings)
     springs = np.array([bearing.stiffness for bearing in shaft.bearings])
@@ -122,21 +163,21 @@ def _balanced(shaft: Shaft) -> tuple[Array, Array]:
     return np.asarray(reactions), np.asarray(solution[MOTIONS * count :])
 
 
-def _moved(shaft: Shaft, position: float, reactions: Array, drifted: Array) -> Array:
-    """Motion (5, 5) at a distance from the beginning by the pinion's loads."""
-    at = np.array([position, *_loaded(shaft)])
-    clamped = clamped_compliance(shaft.segments, shaft.material, at)[0, 1:]
-    bent = clamped[0] - np.einsum("jkl,jlm->km", clamped[1:], reactions)
-    return np.asarray(carry_motion(position) @ drifted + bent)
+def _motion_at(shaft: Shaft, position: float, reactions: Array, rigid_motion: Array) -> Array:
+    """Return the motion (5, 5) at a distance from the beginning by the pinion's loads."""
+    at = np.array([position, *_load_positions(shaft)])
+    clamped_motions = clamped_compliance(shaft.segments, shaft.material, at)[0, 1:]
+    bending = clamped_motions[0] - np.einsum("jkl,jlm->km", clamped_motions[1:], reactions)
+    return np.asarray(carry_motion(position) @ rigid_motion + bending)
 
 
-def _loaded(shaft: Shaft) -> Array:
-    """Distances from the beginning of pinion and bearings, m."""
+def _load_positions(shaft: Shaft) -> Array:
+    """Return the distances from the beginning of pinion and bearings, m."""
     return np.array([shaft.pinion, *(bearing.position for bearing in shaft.bearings)])
 
 
 def _flat(blocks: Array) -> Array:
-    """Blocks (rows, columns, 5, 5) as one matrix."""
+    """Arrange blocks (rows, columns, 5, 5) as one matrix."""
     rows, columns = blocks.shape[:2]
     return blocks.transpose(0, 2, 1, 3).reshape(MOTIONS * rows, MOTIONS * columns)
 
