@@ -26,4 +26,4 @@ def test_examples_give_what_they_show(name, monkeypatch):
     found = doctest.testmod(import_module(name), optionflags=doctest.ELLIPSIS)
     plt.close("all")
     assert found.attempted
-    assert not found.failed_blocks
+    assert not found.failed
