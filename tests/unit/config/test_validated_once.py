@@ -22,7 +22,7 @@ CONFIG = Path(__file__).parents[3] / "config" / "concentric.yaml"
 def test_cases_and_stages_do_not_repeat_the_checks_of_a_config(monkeypatch):
     checked = []
     known = Transmission._check_names
-    monkeypatch.setattr(Transmission, "_known", lambda self: checked.append(1) or known(self))
+    monkeypatch.setattr(Transmission, "_check_names", lambda self: checked.append(1) or known(self))
     config = load_config(CONFIG).model_copy(update={"studies": ()})
     assert len(checked) == 1
     (values,) = expand_cases(config).values()
