@@ -302,7 +302,7 @@ def outcomes_table(table: pd.DataFrame) -> str:
     """
     lines = ["| platform | passed | failed | names |", "|---|---|---|---|"]
     for row in table.fillna("").itertuples():
-        lines.append(f"| {row.platform} | {row.history} | {row.failed} | {row.failed_tests or '-'} |")
+        lines.append(f"| {row.platform} | {row.passed} | {row.failed} | {row.failed_tests or '-'} |")
     return "\n".join(lines)
 
 

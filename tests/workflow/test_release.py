@@ -47,7 +47,7 @@ def test_a_licence_that_nobody_looked_at_stops_the_release():
 
 def test_the_list_of_components_names_the_bundled_plotly_with_its_version_and_licence():
     given = {"bomFormat": "CycloneDX", "components": [{"bom-ref": "numpy"}, {"bom-ref": "scipy"}]}
-    listed = script("name_bundled").figure_names(given)
+    listed = script("name_bundled").named(given)
     (plotly,) = [part for part in listed["components"] if part["bom-ref"].startswith("plotly.js")]
     assert listed["components"][:2] == given["components"] and listed["bomFormat"] == "CycloneDX"
     assert f"plotly.js-cartesian-dist-min` {plotly['version']}" in (ROOT / "CONTRIBUTING.md").read_text()

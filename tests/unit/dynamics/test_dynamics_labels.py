@@ -223,7 +223,7 @@ def test_a_run_that_wanders_gets_as_many_looks_as_asked_for(monkeypatch, looks):
     first = settle(integrator, integrator.by_phase(oscillator.start), Settings())
     assert second_look.wandering(integrator, first, first.period) > 0
 
-    def settle_again(integrator, start, settings, known):
+    def settle_again(integrator, start, settings, known_orbit):
         starts.append(start)
         return first
         yield

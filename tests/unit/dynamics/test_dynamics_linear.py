@@ -11,6 +11,7 @@ from facegear.dynamics.integrator.kernel_system import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
 
@@ -62,8 +63,12 @@ def test_without_backlash_the_response_is_hills(machine, speed):
         absolute=close,
     )
     settings_ = Settings(tolerance=1e-14, periodic_residual=1e-12)
-    response = simulate(model, speed, settings_)
-    if response.period == 1:
+    try:
+        response = simulate(model, speed, settings_)
+    except NotConverged as grown:
+        assert "beyond all bounds" in str(grown)
+        response = None
+    if response is not None and response.period == 1:
         agrees("steady state, m", np.abs(response.coordinates - exact).max() * reach, 0.0, absolute=close)
     else:  # only a parametric resonance keeps a motion with this damping from settling
         rest = np.zeros((2, system.size))

@@ -6,13 +6,14 @@ import sys
 
 import numpy as np
 import pytest
-from oscillators import backlash_oscillator, meissner
+from oscillators import backlash_oscillator, mathieu, meissner
 from test_bending_gears import machine as bending_gears
 
 from facegear._kernels import motion
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.kernel_system import make_runner, packed_system
 from facegear.dynamics.steady_state.simulate import build_model
+from facegear.errors import NotConverged
 
 
 def of_system(**changes):
@@ -168,3 +169,10 @@ def test_machines_of_another_structure_do_not_fit_a_runner():
 def test_an_order_that_steps_cannot_have_is_refused(order):
     with pytest.raises(ValueError, match="order"):
         make_runner(backlash_oscillator(0.75), order)
+
+
+def test_a_motion_that_only_grows_ends_before_its_steps_become_many():
+    """The load-free Mathieu oscillator in its first parametric resonance."""
+    integrator = Integrator(mathieu(0.8), 2.0, 1e-14)
+    with pytest.raises(NotConverged, match="beyond all bounds"):
+        integrator.run(np.array([[1.0], [0.0]]), 10**6)

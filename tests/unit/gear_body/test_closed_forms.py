@@ -37,7 +37,7 @@ def test_free_ring_bends_in_its_plane_with_the_coriolis_and_stress_factors_of_a_
 def test_disc_that_only_rotation_holds_vibrates_as_a_rotating_membrane():
     """Its modes are polynomials of the radius, r^n the slowest."""
     disc = gear_bodies.rectangular(0.01, 1.0, 0.02, UNIT, held=False, across=1)
-    r = disc.elements.places[0]
+    r = disc.elements.shape_points[0]
     for n, expected in ((1, 1.0), (2, 2.35), (3, 4.05)):
         axial = np.zeros((disc.elements.size, 3))
         axial[2::3] = r[:, None] ** (n + 2 * np.arange(3))

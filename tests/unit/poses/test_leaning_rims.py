@@ -82,7 +82,7 @@ def test_slope_of_the_rim_below_a_mesh_is_that_of_the_nodes_when_another_mesh_is
     flanks, slopes = posed_rows(body(), layout, side)
     meshes, sign = slopes.shape[1], layout.gears[side].sign
     given = -slopes @ flanks.T
-    r, height = matrices().elements.places
+    r, height = matrices().elements.shape_points
     nodes = np.flatnonzero((np.abs(height) < 1e-9) & (r > 0.25 - 1e-9) & (r < 0.275 + 1e-9))
     nodes = nodes[np.argsort(r[nodes])]
     fine = np.linspace(0.250, 0.275, 400)

@@ -27,5 +27,8 @@ constexpr double rounding = 1e-13;
 constexpr int max_guesses = 4;
 constexpr Index deciding = 3;
 constexpr Index max_steps = 2000000;
+// Amplitude over the length scale from which on a motion counts as grown beyond all bounds: its rounding is
+// some 1e-4 length scales there, and every further decade would cost a tenth more steps without end.
+constexpr double largest_amplitude = 1e12;
 
 } // namespace facegear::motion

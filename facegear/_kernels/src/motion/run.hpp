@@ -210,15 +210,18 @@ class Runner final : public AnyRunner {
             write_row(tangents_.table, row, n, lane, log_->tangents.data() + (rows * number + row) * n);
     }
 
-    // Write the state at the end of a period if it is one of the last; false if it is not finite.
+    // Write the state at the end of a period if it is one of the last; false if it has grown beyond all
+    // bounds.
     bool keep_end(int lane, Index number) {
         const Index kept = log_->asked.kept, n = work_.n;
         const Index row = period_[lane] - std::max(queue_->periods[number] - kept, Index{0});
-        double total = 0.0;
-        for (Index k = 0; k < n; ++k) total += work_.y.one(0, k, lane) + work_.y.one(1, k, lane);
+        double size = 0.0;
+        for (Index k = 0; k < n; ++k)
+            size += work_.weights.one(0, k, lane) *
+                    (std::fabs(work_.y.one(0, k, lane)) + std::fabs(work_.y.one(1, k, lane)));
         for (Index i = 0; row >= 0 && i < 2; ++i)
             write_row(work_.y, i, n, lane, log_->ends.data() + ((number * kept + row) * 2 + i) * n);
-        return std::isfinite(total);
+        return size <= largest_amplitude * work_.scale[lane];
     }
 
     void make_tangents() {

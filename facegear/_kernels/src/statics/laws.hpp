@@ -1,4 +1,5 @@
-// The laws of a contact at K phases of the mesh period, as statics asks for them (docs/explanation/mesh_law.md).
+// The laws of a contact at K phases of the mesh period, as statics asks for them
+// (docs/explanation/mesh_law.md).
 //
 // A law is a struct with `stiffness` (K, contacts), bounds of the slopes in N/m, and a function at(phase,
 // contact, amount > 0) that returns force and slope. A new law gets a struct here and a line in
