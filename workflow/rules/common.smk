@@ -9,8 +9,9 @@ from filelock import FileLock, Timeout
 ROOT = Path(workflow.basedir).parent
 sys.path.insert(0, str(ROOT))
 os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
-for name, module in list(sys.modules.items()):  # the profile may have imported a package installed elsewhere
-    if name.partition(".")[0] == "facegear" and not Path(module.__file__).is_relative_to(ROOT):
+imported = sys.modules.get("facegear")  # the profile may have imported a package installed elsewhere
+if imported is not None and not Path(imported.__file__).is_relative_to(ROOT):
+    for name in [name for name in sys.modules if name.partition(".")[0] == "facegear"]:
         del sys.modules[name]
 
 from facegear.config.cases import expand_cases

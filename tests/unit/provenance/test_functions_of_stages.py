@@ -129,8 +129,8 @@ def returns(path, name, line=None):
 def with_another_value(text, value):
     """The text in which a returned expression became a list."""
     lines = text.encode().splitlines(keepends=True)
-    lines[value.end_lineno - 1] = insert(lines[value.end_lineno - 1], value.end_col_offset, b"]")
-    lines[value.lineno - 1] = insert(lines[value.lineno - 1], value.col_offset, b"[")
+    lines[value.end_lineno - 1] = insert(lines[value.end_lineno - 1], value.end_col_offset, b")]")
+    lines[value.lineno - 1] = insert(lines[value.lineno - 1], value.col_offset, b"[(")
     return b"".join(lines).decode()
 
 
