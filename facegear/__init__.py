@@ -7,20 +7,7 @@
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-from facegear.errors import (
-    ConfigError,
-    ConfigErrors,
-    CorruptFile,
-    FacegearError,
-    InvalidInput,
-    MissingExtra,
-    NotConverged,
-)
-
-if TYPE_CHECKING:
-    from facegear.gearbox import Gearbox, example, load
+from typing import Any
 
 __all__ = [
     "ConfigError",

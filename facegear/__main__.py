@@ -12,11 +12,18 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NoReturn
 
-from facegear.config.load import load_config, read_layers
+import facegear
+from facegear.build.early_checks import limits_in_words
+from facegear.build.load import load_config, read_layers
+from facegear.checking import check_config
 from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
+from facegear.exchange.rexs import RexsPinions, known_of_rexs
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
+from facegear.new_machine.first_machine import first_machine
+from facegear.new_machine.wishes import MachineWishes
 from facegear.number_format import count_noun
 from facegear.questions import OPTIONS, QUESTIONS, complete_answers, flag, reader
+from facegear.schema.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[1]
 INTERRUPTED = 130
@@ -155,10 +162,6 @@ def installed_version() -> str:
 
 def _new(options: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
-    from facegear.variants.first_machine import first_machine
-    from facegear.variants.gear_unit import RexsPinions, known_of_rexs
-    from facegear.variants.starting_wishes import MachineWishes
-
     if options.config.exists():
         raise FacegearError(f"{options.config}: exists already; choose another name")
     if options.config.suffix not in (".yaml", ".yml"):
@@ -243,8 +246,6 @@ def _with_cache(folder: Path) -> dict[str, str]:
 
 
 def _run_here(options: argparse.Namespace) -> int:
-    import facegear
-
     if options.targets or options.dry_run:
         hint = "the workflow is not part of an installed package: run this from its repository"
         raise FacegearError(f"run: single files and --dry-run need Snakemake; {hint}")
@@ -255,8 +256,6 @@ def _run_here(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
-    import facegear
-
     gearbox = facegear.load(options.config, options.results)
     path = options.output or Path(f"{gearbox.config.case}.html")
     _say_if_new(path.parent)
@@ -271,8 +270,6 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _figures(options: argparse.Namespace) -> int:
-    import facegear
-
     gearbox = facegear.load(options.config, options.results)
     folder, suffix = options.output, ".png" if options.png else ".svg"
     if folder is None:
@@ -290,9 +287,6 @@ def _print_stage(stage: str, summary: str) -> None:
 
 def _check(options: argparse.Namespace) -> int:
     """Exit code 1 where a run would fail."""
-    from facegear.checking import check_config
-    from facegear.config.yaml_file import read_yaml
-
     result = check_config(load_config(options.config), read_yaml(options.config))
     for line in result.remarks:
         print(line)
@@ -307,15 +301,13 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _limits(options: argparse.Namespace) -> int:
-    from facegear.config.limits import limits_in_words
-
     print(limits_in_words(**{name: getattr(options, name) for name in LIMITS}))
     return 0
 
 
 def _compare(options: argparse.Namespace) -> int:
     """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
-    from facegear.compare import answers, judge, page  # these draw, and bring matplotlib
+    from facegear.report.compare import answers, judge, page  # these draw, and bring matplotlib
 
     if options.page:
         _say_if_new(options.page.parent)

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import scipy.linalg  # noqa: F401 - brings a BLAS of its own; only what is loaded can be limited
 from threadpoolctl import threadpool_limits
 
 

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from facegear.config.cases import expand_cases
-from facegear.config.early_findings import EarlyFindings, machine_findings, pair_findings
-from facegear.config.model import Config
-from facegear.config.notes import notes
-from facegear.pipeline.idle_keys import idle_keys
+from facegear.build.cases import expand_cases
+from facegear.build.config import Config
+from facegear.build.early_checks import EarlyFindings, machine_findings, pair_findings
+from facegear.build.notes import notes
+from facegear.pipeline.needs import idle_keys
 
 MOST_PAIRS = 4
 """Different tooth pairs of a config whose geometry is analysed, at about 0.3 s each."""

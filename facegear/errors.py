@@ -29,7 +29,7 @@ class InvalidInput(FacegearError):
     """A quantity that cannot be computed with: names it in words, its value and what it must be.
 
     `allowed` may name other quantities `in backticks`. Where the inputs are those of a config, the user reads
-    the keys instead: `facegear.config.keys`.
+    the keys instead: `facegear.schema.base`.
     """
 
     def __init__(self, quantity: str, value: object, allowed: str) -> None:

@@ -1,8 +1,9 @@
 """Check that gmsh's system libraries and the compiled kernels load, and print what mends it if not."""
 
-import ctypes
 import ctypes.util
 import sys
+
+from facegear import _kernels
 
 PACKAGES = {
     "GLU": "libglu1-mesa",
@@ -39,8 +40,6 @@ def kernels_origin() -> str:
     str
         Compiler, level of instructions, and what builds the kernels sooner where zig built them.
     """
-    from facegear import _kernels
-
     sentence = f"The kernels were compiled by {_kernels.COMPILER}; those for {_kernels.LEVEL} run here."
     if _kernels.COMPILER.startswith("zig"):
         sentence += " They build sooner with g++ (apt-get install -y g++) or clang++."
@@ -56,7 +55,7 @@ def main() -> int:
         0 if gmsh and the kernels load.
     """
     try:
-        import gmsh  # noqa: F401
+        import gmsh  # noqa: F401 - what is checked here
 
         print(kernels_origin())
     except ImportError as error:

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from pydantic import Field
 
-from facegear.config.base import Section, parse
-from facegear.config.load import relative_to_cwd
-from facegear.config.yaml_file import read_yaml
+from facegear.build.load import relative_to_cwd
+from facegear.schema.base import Section, parse
+from facegear.schema.yaml_file import read_yaml
 
 
 class InputSet(Section):

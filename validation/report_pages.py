@@ -19,10 +19,10 @@ from typing import Any
 import pandas as pd
 from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
-from facegear.compare.answers import SAME_DATE
 from facegear.io import documents, tables
 from facegear.pipeline.reported import REPORT_TABLES, table_name
 from facegear.pipeline.table import STAGES
+from facegear.report.compare.answers import SAME_DATE
 from validation.references import ROOT
 
 TABLE = ROOT / "docs" / "measured" / "report_pages.csv"

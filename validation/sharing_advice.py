@@ -15,8 +15,8 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.gearbox import Gearbox, example, load
-from facegear.variants.first_machine import first_machine
-from facegear.variants.starting_wishes import MachineWishes
+from facegear.new_machine.first_machine import first_machine
+from facegear.new_machine.wishes import MachineWishes
 
 TABLE = Path(__file__).parents[1] / "docs" / "measured" / "sharing_advice.csv"
 CONCENTRIC = Path(__file__).parents[1] / "config" / "concentric.yaml"

@@ -14,8 +14,8 @@ import pandas as pd
 
 from facegear.errors import FacegearError
 from facegear.gearbox import Gearbox, load
-from facegear.variants.first_machine import first_machine
-from facegear.variants.starting_wishes import MachineWishes
+from facegear.new_machine.first_machine import first_machine
+from facegear.new_machine.wishes import MachineWishes
 
 TABLE = Path(__file__).parents[1] / "docs" / "measured" / "starters.csv"
 COUNT, SEED = 20, 50

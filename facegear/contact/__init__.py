@@ -1,0 +1,1 @@
+"""Loaded tooth contact of a pair."""

@@ -1,24 +1,144 @@
-"""The contact analysis of a pair: every flank with its own errors, at all positions and torques."""
+"""The contact analysis of a pair, as designed and in many assemblies, with its tables."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Integers
-from facegear.contact.gear_flank import GearFlank
-from facegear.contact.known_contact import KnownContact
-from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
-from facegear.contact.nodal_loads import load_arrays
+from facegear.contact.flanks import PinionSurface
+from facegear.contact.gear_flank import GearFlank, contact_model
+from facegear.contact.ltca import ContactModel, KnownContact, even_positions, loaded_contact
+from facegear.contact.nodal_loads import load_arrays, touching_reactions
 from facegear.contact.options import ContactPlan
-from facegear.contact.pair import contact_model
+from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.position import LoadedPosition
-from facegear.contact.pressure import FlankPressure, flank_pressure
+from facegear.contact.pressure import FlankPressure, LineLoads, flank_pressure
 from facegear.contact.summary import by_flank, by_torque
-from facegear.contact.tables import ltca_table, pressure_arrays
-from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.flank_errors import distinct_pairs
+from facegear.teeth.design import AssemblyErrors, Material, PairDesign
+from facegear.teeth.placement import distinct_pairs
+
+
+def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
+    """Tabulate contact results, one row a torque and position.
+
+    nan: pressure where no plane is inside, average stiffness where the unloaded teeth interfere.
+
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+    pressure : FlankPressure
+        Pressure of the same results.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns LTCA_COLUMNS.
+    """
+    of_each = [
+        (
+            1e6 * r.ste,
+            1e6 * r.unloaded_error,
+            r.k_average,
+            r.k_local,
+            r.fillet_share,
+            1e6 * r.overlap,
+            r.residual,
+        )
+        for r in results
+    ]
+    ste, unloaded_error, average, local, in_fillets, overlap, residual = np.array(of_each).T
+    shares = np.array([r.load_share for r in results])
+    columns = (
+        np.array([r.torque for r in results]),
+        np.array([r.position for r in results]),
+        *(ste, unloaded_error, average, local),
+        np.count_nonzero(shares, axis=1),
+        *shares.T,
+        *np.array([_pressures(loads) for loads in pressure.loads]).T,
+        *(in_fillets, overlap, residual),
+        np.abs(shares.sum(axis=1) - 1.0),
+    )
+    order = np.lexsort((columns[1], columns[0]))
+    return pd.DataFrame(
+        {name: values[order] for name, values in zip(LTCA_COLUMNS, columns, strict=True)}, copy=False
+    )
+
+
+def _pressures(loads: LineLoads) -> tuple[float, ...]:
+    """Largest pressure inside and its error (MPa), line load (N/mm) and loaded length (mm) of tip edges."""
+    largest, error = loads.largest()
+    tip, length = loads.at_tips()
+    return 1e-6 * largest, 1e-6 * error, 1e-3 * tip, 1e3 * length
+
+
+def pressure_arrays(
+    results: Sequence[LoadedPosition], surface: PinionSurface, pressure: FlankPressure
+) -> dict[str, AnyArray]:
+    """Collect loads and pressures as PRESSURE_ARRAYS.
+
+    First come the forces of all loaded basis functions, one a row, whether they act in a fillet, and the
+    lattice (`shape`, `point_m`) of their nodes. Then come `line_*`, one row a loaded plane across the
+    pinion's axis: its number, the line load along the contact line and the length it stands for, its edge
+    (a number in EDGES), and the pressure there: 0 with an error of 0 unless inside. Last come the contact
+    lines: a pair's points on the pinion in all planes, whether loaded or not.
+
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+    surface : PinionSurface
+        Contact surface of the pinion.
+    pressure : FlankPressure
+        Pressure of the same results.
+
+    Returns
+    -------
+    dict of arrays
+        Arrays with the (...) shapes of PRESSURE_ARRAYS.
+    """
+    lines: dict[str, list[AnyArray]] = {}
+    for result, loads in zip(results, pressure.loads, strict=True):
+        rows = {
+            "line_torque_n_m": np.full(loads.line.size, result.torque),
+            "line_position": np.full(loads.line.size, result.position),
+            "line_tooth": pressure.tooth[loads.line],
+            "line_plane": loads.plane,
+            "line_where": loads.edge,
+            "line_length_m": loads.length,
+            "line_load_n_per_m": loads.line_load,
+            "line_pressure_pa": np.nan_to_num(loads.pressure),
+            "line_error_pa": np.nan_to_num(loads.error),
+            "line_half_width_m": np.nan_to_num(loads.half_width),
+        }
+        for name, values in rows.items():
+            lines.setdefault(name, []).append(values)
+    position, tooth, points = pressure.every_point(surface.design)
+    return {
+        **_forces(results),
+        "shape": np.array(surface.shape),
+        "point_m": surface.nodes,
+        **{name: np.concatenate(parts) for name, parts in lines.items()},
+        "contact_position": position,
+        "contact_tooth": tooth,
+        "contact_point_m": points,
+    }
+
+
+def _forces(results: Sequence[LoadedPosition]) -> dict[str, AnyArray]:
+    spots = [(result, spot) for result in results for spot in result.spots]
+    count = [spot.hats.size for _, spot in spots]
+    return {
+        "torque_n_m": np.repeat([result.torque for result, _ in spots], count),
+        "position": np.repeat([result.position for result, _ in spots], count),
+        "tooth": np.repeat([spot.tooth for _, spot in spots], count),
+        "node": np.concatenate([spot.hats for _, spot in spots]),
+        "force_n": np.concatenate([spot.force for _, spot in spots]),
+        "in_fillet": np.concatenate([spot.fillet for _, spot in spots]),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +185,7 @@ class ContactAnalysis:
 
     @cached_property
     def loads(self) -> dict[str, AnyArray]:
-        """Forces of all pairs on the nodes of both bodies, see `facegear.contact.columns`."""
+        """Forces of all pairs on the nodes of both bodies, see `facegear.contact.pattern`."""
         return load_arrays([results for results, _ in self.results], self.numbers)
 
 
@@ -124,3 +244,109 @@ def _solve_model(
 ) -> tuple[list[LoadedPosition], FlankPressure]:
     results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options, known_contact)
     return results, flank_pressure(results, model.flanks, materials)
+
+
+ONE_FLANK = np.zeros((2, 2), dtype=int)
+
+
+@dataclass(frozen=True, eq=False)
+class PosedContact:
+    """Drive flanks in one assembly: tables and arrays as stage contact stores them.
+
+    reactions: as returned by `touching_reactions`.
+    """
+
+    errors: AssemblyErrors
+    ltca: pd.DataFrame
+    by_torque: pd.DataFrame
+    pressure: dict[str, AnyArray]
+    loads: dict[str, AnyArray]
+    reactions: pd.DataFrame
+
+
+def posed_contacts(
+    design: PairDesign,
+    materials: tuple[Material, Material],
+    flanks: tuple[GearFlank, GearFlank],
+    plan: ContactPlan,
+    assemblies: Sequence[AssemblyErrors],
+) -> Iterator[PosedContact]:
+    """Solve the contact of the drive flanks of pinion and face gear in each assembly.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    flanks : tuple[GearFlank, GearFlank]
+        Surfaces and compliances of pinion and face gear.
+    plan : ContactPlan
+        Torques, positions and options.
+    assemblies : Sequence[AssemblyErrors]
+        Errors of each assembly.
+
+    Yields
+    ------
+    PosedContact
+        Contact in each assembly.
+
+    Raises
+    ------
+    NotConverged
+        Names position and torque.
+    """
+    model = contact_model(design, *flanks)
+    for errors in assemblies:
+        yield _solve_assembly(model.with_assembly(errors), errors, materials, plan)
+
+
+def met_contacts(
+    design: PairDesign,
+    materials: tuple[Material, Material],
+    flanks: tuple[GearFlank, GearFlank],
+    plan: ContactPlan,
+    pair_torques: Sequence[tuple[PairDesign, tuple[float, ...]]],
+) -> Iterator[PosedContact]:
+    """Solve the contact of pairs of the design's bodies, each at its own torques.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    materials : tuple[Material, Material]
+        Pinion and face gear.
+    flanks : tuple[GearFlank, GearFlank]
+        Surfaces and compliances of pinion and face gear.
+    plan : ContactPlan
+        Positions and options.
+    pair_torques : Sequence[tuple[PairDesign, tuple[float, ...]]]
+        Pairs of the same bodies, and torques of each, N m.
+
+    Yields
+    ------
+    PosedContact
+        Contact of each pair.
+
+    Raises
+    ------
+    NotConverged
+        Names position and torque.
+    """
+    model = contact_model(design, *flanks)
+    for pair_design, torques in pair_torques:
+        yield _solve_assembly(
+            model.of(pair_design), pair_design.assembly, materials, replace(plan, torques=torques)
+        )
+
+
+def _solve_assembly(
+    model: ContactModel, errors: AssemblyErrors, materials: tuple[Material, Material], plan: ContactPlan
+) -> PosedContact:
+    results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
+    pressures = flank_pressure(results, model.flanks, materials)
+    table = ltca_table(results, pressures)
+    arrays = pressure_arrays(results, model.flanks.pinion, pressures)
+    loads = load_arrays([results], ONE_FLANK)
+    reactions = touching_reactions(model.flanks.pinion, results)
+    return PosedContact(errors, table, by_torque(table, arrays), arrays, loads, reactions)

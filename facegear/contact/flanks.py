@@ -20,11 +20,11 @@ from facegear.contact.bodies.surface import (
 from facegear.contact.lattice import Lattice
 from facegear.contact.options import Refinement
 from facegear.contact.teeth import ContactSide, pinion_points
-from facegear.geometry import face_gear
-from facegear.geometry.design import PairDesign
-from facegear.geometry.gear_modifications import tip_edge_as_made
-from facegear.geometry.opposite import FilletCurve, GearHits, fillet_curve
-from facegear.geometry.pinion_surface import SurfacePoints
+from facegear.teeth import face_gear_fillet
+from facegear.teeth.design import PairDesign
+from facegear.teeth.modifications import tip_edge_as_made
+from facegear.teeth.opposite import FilletCurve, GearHits, fillet_curve
+from facegear.teeth.surfaces import SurfacePoints
 
 OF_AN_EDGE = 0.5
 """Length that one of the two points between neighbouring nodes of an edge stands for, in their distance."""
@@ -243,7 +243,7 @@ class GearSurface:
     def _fillet_nodes(self) -> Array:
         """Shares of the fillet at its rows' nodes (the same on all planes), 0 at the flank."""
         first = self.side.v[-1, 0], self.side.u[self.side.flank_rows :, 0]
-        return np.concatenate([[0.0], face_gear.fillet_fraction(self.design, *first)])
+        return np.concatenate([[0.0], face_gear_fillet.fillet_fraction(self.design, *first)])
 
     def coordinates(self, hits: GearHits, fillet: bool, edge: float | Array) -> Array:
         """Compute lattice coordinates of hits, nan where nothing that can touch is hit.

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1
 
 from facegear.arrays import Array
-from facegear.geometry.design import Material
+from facegear.teeth.design import Material
 
 DENTED = 4.0e9
 """Pressure (Pa) above which a dent remains on hardened steel: the static limit of line contact in ISO 76.

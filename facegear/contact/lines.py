@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.geometry import face_gear, pinion
-from facegear.geometry.curvature import opposite_curvatures
-from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion_surface import SurfacePoints, flank_points
-from facegear.geometry.placement import conjugate_angle, pinion_angle, to_left_flank
-from facegear.geometry.separation import FLANK, separation, separation_each
+from facegear.teeth import face_gear, pinion
+from facegear.teeth.curvature import opposite_curvatures
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import conjugate_angle, pinion_angle, to_left_flank
+from facegear.teeth.rays import FLANK
+from facegear.teeth.separation import separation, separation_each
+from facegear.teeth.surfaces import SurfacePoints, flank_points
 
 SAMPLES = 25
 """Points looked at along a profile before the parabola through the minimum and its neighbours."""

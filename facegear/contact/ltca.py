@@ -6,29 +6,108 @@ from functools import cached_property
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.basis_functions import FacingPairs
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.flanks import FlankPair
-from facegear.contact.known_contact import KnownContact
 from facegear.contact.options import ContactOptions
-from facegear.contact.path import pairs_to_try
 from facegear.contact.position import MARGIN, LoadedPosition, contact_at, first_turn, results_of
-from facegear.contact.position_solver import PositionContact, PositionSolver
-from facegear.contact.search import cover_of, facing_points
-from facegear.contact.search_strip import (
+from facegear.contact.position_solver import (
     GAP,
     KNOWN_WIDTH,
     START_GAP,
     START_WIDTH,
     WIDER,
     WIDTH,
+    PositionContact,
+    PositionSolver,
     SearchStrip,
 )
-from facegear.geometry.design import AssemblyErrors, PairDesign
-from facegear.geometry.placement import pinion_angle
-from facegear.geometry.unloaded import PAIRS, unloaded_motion
+from facegear.contact.search import cover_of, facing_points
 from facegear.progress import Progress
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.placement import pinion_angle
+from facegear.teeth.unloaded import unloaded_contact, unloaded_motion
+
+
+@dataclass(frozen=True, eq=False)
+class KnownContact:
+    """Contact solved at p positions: largest rotation `turn` (p,) rad under any load, and loaded nodes.
+
+    `near` (p, 5, nodes) marks the nodes of the pinion's lattice, for the pairs -2..2, that carry load or
+    are next to one that does across the profile.
+    """
+
+    turn: Array
+    near: Mask
+
+
+def known_contact(
+    results: Sequence[LoadedPosition], positions: Sequence[float], shape: tuple[int, int], base_radius: float
+) -> KnownContact | None:
+    """Extract the rotation and the loaded nodes from results.
+
+    Parameters
+    ----------
+    results : Sequence[LoadedPosition]
+        Contact by position and torque.
+    positions : Sequence[float]
+        All positions, in pitches.
+    shape : tuple[int, int]
+        Lattice of the pinion.
+    base_radius : float
+        Of the pinion, m.
+
+    Returns
+    -------
+    KnownContact, optional
+        Known contact; None where fillets in the way turn the pinion back.
+    """
+    row_of = {position: row for row, position in enumerate(positions)}
+    turn, is_loaded = np.zeros(len(positions)), np.zeros((len(positions), PAIRS.size, *shape), bool)
+    for result in results:
+        row = row_of[result.position]
+        turn[row] = max(turn[row], (result.ste - result.unloaded_error) / base_radius)
+        for spot in result.spots:
+            is_loaded[row, np.searchsorted(PAIRS, spot.tooth)].flat[spot.hats] = True
+    if turn.min() <= 0.0:
+        return None
+    near = is_loaded.copy()
+    near[:, :, 1:] |= is_loaded[:, :, :-1]
+    near[:, :, :-1] |= is_loaded[:, :, 1:]
+    return KnownContact(turn, near.reshape(len(positions), PAIRS.size, -1))
+
+
+TOUCHING_GAP = 1e-9
+"""Gap (m) of conjugate flanks below which they count as touching; off the path it grows by micrometres."""
+
+
+def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> Integers:
+    """Return the pairs that may carry load at a pinion angle: all, or with `path_only` those on the path of
+    contact.
+
+    The path is that of the nominal assembly: between the tips of pinion and gear at the radius m N2 / 2.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : float
+        Angle of the pinion, rad.
+    options : ContactOptions
+        Whether only pairs on the path count.
+
+    Returns
+    -------
+    (p,) array of int
+        Numbers of the pairs.
+    """
+    if not options.path_only:
+        return PAIRS
+    gaps = unloaded_contact(replace(design, assembly=AssemblyErrors()), [phi1]).gap[0]
+    return PAIRS[gaps < TOUCHING_GAP]
+
 
 AT_ONCE = 8
 """Positions whose candidates are searched together."""

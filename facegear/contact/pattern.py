@@ -1,11 +1,90 @@
-"""The contact pattern: pressures of one tooth's passage on the surface that its contact lines sweep."""
+"""Columns of the contact table, the contact pattern, and its distance from the edges of the flanks."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from facegear.arrays import Array, Arrays, Integers
-from facegear.contact.columns import EDGES
+from facegear.bodies import BODIES
+from facegear.teeth.design import PairDesign
+from facegear.teeth.limits import radius_limits
+from facegear.teeth.placement import pinion_angle, to_left_flank
+
+SHARES = tuple(f"load_share_pair_{name}" for name in ("m2", "m1", "0", "p1", "p2"))
+"""Load shares of the tooth pairs -2..2 (numbers as in `facegear.teeth.design`)."""
+
+LTCA_COLUMNS = (
+    "torque_n_m",
+    "position",
+    "ste_um",
+    "unloaded_ste_um",
+    "k_average_n_per_m",
+    "k_local_n_per_m",
+    "pairs_in_contact",
+    *SHARES,
+    "pressure_mpa",
+    "pressure_error_mpa",
+    "tip_line_load_n_per_mm",
+    "tip_length_mm",
+    "fillet_share",
+    "interference_um",
+    "kkt_residual",
+    "torque_residual",
+)
+LTCA_FINITE = tuple(
+    name for name in LTCA_COLUMNS if name not in ("k_average_n_per_m", "pressure_mpa", "pressure_error_mpa")
+)
+"""Columns whose numbers are always finite: teeth that interfere have no average stiffness, and edges may
+carry all load, where pressure has no limit."""
+
+FILLET_CONTACT = 1e-3
+"""Fraction of the torque in fillets, in column `fillet_share`, from which on it is reported and judged."""
+
+PRESSURE_ARRAYS = {
+    "torque_n_m": (None,),
+    "position": (None,),
+    "tooth": (None,),
+    "node": (None,),
+    "force_n": (None,),
+    "in_fillet": (None,),
+    "shape": (2,),
+    "point_m": (None, 3),
+    "line_torque_n_m": (None,),
+    "line_position": (None,),
+    "line_tooth": (None,),
+    "line_plane": (None,),
+    "line_where": (None,),
+    "line_length_m": (None,),
+    "line_load_n_per_m": (None,),
+    "line_pressure_pa": (None,),
+    "line_error_pa": (None,),
+    "line_half_width_m": (None,),
+    "contact_position": (None,),
+    "contact_tooth": (None,),
+    "contact_point_m": (None, None, 3),
+}
+"""Arrays of the pressure file, see `facegear.contact.analysis.pressure_arrays`."""
+
+LOAD_ARRAYS = {
+    "variant": (None,),
+    "flank_variant": (2, 2),
+    "torque_n_m": (None,),
+    "position": (None,),
+    **{f"{body}_{name}": (None,) for body in BODIES for name in ("case", "tooth", "node", "force_n")},
+    "nodes": (2,),
+}
+"""Arrays of the loads file: an entry a case, a row a loaded node of a body, and the numbers of nodes.
+
+`variant` numbers the assembly errors of a case, `flank_variant` those of each gear (upper, lower) and flank
+(drive, back), see `facegear.teeth.placement`.
+"""
+
+TOOTH_ERROR_ARRAYS = {f"{body}_{side}_m": (None,) for body in BODIES for side in ("drive", "back")}
+"""Arrays of the contribution of a gear's teeth to the transmission error of a flank over one of the gear's
+turns, m."""
+
+EDGES = ("inside", "pinion tip", "gear tip", "end")
+"""Locations of a loaded plane's strip of contact; `where` of the line loads numbers these."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,3 +208,79 @@ def pressure_surface(
         fields[f"line_load_n_per_m_at_{torque:g}_n_m"] = contact_pattern.line_load[torque].ravel()
     cells = {"quad": np.stack([c.ravel() for c in corners], axis=-1)}
     return contact_pattern.points.reshape(-1, 3), cells, fields
+
+
+@dataclass(frozen=True)
+class PatternMargins:
+    """Distances (m) from a contact pattern to the edges of the flanks, 0 where it reaches one.
+
+    Attributes
+    ----------
+    inner_end, outer_end
+        Along the gear's radius, to the ends of the common face.
+    pinion_tip
+        Along the pinion's radius, to its tip.
+    gear_tip
+        Along the gear's axis, to its tip plane.
+    undercut, pointing
+        Along the gear's radius, to where the gear's flank ends in undercut, and where its tips are pointed.
+    """
+
+    inner_end: float
+    outer_end: float
+    pinion_tip: float
+    gear_tip: float
+    undercut: float
+    pointing: float
+
+
+def pattern_margins(arrays: Arrays, design: PairDesign, torque: float) -> PatternMargins | None:
+    """Compute the distances of the contact pattern from the edges of the flanks.
+
+    Loaded planes across the pinion's axis count half way to their neighbours. Across the profile the
+    pattern is that of the positions solved; a strip that reaches over a tip edge has no distance to it.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays as PRESSURE_ARRAYS of the pair.
+    design : PairDesign
+        Pair of gears.
+    torque : float
+        On the pinion, N m.
+
+    Returns
+    -------
+    PatternMargins, optional
+        Distances, m; None without load at this torque.
+    """
+    on = arrays["line_torque_n_m"] == torque
+    if not on.any():
+        return None
+    line_keys = list(zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True))
+    row = {key: number for number, key in enumerate(line_keys)}
+    keys = zip(arrays["line_position"][on].tolist(), arrays["line_tooth"][on].tolist(), strict=True)
+    lines = np.array([row[key] for key in keys])
+    points = arrays["contact_point_m"][lines, arrays["line_plane"][on]]
+    touches_edge = {
+        name: bool((arrays["line_where"][on] == number).any()) for number, name in enumerate(EDGES)
+    }
+    half = 0.5 * float(np.diff(arrays["contact_point_m"][0, :, 1]).mean())
+    phi1 = pinion_angle(design, arrays["line_position"][on])
+    motion = to_left_flank(design, phi1, np.zeros_like(phi1), arrays["line_tooth"][on])
+    x, y, z = motion.points(points[:, None, :])[:, 0].T
+    radius = np.hypot(x, y)
+    gear, width, limits = design.face_gear, design.pinion.width, radius_limits(design)
+    first = max(gear.inner_radius, design.mean_radius - width / 2)
+    last = min(gear.outer_radius, design.mean_radius + width / 2)
+    inner, outer = max(radius.min() - half, first), min(radius.max() + half, last)
+    to_tip = design.pinion_tip_radius - np.hypot(points[:, 0], points[:, 2]).max()
+    below = design.gear_tip_plane - z.max()
+    return PatternMargins(
+        inner_end=inner - first,
+        outer_end=last - outer,
+        pinion_tip=0.0 if touches_edge["pinion tip"] else max(float(to_tip), 0.0),
+        gear_tip=0.0 if touches_edge["gear tip"] else max(float(below), 0.0),
+        undercut=inner - limits.inner,
+        pointing=limits.outer - outer,
+    )

@@ -8,10 +8,9 @@ from typing import Protocol
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.position_solver import PositionContact
-from facegear.contact.solver import check_solved
+from facegear.contact.position_solver import PositionContact, check_solved
 from facegear.errors import NotConverged
-from facegear.geometry.unloaded import PAIRS
+from facegear.teeth.closest import PAIRS
 
 STIFFNESS = 2e10
 """Stiffness of steel teeth in mesh over the width of the face, N/m2, as in ISO 6336.

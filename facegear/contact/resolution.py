@@ -5,13 +5,14 @@ memory.
 from dataclasses import replace
 from math import ceil, inf, pi, sin, sqrt
 
+from facegear.bodies import BODIES
+from facegear.contact.hertz import contact_modulus, longer_semi_axis
 from facegear.contact.options import ContactPlan
 from facegear.errors import InvalidInput
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.deviations import mean_crowning
-from facegear.geometry.fillets import smallest_radius
-from facegear.mesh.sizes import MeshSizes
+from facegear.teeth.curvature import smallest_radius
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.modifications import mean_crowning
 
 COARSEST = 1.5
 """Node distance over the strip's half-width that is still let through: one or two nodes in contact."""
@@ -210,8 +211,6 @@ def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material]
     )
     if not crownings and deviation_curvature == 0.0:
         return inf
-    from facegear.contact.hertz import contact_modulus, longer_semi_axis
-
     along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings) + deviation_curvature
     across = 1.0 / (design.pinion_pitch_radius * sin(design.pressure_angle))
     force = torque / design.pinion_base_radius / 2.0

@@ -9,13 +9,19 @@ import numpy as np
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.basis_functions import Cover, FacingPairs, FacingPoints
 from facegear.contact.bodies.surface import edge_hats
-from facegear.contact.candidates import Candidates, candidates_of
+from facegear.contact.candidates import (
+    Candidates,
+    EdgePoints,
+    candidates_of,
+    edge_cover,
+    flank_cover,
+    gather_points,
+)
 from facegear.contact.flanks import FlankPair
-from facegear.contact.loads import EdgePoints, edge_cover, flank_cover, gather_points
 from facegear.contact.options import ContactOptions
-from facegear.geometry.opposite import locate_hits, tip_edge_feet
-from facegear.geometry.pinion_surface import SurfacePoints
-from facegear.geometry.separation import separation, separation_each
+from facegear.teeth.opposite import locate_hits, tip_edge_feet
+from facegear.teeth.separation import separation, separation_each
+from facegear.teeth.surfaces import SurfacePoints
 
 SAG = 10e-6
 """By how much (m) a gap between probes may be less than at the nearest of them."""

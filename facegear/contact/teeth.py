@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.contact.bodies.body import ROUNDING, ElasticBody
+from facegear.contact.bodies.elements import ROUNDING, ElasticBody
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
-from facegear.geometry import face_gear
-from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
-from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.tooth import FeTooth
+from facegear.teeth import face_gear, face_gear_fillet
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_quality import hex_mesh
+from facegear.teeth.surfaces import SurfacePoints, fillet_points, flank_points
+from facegear.teeth.tooth_mesh import FeTooth
 
 LOADED_SIDE = {"pinion": "right", "face_gear": "left"}
 """Sides in contact when the pinion drives towards +x; the opposite flanks are their mirror images."""
@@ -25,7 +25,7 @@ FILLET_MARGIN = 0.1
 class ContactSide:
     """Contact surface of a tooth: flank rows, then the fillet rows the other gear's tip can reach.
 
-    nodes, u, v: (nu, nv) nodes of the mesh and parameters as in `facegear.mesh.tooth.SurfaceGrid`;
+    nodes, u, v: (nu, nv) nodes of the mesh and parameters as in `facegear.teeth.tooth_mesh.SurfaceGrid`;
     `flank_rows` of the rows belong to the flank, the last of them shared with the fillet, whose parameter
     there is `junction` (nv,).
     """
@@ -109,7 +109,7 @@ def elastic_tooth(
         fillet = fillet_points(design, surface.u[rows:], surface.v[rows:]).normal
     else:
         flank = face_gear.flank_normal(design, surface.u[:rows], surface.v[:rows])
-        fillet = face_gear.fillet_normal(design, surface.v[rows:], surface.u[rows:])
+        fillet = face_gear_fillet.fillet_normal(design, surface.v[rows:], surface.u[rows:])
     normals = np.concatenate([flank, fillet])
     if (side or LOADED_SIDE[tooth.body]) == "left":
         normals = normals * np.array([-1.0, 1.0, 1.0])

@@ -14,17 +14,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Arrays
+from facegear.bodies import BODIES, Body
 from facegear.contact.lines import contact_gaps
 from facegear.contact.nodal_loads import loads_by_tooth
 from facegear.contact.teeth import ContactSide
-from facegear.geometry import face_gear, pinion
-from facegear.geometry.bodies import BODIES, Body
-from facegear.geometry.design import DeviationGrid, PairDesign
-from facegear.geometry.deviations import deviation
-from facegear.geometry.gear_modifications import flank_depth, tip_edge_as_made
-from facegear.geometry.opposite import tip_edge_feet
-from facegear.geometry.placement import pinion_angle
-from facegear.geometry.unloaded import PAIRS, unloaded_motion
+from facegear.teeth import face_gear, pinion
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.design import DeviationGrid, PairDesign
+from facegear.teeth.modifications import deviation, flank_depth, tip_edge_as_made
+from facegear.teeth.opposite import tip_edge_feet
+from facegear.teeth.placement import pinion_angle
+from facegear.teeth.unloaded import unloaded_motion
 
 Teeth = Sequence[DeviationGrid | None]
 """Deviation of each tooth's flank from the mean of its gear, by the number of the tooth; None without."""

@@ -14,12 +14,12 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 import numpy as np
 
 from facegear.arrays import AnyArray
-from facegear.dynamics.integrator.kernel_system import system_numbers
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
 from facegear.io.atomic import atomic_path
-from facegear.transmission.flanks import mesh_contacts
-from facegear.transmission.machine import Machine
+from facegear.machine.flanks import mesh_contacts
+from facegear.machine.machine import Machine
+from facegear.motion.integrator.kernel_system import system_numbers
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import Model, build_model, static_start
 
 TOLERANCE = 1e-12
 """Error of a step over the length scale of the machine."""

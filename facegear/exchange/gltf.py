@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.bodies import BODIES, Body
 from facegear.errors import extras_named
-from facegear.geometry.bodies import BODIES, Body
-from facegear.geometry.design import AssemblyErrors, PairDesign
-from facegear.geometry.placement import body_rotation, rotation
-from facegear.geometry.solids import solid, triangles
 from facegear.io.atomic import atomic_path
+from facegear.teeth.design import AssemblyErrors, PairDesign
+from facegear.teeth.placement import body_rotation, rotation
+from facegear.teeth.solids import solid, triangles
 
 PROFILE, WIDTH = 9, 5
 """Points of every patch along the profile and the width."""

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from facegear.errors import CorruptFile
-from facegear.io.atomic import atomic_path
-from facegear.io.checksums import verify
+from facegear.io.atomic import atomic_path, verify
 
 
 def write(path: str | Path, **arrays: np.ndarray) -> None:

@@ -8,8 +8,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from facegear.errors import CorruptFile
-from facegear.io.atomic import atomic_path
-from facegear.io.checksums import verify
+from facegear.io.atomic import atomic_path, verify
 
 
 def write(path: str | Path, frame: pd.DataFrame) -> None:

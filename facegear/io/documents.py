@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from facegear.errors import CorruptFile
-from facegear.io.atomic import atomic_path
-from facegear.io.checksums import verify
+from facegear.io.atomic import atomic_path, verify
 
 
 def _plain(value: Any) -> Any:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from facegear.io import arrays, documents
+from facegear.io import arrays, documents, tables
 from facegear.io.atomic import atomic_path
 
 
@@ -47,8 +47,6 @@ def read_part(
     if path.suffix == ".json":
         return documents.read(path, tuple(holds))
     # Imported here: pandas takes half a second, which jobs without a table would pay as well.
-    from facegear.io import tables
-
     return tables.read(path, tuple(holds), may_be_empty, text)
 
 
@@ -67,17 +65,15 @@ def write_part(path: str | Path, part: Any) -> None:
         with atomic_path(path) as temporary:
             temporary.write_bytes(part)
     elif path.suffix == ".csv":
-        from facegear.io import tables
-
         tables.write(path, part)
     elif path.suffix == ".parquet":
-        from facegear.io import columnar
+        from facegear.io import columnar  # pyarrow, a library of an extra
 
         columnar.write(path, part)
     elif path.suffix == ".npz":
         arrays.write(path, **part)
     elif path.suffix == ".vtu":
-        from facegear.io.meshes import write_vtu
+        from facegear.io.meshes import write_vtu  # meshio, a library of an extra
 
         write_vtu(path, *part)
     else:

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from facegear.errors import CorruptFile
-from facegear.io.checksums import verify
+from facegear.io.atomic import verify
 
 WHOLE_SVG, TAIL = re.compile(r"(</svg>|<svg[^<]*/>)\s*$"), 1000
 """How a drawing ends, an empty one with its only element; letters at its end that are looked at."""

@@ -7,8 +7,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.errors import CorruptFile
-from facegear.io.atomic import atomic_path
-from facegear.io.checksums import verify
+from facegear.io.atomic import atomic_path, verify
 
 NAMES = ("body", "mesh", "body_or_mesh", "pinion", "group", "study", "point", "label", "reason", "caveat")
 """Columns of names that a user has given, or of sentences that may be empty."""

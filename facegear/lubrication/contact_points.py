@@ -12,13 +12,13 @@ from typing import TypeVar
 import numpy as np
 
 from facegear.arrays import Array, Arrays, Integers, Mask
-from facegear.contact.columns import EDGES
 from facegear.contact.hertz import strip_pressure
 from facegear.contact.lines import ContactLines, unloaded_lines
-from facegear.geometry.design import PairDesign
-from facegear.geometry.unloaded import PAIRS
+from facegear.contact.pattern import EDGES
 from facegear.lubrication.kinematics import line_kinematics
 from facegear.lubrication.loss import HatSlip
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.design import PairDesign
 
 INSIDE = EDGES.index("inside")
 """Number of the planes without an edge near in array `line_where`."""
@@ -71,7 +71,7 @@ def stored_lines(design: PairDesign, arrays: Arrays, unloaded_error: Mapping[flo
     design : PairDesign
         Geometry of the pair.
     arrays : Arrays
-        Arrays PRESSURE_ARRAYS of `facegear.contact.columns`.
+        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`.
     unloaded_error : Mapping[float, float]
         Unloaded transmission error (m) by position.
 
@@ -83,7 +83,7 @@ def stored_lines(design: PairDesign, arrays: Arrays, unloaded_error: Mapping[flo
     Raises
     ------
     NotConverged
-        As `facegear.geometry.separation` does.
+        As `facegear.teeth.separation` does.
     """
     planes = arrays["point_m"].reshape(*arrays["shape"], 3)[0, :, 1]
     return unloaded_lines(design, arrays["contact_position"], arrays["contact_tooth"], unloaded_error, planes)
@@ -100,7 +100,7 @@ def contact_points(design: PairDesign, arrays: Arrays, lines: ContactLines, modu
     design : PairDesign
         Geometry of the pair.
     arrays : Arrays
-        Arrays PRESSURE_ARRAYS of `facegear.contact.columns`.
+        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`.
     lines : ContactLines
         Contact lines of the arrays.
     modulus : float

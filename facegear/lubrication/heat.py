@@ -8,10 +8,9 @@ from facegear.arrays import Array
 from facegear.contact.pattern import passage
 from facegear.errors import FacegearError, NotConverged
 from facegear.lubrication.contact_points import ContactPoints, LoadedContact
-from facegear.lubrication.film import elliptic_film, line_film, shear_heating
+from facegear.lubrication.film import elliptic_film, line_film, local_film, shear_heating, sliding_factor
 from facegear.lubrication.flash import flash_at_any_speed
-from facegear.lubrication.friction import Rubbing
-from facegear.lubrication.micropitting import local_film, sliding_factor
+from facegear.lubrication.friction_formulas import Rubbing
 from facegear.lubrication.oil import Oil
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication
 

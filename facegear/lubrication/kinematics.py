@@ -1,4 +1,4 @@
-"""Sliding and rolling velocities of the flanks, in the mesh frame of `facegear.geometry.design`.
+"""Sliding and rolling velocities of the flanks, in the mesh frame of `facegear.teeth.design`.
 
 The flanks' velocities are those of the unloaded angles; load moves a contact line by some 0.01 mm.
 """
@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.contact.lines import ContactLines
-from facegear.geometry import pinion
-from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import AXIS, RigidMotion, pinion_angle, pinion_to_gear
+from facegear.teeth import pinion
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import AXIS, RigidMotion, pinion_angle, pinion_to_gear
+from facegear.teeth.surfaces import flank_points
 
 FILLET_SAMPLES = 4001
 """Number of points of the fillet between which its normal is interpolated."""

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from facegear.arrays import Array, Arrays, Integers, Mask
-from facegear.geometry.design import PairDesign
-from facegear.geometry.placement import pinion_angle
 from facegear.lubrication.kinematics import pinion_pose, slip, spins, surface_normals
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import pinion_angle
 
 Numbers = float | Array
 
@@ -49,7 +49,7 @@ def hat_slip(design: PairDesign, arrays: Arrays) -> HatSlip:
     design : PairDesign
         Geometry of the pair.
     arrays : Arrays
-        Arrays PRESSURE_ARRAYS of `facegear.contact.columns`.
+        Arrays PRESSURE_ARRAYS of `facegear.contact.pattern`.
 
     Returns
     -------

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 
 from facegear.lubrication.columns import BODY_COLUMNS, MACHINE_COLUMNS, MESH_COLUMNS
+from facegear.lubrication.film import temperature_safety
 from facegear.lubrication.machine_loss import MachineLoss, MeshLoads
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Limits, Lubrication
-from facegear.lubrication.scuffing import temperature_safety
 
 
 @dataclass(frozen=True, eq=False)

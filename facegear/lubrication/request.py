@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from facegear.lubrication.film import allowed_flash_temperature, allowed_integral_temperature
 from facegear.lubrication.friction import FrictionModel
 from facegear.lubrication.oil import Oil
-from facegear.lubrication.scuffing import allowed_flash_temperature, allowed_integral_temperature
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,1 @@
-"""The stages as one table, and what follows from it: needs, rules, answers of the door, a page of docs."""
+"""The stages as one table, the functions behind it, and results that are known or stored."""

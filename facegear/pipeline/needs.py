@@ -1,7 +1,7 @@
-"""Needs of stages from a config, and the cases that share files because their needs agree."""
+"""Parts of a config that stages take from a config, which cases share files, and keys that no stage reads."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from facegear.errors import ConfigError
@@ -155,3 +155,112 @@ def value_at(values: Values, key: str) -> Any:
     for part in key.split("."):
         value = value[part] if value is not None else None
     return value
+
+
+ALWAYS_READ = ("case", "extends", "studies", "reproduction", "transmission.backlash_um")
+"""Keys that are read before any stage runs, or that complete a section."""
+HARMONICS_GIVEN = ("torque_n_m", "definition")
+"""Keys of mesh_stiffness that belong to a computed stiffness."""
+
+
+def idle_keys(file_values: Mapping[str, Any], cases: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """List keys that are given in a config file and have no effect, one line each with the reason.
+
+    Parameters
+    ----------
+    file_values : mapping
+        Values as they stand in the file, without those of a file that it extends.
+    cases : mapping
+        Plain values of all cases of the config by case id, with defaults (`expand_cases`); a key that any of
+        them reads has an effect.
+
+    Returns
+    -------
+    list of str
+        Keys with reasons, in the order of the file.
+    """
+    read = set(ALWAYS_READ)
+    for values in cases.values():
+        read |= set(_keys_read(Case(values, cases)))
+    unread = list(_unread(file_values, read))
+    reasons = [dict(_switched_off(values)) for values in cases.values()]
+    off = {
+        key: reason
+        for key, reason in reasons[0].items()
+        if all(key in of_case for of_case in reasons)
+        and _is_given(file_values, key)
+        and not _is_below(key, unread)
+    }
+    return [f"{key}: no stage that this config asks for reads it" for key in unread] + [
+        f"{key}: {reason}" for key, reason in off.items()
+    ]
+
+
+def _keys_read(case: Case) -> Iterator[str]:
+    """Dotted keys that the stages of a plain run, those before them and their figures take."""
+    run = [name for name, stage in STAGES.items() if stage.condition is not None and stage.condition(case)]
+    for name in dict.fromkeys(before for stage in run for before in stages_before(stage, case.values)):
+        for need in STAGES[name].needs.values():
+            yield from _keys(need)
+
+
+def _is_below(key: str, sections: list[str]) -> bool:
+    return any(f"{key}.".startswith(f"{section}.") for section in sections)
+
+
+def _keys(need: Need) -> tuple[str, ...]:
+    if isinstance(need, ComputedValue):
+        return need.sections
+    return (need,) if isinstance(need, str) else need
+
+
+def _unread(section: Mapping[str, Any], read: set[str], above: str = "") -> Iterator[str]:
+    """Keys of a file that neither stand in a section that is read nor hold one; whole sections as one."""
+    for name, value in section.items():
+        key = f"{above}{name}"
+        parts = key.split(".")
+        if any(".".join(parts[:depth]) in read for depth in range(1, len(parts) + 1)):
+            continue
+        holds_read = any(longer.startswith(f"{key}.") for longer in read)
+        if holds_read and isinstance(value, Mapping):
+            yield from _unread(value, read, f"{key}.")
+        elif not holds_read and value is not None:
+            yield key
+
+
+def _is_given(file_values: Mapping[str, Any], key: str) -> bool:
+    inside: Any = file_values
+    for part in key.split("."):
+        if not isinstance(inside, Mapping) or part not in inside:
+            return False
+        inside = inside[part]
+    return inside is not None
+
+
+def _switched_off(values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Keys within sections that are read, which other keys make meaningless, each with the reason."""
+    stiffness, contact, sweep = values["mesh_stiffness"], values["contact"], values["dynamics"]["sweep"]
+    if stiffness["source"] == "harmonics":
+        for key in HARMONICS_GIVEN:
+            yield f"mesh_stiffness.{key}", "mesh_stiffness.source is harmonics, which has no load"
+    sector = contact["sector"]
+    if sector["pinion_teeth"] == sector["face_gear_teeth"] == "full":
+        yield "contact.sector.cut_faces", "both gears are modelled in full, so that nothing is cut"
+    if sweep["chunks"] == 1:
+        yield "dynamics.sweep.overlap_points", "the sweep has one chunk"
+    machine = values["transmission"]
+    if machine is None:
+        return
+    error = machine["transmission_error"]
+    if error["source"] == "given" and not error["amplitude_um"]:
+        for key in ("phase_deg", "meaning"):
+            yield f"transmission.transmission_error.{key}", "amplitude_um is 0"
+    inputs = [pinion for pinion in machine["pinions"] if pinion["role"] == "input"]
+    has_no_reader = all(pinion["torque_n_m"] is not None for pinion in inputs)
+    if has_no_reader and machine["torque"]["per_input_n_m"] != 0.0:
+        reason = "every input has a torque_n_m of its own" if inputs else "no pinion has the role input"
+        yield "transmission.torque.per_input_n_m", reason
+    for role in machine["shafts"]:
+        of_role = [pinion["name"] for pinion in machine["pinions"] if pinion["role"] == role]
+        if of_role and role not in of_role and all(name in machine["shafts"] for name in of_role):
+            yield f"transmission.shafts.{role}", f"every {role} has a shaft under its own name"

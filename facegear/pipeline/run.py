@@ -6,17 +6,15 @@ This module names no stage: the fingerprint of a rule holds it and what that rul
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from facegear.blas_threads import one_blas_thread
-from facegear.config.arguments import typed_arguments
-from facegear.config.keys import keys_named
+from facegear.build.machine import MachineInputs
 from facegear.io.files import write_part
+from facegear.pipeline.arguments import typed_arguments
+from facegear.pipeline.outcome import Outcome
 from facegear.pipeline.stage import MACHINE_INPUTS, From, Stage, load
-
-if TYPE_CHECKING:
-    from facegear.config.machines import MachineInputs
-    from facegear.stages.outcome import Outcome
+from facegear.schema.base import keys_named
 
 Paths = Mapping[str, str | Sequence[str]]
 

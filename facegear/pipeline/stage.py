@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 from types import MappingProxyType
 from typing import Any, Literal
 
-from facegear.io.checksums import MANIFEST_SUFFIX
+from facegear.io.atomic import MANIFEST_SUFFIX
 
 Values = Mapping[str, Any]
 """Plain values of a whole config."""
@@ -20,7 +20,7 @@ NUMBER = r"\d+"
 """A wildcard that stands for a number is handed to the stage as one."""
 
 
-MACHINE_INPUTS = "facegear.config.machines:MachineInputs"
+MACHINE_INPUTS = "facegear.build.machine:MachineInputs"
 """Class that holds everything that decides what a machine is."""
 
 
@@ -128,7 +128,7 @@ class File:
         CorruptFile
             If the file is missing, altered or lacks something.
         """
-        from facegear.io.files import read_part
+        from facegear.io.files import read_part  # pandas: the table of stages is read without it
 
         holds = load(self.holds) if isinstance(self.holds, str) else self.holds
         return read_part(path, holds, self.may_be_empty, self.text)
@@ -232,8 +232,9 @@ class Figures:
 
 @dataclass(frozen=True, kw_only=True)
 class Stage:
-    """One stage: function `facegear.stages.<name>.<name>`, what it takes and what it writes.
+    """One stage: function `facegear.pipeline.stages.<module>.<name>`, what it takes and what it writes.
 
+    - module: where the function is, that of its own name where left out
     - needs: its arguments from the config; nothing else of it decides a result
     - upstream: its arguments from earlier stages
     - wildcards: of its files beside the case, as regular expressions; they are arguments, too
@@ -250,6 +251,7 @@ class Stage:
 
     name: str
     title: str
+    module: str = ""
     needs: Needs = field(default_factory=dict)
     upstream: Mapping[str, From] = field(default_factory=dict)
     files: Mapping[str, File] = field(default_factory=dict)
@@ -269,7 +271,7 @@ class Stage:
     @property
     def function(self) -> str:
         """Location of the stage's function, as ``module:function``."""
-        return f"facegear.stages.{self.name}:{self.name}"
+        return f"facegear.pipeline.stages.{self.module or self.name}:{self.name}"
 
     @property
     def functions(self) -> tuple[str, ...]:

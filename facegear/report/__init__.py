@@ -1,1 +1,1 @@
-"""The self-contained HTML page of a case."""
+"""The self-contained HTML page of a case, its figures, and the comparison of two folders of results."""

@@ -1,4 +1,4 @@
-// Draws mode shapes of face gears with WebGL 2 from the packed JSON of facegear/report/body_view.py, with what viewer.js holds.
+// Draws mode shapes of face gears with WebGL 2 from the packed JSON of facegear/report/viewers.py, with what viewer.js holds.
 "use strict";
 (() => {
   // u = Re[e^(i (phase - order angle)) (U, i V, W)]; of a standing wave the phase is that of the motion alone

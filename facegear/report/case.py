@@ -9,6 +9,30 @@ import pandas as pd
 
 from facegear.arrays import Arrays
 from facegear.number_format import count_noun
+from facegear.report.case_texts import (
+    BEARINGS,
+    BY_TORQUE,
+    BY_TORQUE_SHOWN,
+    DRAWINGS,
+    DUTY_LOADS,
+    DYNAMIC,
+    DYNAMIC_SHOWN,
+    EVERY_LOAD,
+    FOLLOWING_SHOWN,
+    JUMPS,
+    LONG_TABLE,
+    MODE_CONTACTS,
+    NEAR_RESONANCE,
+    OVER_SPEED,
+    OVER_SPEED_SHOWN,
+    RATING,
+    REACTIONS,
+    ROOT_STRESS,
+    SAFETY,
+    SAFETY_SHOWN,
+    SHAFT_TABLES,
+    STUDY_COLUMNS,
+)
 from facegear.report.contents import (
     CHAPTERS,
     FRICTION,
@@ -20,39 +44,13 @@ from facegear.report.contents import (
     caption_of,
 )
 from facegear.report.first_screen import first_screen
-from facegear.report.inputs import inputs_caption
-from facegear.report.machine import Base, machine_chapter
+from facegear.report.machine import Base, inputs_caption, machine_chapter
 from facegear.report.page import Chapter, Picture, View, render
 from facegear.report.poses import pose_tables, pose_text
 from facegear.report.sharing_map import sharing_map_tables, sharing_map_text
 from facegear.report.table import Table
 from facegear.ties import first_largest_rows
 
-BY_TORQUE = (
-    "One row for each torque on the pinion, over a pitch. ste peak to peak: the largest transmission error "
-    "less the smallest of the positions solved, which is never more than the true value; half: the same with "
-    "every second position only. pressure: the largest away from edges, with the error that the mesh leaves. "
-    "tip line load: the largest at a tip edge, where pressure has no limit; tip length: the greatest length "
-    "of a tip edge that carries load. path radius: distance of the contact forces' centroid from the gear's "
-    "axis"
-)
-BEARINGS = (
-    "Reactions of the bearing of every body at the nominal speed. static: at rest under the mean torques; "
-    "peak: the largest magnitude in each direction. x of a pinion is tangential and y is along the gears' "
-    "axis; the axis of a face gear is z"
-)
-ROOT_STRESS = (
-    "Largest and smallest stress of each fillet over a passage. loaded: the fillet below the flank that "
-    "carries the load; radius: distance from the gear's axis; tangent: angle between the fillet and the "
-    "tooth's middle line"
-)
-SHAFT_TABLES = {
-    "shafts_seats": "Stiffness of what each pinion sits on, without moments, and where it stands under the "
-    "mean torques",
-    "shafts_bearings": "Loads of the shafts on their bearings under the mean torques",
-    "shafts_torsion": "Masses behind torsional springs: twist of the spring, of all before it as well "
-    "(windup), and natural frequencies of the chain with its gear free",
-}
 FOLLOWING_TITLE = (
     "The running machine, followed while its runouts turn, beside the machine at rest. k_gamma: the largest "
     "mean of a mesh cycle over the nominal even share, running; k_v: the largest load over that "
@@ -63,30 +61,8 @@ FOLLOWING_TITLE = (
     "k_gamma k_v with "
     "half of the samples; memory: difference between two starts after the lead, over the largest force"
 )
-STUDY_COLUMNS = [
-    *("study", "label", "torque_n_m", "k_average_mean_n_per_m", "ste_peak_to_peak_um"),
-    *("path_radius_mm", "path_shift_mm", "unloaded_path_shift_mm", "backlash_um"),
-]
-SAFETY = (
-    "Safety and life of every flank under the duty cycle. drive: the flank with which a pinion drives. "
-    "Safety is the factor on all stresses at which Miner's sum is 1. Bending is judged by the root stress of "
-    "the finite elements, and for pinions after ISO 6336-3 (standard) as well; no standard exists for face "
-    "gears, which are judged by the same limits. Pitting is judged by the pressure of the contact analysis "
-    "away from edges, and after ISO 6336-2 (standard) with the gear's flank as that of a rack. edge: "
-    "what tip "
-    "edges carry under the largest torque, where pressure has no limit. life: the shortest of all; inf: no "
-    "load does damage. reliability: at the end of the duty cycle, where the material card gives a Weibull "
-    "shape and a load does damage. green: as safe as required; red: less safe, for the reason given. caveat: "
-    "what the method does not know; it never changes the colour"
-)
-RATING = "Every kind of failure with its limits; the stress is that of the hardest load"
-DUTY_LOADS = (
-    "Loads of the running machine in every bin of the duty cycle: the flank with the largest force. "
-    "mesh load factor (K_gamma): the largest mean of a mesh cycle over the mesh's nominal even "
-    "share; dynamic "
-    "factor (K_v): the largest force over that mean; followed: computed through the hunting cycle while "
-    "runouts turn"
-)
+
+
 BINS = {"0": "nominal", "-1": "all bins"}
 """Bins of a table of losses that are none of the duty cycle, in words."""
 SOURCE = "allowed_contact_temperature_source"
@@ -95,66 +71,6 @@ LOSSES = (
     "The machine at its nominal load and in every bin of its duty cycle. power through meshes: of all meshes "
     "together, over the power in"
 )
-EVERY_LOAD = "Loads of every flank in every bin"
-DYNAMIC = (
-    "Largest root stress of every mesh at the nominal speed. mean: with the mean force of the mesh; running: "
-    "the largest of the history, in which every tooth carries its share of the force of that moment; bound: "
-    "with the largest force throughout the passage. Pressure is that away from edges. Beyond the torques of "
-    "the contact analysis (contact.torques_n_m) stress is taken in proportion"
-)
-OVER_SPEED = (
-    "Hardest loads over the speed range: at the nominal speed, and the worst of each motion. dynamic factor: "
-    "the largest mesh force over the largest at rest; stress and pressure are those with that force "
-    "throughout "
-    "the passage; worst: whether the motion is the hardest of all that are known at that speed"
-)
-MODE_CONTACTS = (
-    "Contacts that are closed in the modes, because the mean torques press them together, with the mesh "
-    "stiffness used. local: the slope dF / d deflection, which small vibrations feel; average: F / "
-    "deflection; "
-    "given: a number of the config. An undecided contact carries too little load to tell it from "
-    "rounding, and "
-    "counts as open"
-)
-NEAR_RESONANCE = 0.3
-"""Largest relative distance of a jump from the linear resonance that it may belong to."""
-JUMPS = (
-    "Abrupt changes of the motion. kind: a jump from one periodic motion, which ends or loses its "
-    "stability, to another; a step of the sweep that left a stable motion because it was too large; or "
-    "irregular motion that begins or ends. error: how far the speed may lie from that of the change. "
-    "moves most: the linear mode with the largest fraction of the energy just "
-    "beside the "
-    "jump, and the multiple of the mesh frequency at which it moves most. linear resonance: the "
-    "speed at which "
-    "that multiple meets the mode's frequency; blank where the jump is more than "
-    f"{100 * NEAR_RESONANCE:.0f} % away from it, and so belongs to no linear resonance of that mode"
-)
-SAFETY_SHOWN = (
-    *("body", "flank", "verdict", "bending_safety", "standard_bending_safety"),
-    *("pitting_safety", "life_hours", "reason"),
-)
-DYNAMIC_SHOWN = (
-    *("mesh", "mean_force_n", "largest_force_n", "dynamic_factor"),
-    *("pinion_running_mpa", "face_gear_running_mpa", "pressure_bound_mpa", "within_torques_solved"),
-)
-FOLLOWING_SHOWN = (
-    *("group", "speed_rpm", "torque_n_m", "mesh_cycles", "mean", "k_gamma", "k_v", "k_gamma_static"),
-)
-BY_TORQUE_SHOWN = (
-    *("torque_n_m", "k_average_mean_n_per_m", "k_local_mean_n_per_m", "ste_peak_to_peak_um"),
-    *("pressure_mpa", "pressure_error_mpa", "tip_line_load_n_per_mm", "fillet_share"),
-)
-OVER_SPEED_SHOWN = (
-    *("motion", "speed_rpm", "mesh", "largest_force_n", "dynamic_factor"),
-    *("pinion_mpa", "face_gear_mpa", "pressure_mpa"),
-)
-"""Columns of the widest tables that are shown at once."""
-REACTIONS = ("radial", "x", "y", "z")
-"""Directions of a bearing's reactions, in the order of columns."""
-DRAWINGS = ("layout", "machine", "tooth_pair")
-"""Figures that show the machine; the first that exists stands in the chapter on the machine."""
-LONG_TABLE = 40
-"""Rows of natural frequencies above which their table is folded."""
 
 
 def case_report(

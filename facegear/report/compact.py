@@ -12,8 +12,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Arrays
-from facegear.contact.columns import EDGES
-from facegear.contact.pattern import pattern
+from facegear.contact.pattern import EDGES, pattern
 from facegear.number_format import format_number
 
 WIDTH, HEIGHT = 320.0, 205.0

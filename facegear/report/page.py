@@ -7,8 +7,11 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from html import escape
 from pathlib import Path
+from string import ascii_letters, digits
 from typing import Any, Literal
+from urllib.parse import quote
 
 import numpy as np
 
@@ -16,8 +19,39 @@ from facegear.arrays import AnyArray
 from facegear.io import documents, pages
 from facegear.io.pictures import read_svg
 from facegear.report.first_screen import FirstScreen
-from facegear.report.stills import data_uri
 from facegear.report.table import Table
+
+DECIMALS = 2
+"""Decimal places of a coordinate (1/72 inch) of a drawing on the page: a hundredth is not seen."""
+UNESCAPED_CHARACTERS = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
+"""Characters that a data URI between single quotes may hold as they are."""
+GAPS = re.compile(r"\s+")
+NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
+
+
+def data_uri(still: str) -> str:
+    """The text of a svg as a data URI that holds no single quote, for an attribute between such quotes.
+
+    A drawing keeps its text and colours; its coordinates are rounded to DECIMALS.
+    """
+    drawing = shortened(still).replace("%", quote("%"))
+    for letter in set(drawing) - UNESCAPED_CHARACTERS - {"%"}:
+        drawing = drawing.replace(letter, quote(letter, safe=""))
+    return f"data:image/svg+xml,{drawing}"
+
+
+def shortened(svg: str) -> str:
+    """Return the drawing without its metadata, with rounded coordinates and without needless gaps."""
+    drawing = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
+    drawing = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _round_numbers, drawing)
+    return GAPS.sub(" ", re.sub(r">\s+<", "><", drawing)).strip()
+
+
+def _round_numbers(attribute: re.Match[str]) -> str:
+    parts = NUMBER.split(attribute[2])
+    parts[1::2] = [f"{round(float(number_text), DECIMALS):g}" for number_text in parts[1::2]]
+    return f'{attribute[1]}="{GAPS.sub(" ", "".join(parts)).strip()}"'
+
 
 FOLDER = Path(__file__).parent
 TEMPLATE = FOLDER / "page.html.j2"
@@ -174,3 +208,37 @@ def encode_array(values: AnyArray, kind: type) -> str:
         Text; numbers keep their unit.
     """
     return base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
+
+
+END = "</header>"
+"""End of the page's header, where the list stands."""
+STYLE = "flex:1 1 100%;border:2px solid #b3261e;border-radius:6px;padding:.4em .8em;margin:.4em 0 0"
+"""Style of the list: as wide as the header, whose layout is a row that wraps."""
+LIST_STYLE = "margin:.2em 0;padding-left:1.2em"
+"""Style of its lines."""
+
+
+def with_omissions(page: str, omissions: Sequence[str]) -> str:
+    """Return a page with a list of what is missing at its head.
+
+    Parameters
+    ----------
+    page : str
+        The whole page, as HTML.
+    omissions : sequence of str
+        What could not be computed and why, a line each; nothing is inserted if there is none.
+
+    Returns
+    -------
+    str
+        The page.
+    """
+    if not omissions:
+        return page
+    head, end, rest = page.partition(END)
+    lines = "".join(f"<li>{escape(line)}</li>" for line in omissions)
+    note = (
+        f'<section role="note" aria-label="Not computed" style="{STYLE}"><strong>Not computed. '
+        f'The page shows everything else.</strong><ul style="{LIST_STYLE}">{lines}</ul></section>\n'
+    )
+    return f"{head}{note}{end}{rest}"

@@ -1,4 +1,4 @@
-// Draws the pair in mesh with WebGL 2 from the packed JSON inside it (facegear/report/pair_view.py),
+// Draws the pair in mesh with WebGL 2 from the packed JSON inside it (facegear/report/viewers.py),
 // with what viewer.js holds.
 "use strict";
 (() => {
@@ -32,7 +32,7 @@
     return found;
   }
 
-  // about -y for the pinion, -z for the gear, as in facegear/geometry/design.py; columns first
+  // about -y for the pinion, -z for the gear, as in facegear/teeth/design.py; columns first
   function turned(name, angle) {
     const c = Math.cos(angle), s = Math.sin(angle);
     return name === "pinion" ? [c, 0, s, 0, 1, 0, -s, 0, c] : [c, -s, 0, s, c, 0, 0, 0, 1];

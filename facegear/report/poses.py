@@ -6,7 +6,7 @@ from operator import itemgetter
 import pandas as pd
 
 from facegear.number_format import format_number
-from facegear.report.page import Table
+from facegear.report.table import Table
 
 MESHES = (
     "Where contacts run under the mean torques: paths along the pinion, unloaded, and loaded where the "

@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.hertz import DENTED
-from facegear.geometry.design import BACKLASH_DIFFERS_UM
+from facegear.contact.pattern import FILLET_CONTACT
 from facegear.number_format import count_noun, format_number
 from facegear.report.balance import nominal
+from facegear.teeth.design import BACKLASH_DIFFERS_UM
 
 POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""

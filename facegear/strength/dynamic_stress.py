@@ -1,14 +1,15 @@
-"""Root stress under the mesh forces of a running machine."""
+"""Root stress and pressure under the mesh forces of a running machine, at one speed and over speed."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.geometry.bodies import BODIES
-from facegear.strength.columns import DYNAMIC_STRESS_COLUMNS
+from facegear.bodies import BODIES
+from facegear.strength.columns import DYNAMIC_STRESS_COLUMNS, STRESS_OVER_SPEED_COLUMNS
 from facegear.strength.flank_contacts import FlankContact, largest_pressure
+from facegear.ties import first_largest_rows
 
 
 def dynamic_stress_table(
@@ -66,3 +67,125 @@ def _row(
     within = steady.is_solved(base_radius * mean) and steady.is_solved(base_radius * max_force)
     factor = max_force / mean if mean > 0.0 else np.nan
     return (mesh, mean, max_force, factor, *(1e-6 * stress for stress in stresses), within)
+
+
+EQUAL_FORCES = 1e-3
+"""Relative difference of largest forces below which motions are equally hard: most often they are one."""
+ROUNDING = 1e-12
+"""Relative tolerance of speeds, for the rounding error of a path that ends at a limit."""
+FORCE_COLUMNS = ("motion", "class", "speed_rpm", "mesh", "largest_force_n")
+"""Columns of the tables of largest forces."""
+
+
+def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
+    """Select the mesh with the largest force at each speed and direction of a sweep.
+
+    Parameters
+    ----------
+    sweep : DataFrame
+        Long table of a sweep.
+
+    Returns
+    -------
+    DataFrame
+        Columns as FORCE_COLUMNS.
+    """
+    rows = sweep[sweep["quantity"] == "largest_elastic_force_n"].reset_index(drop=True)
+    worst = first_largest_rows(rows, "value", ["direction", "speed_rpm"])
+    worst = worst.assign(motion="sweep " + worst["direction"])
+    table = worst.rename(columns={"body_or_mesh": "mesh", "value": "largest_force_n"})
+    return table[list(FORCE_COLUMNS)]
+
+
+def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
+    """Select the mesh with the largest force on every stable stretch of a branch.
+
+    Forces are interpolated linearly between the points of a branch. A stretch has both its ends. Speeds of
+    points that differ from one of `speeds` by rounding are that one.
+
+    Parameters
+    ----------
+    branches : DataFrame
+        Table of branches by point and mesh.
+    speeds : (n,) array
+        Speeds, rpm.
+
+    Returns
+    -------
+    DataFrame
+        Columns as FORCE_COLUMNS.
+    """
+    forces = []
+    for (number, period), rows in branches.groupby(["branch", "period"], sort=False):
+        worst = first_largest_rows(rows, "peak_force_n", ["point"], sort=True)
+        speed = _without_rounding(worst["speed_rpm"].to_numpy(), speeds)
+        force = worst["peak_force_n"].to_numpy()
+        stable, meshes = worst["stable"].to_numpy(bool), worst["mesh"].to_numpy()
+        goes_on = np.append(stable[2:], False)
+        for at in np.flatnonzero(stable[:-1] & stable[1:]):
+            first, last = speed[at : at + 2]
+            inside = speeds[(speeds >= min(first, last)) & (speeds <= max(first, last))]
+            inside = inside[inside != last] if goes_on[at] else inside
+            part = (inside - first) / (last - first or 1.0)
+            force_at_speed = (1.0 - part) * force[at] + part * force[at + 1]
+            mesh = meshes[at] if force[at] >= force[at + 1] else meshes[at + 1]
+            forces += [
+                (f"branch {number}", f"period-{period}", float(rpm), mesh, float(value))
+                for rpm, value in zip(inside, force_at_speed, strict=True)
+            ]
+    return pd.DataFrame(forces, columns=list(FORCE_COLUMNS))
+
+
+def _without_rounding(values: Array, exact: Array) -> Array:
+    """Values (m,) with the nearest of `exact` (n,) in the place of those that differ from it by rounding."""
+    nearest = exact[np.abs(values[:, None] - exact).argmin(axis=1)]
+    return np.where(np.abs(values - nearest) <= ROUNDING * nearest, nearest, values)
+
+
+def stress_table(
+    forces: pd.DataFrame,
+    static_force: float,
+    base_radius: float,
+    contacts: Mapping[str, Collection[FlankContact]],
+) -> pd.DataFrame:
+    """Tabulate the stress under the largest force of each motion.
+
+    The force is taken to act all through the passage, on the flank where it does more. `worst`: the hardest
+    of all motions known at that speed, and those as hard.
+
+    Parameters
+    ----------
+    forces : DataFrame
+        Columns as FORCE_COLUMNS.
+    static_force : float
+        Largest force of all meshes at rest, N; 0 without load.
+    base_radius : float
+        Base radius of the pinion, m.
+    contacts : Mapping[str, Collection[FlankContact]]
+        Contacts of each mesh, one a flank.
+
+    Returns
+    -------
+    DataFrame
+        Columns as STRESS_OVER_SPEED_COLUMNS.
+    """
+    torques = base_radius * forces["largest_force_n"].to_numpy()
+    loads = list(zip([dict.fromkeys(contacts[mesh]) for mesh in forces["mesh"]], torques, strict=True))
+    max_force = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
+    table = forces.assign(
+        dynamic_factor=forces["largest_force_n"] / static_force if static_force > 0.0 else np.nan,
+        **{
+            f"{body}_mpa": [
+                1e-6 * max(contact.tension[body](torque) for contact in near) for near, torque in loads
+            ]
+            for body in BODIES
+        },
+        pressure_mpa=[
+            1e-6 * largest_pressure((contact, torque) for contact in near) for near, torque in loads
+        ],
+        within_torques_solved=[next(iter(near)).is_solved(torque) for near, torque in loads],
+        worst=forces["largest_force_n"] >= (1.0 - EQUAL_FORCES) * max_force,
+    )
+    return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[
+        list(STRESS_OVER_SPEED_COLUMNS)
+    ]

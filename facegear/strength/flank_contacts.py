@@ -1,4 +1,4 @@
-"""Root stress and pressure of each contact of a machine: a gear's drive or back flank with its pinions."""
+"""Root stress and pressure of each contact of a machine, and of the flanks that a rated flank meets."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -7,16 +7,66 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from facegear.arrays import Arrays
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.flank_errors import FLANKS, GEARS
+from facegear.arrays import Array, Arrays, Integers
+from facegear.bodies import BODIES
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
-from facegear.strength.root_stress import RootStress, largest_tension
+from facegear.strength.duty import FlankDuty
+from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 from facegear.strength.root_tables import root_from_arrays
-from facegear.strength.tension_history import TensionHistory
+from facegear.teeth.placement import FLANKS, GEARS
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+class TensionHistory:
+    """Largest tension of all teeth of a body in mesh, over torque and place in the mesh cycle.
+
+    Over torque the largest values go as those of each gauge in `RootStress.at_torque`, between the places
+    solved linearly: the result is no less than the largest of the interpolated gauges.
+    """
+
+    def __init__(self, root: RootStress) -> None:
+        within, position_of = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
+        largest = np.array([down_the_fillet(stress).max(axis=(1, 2, 3)) for stress in root.stress])
+        by_position = np.array(
+            [largest[:, position_of == index].max(axis=1) for index in range(within.size)]
+        ).T
+        self._scale = root.scale
+        self._positions = np.append(within, within[0] + 1.0)
+        self._table = np.hstack([by_position, by_position[:, :1]])
+
+    def __call__(self, torques: Array, positions: Array) -> Array:
+        """Return the stress (n,) Pa at torques (n,) N m and positions (n,) in the mesh cycle, in [0, 1)."""
+        column, on = _cell(self._positions, positions)
+        row, below, above = self._scale.parts(torques)
+        low, high = (
+            (1.0 - on) * self._table[at, column] + on * self._table[at, column + 1]
+            for at in (row, np.minimum(row + 1, len(self._table) - 1))
+        )
+        return below * low + above * high
+
+    def over_passage(self, torque: float) -> float:
+        """Return the largest stress while a torque stays constant all through the passage.
+
+        Parameters
+        ----------
+        torque : float
+            Torque on the pinion, N m.
+
+        Returns
+        -------
+        float
+            Stress, Pa.
+        """
+        positions = self._positions[:-1]
+        return float(self(np.full(positions.size, torque), positions).max())
+
+
+def _cell(edges: Array, values: Array) -> tuple[Integers, Array]:
+    """Cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
+    cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return cell, np.clip((values - edges[cell]) / (edges[cell + 1] - edges[cell]), 0.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,3 +181,84 @@ def largest_pressure(loads: Iterable[tuple[FlankContact, float]]) -> float:
         Pressure, Pa; nan where the edges of all contacts carry all load.
     """
     return float(np.fmax.reduce([contact.pressure.at(torque) for contact, torque in loads]))
+
+
+def met_by(duty: FlankDuty, gears: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the gears and flanks of the contacts of a rated flank.
+
+    Parameters
+    ----------
+    duty : FlankDuty
+        Loads of the rated flank.
+    gears : Sequence[str]
+        Gears of the machine (upper, lower).
+
+    Returns
+    -------
+    list[tuple[str, str]]
+        Gear and flank of each contact.
+    """
+    own_gear = [gear for gear in gears if duty.gear == "face_gear" and duty.body == f"{gear} face gear"]
+    flanks = FLANKS if duty.flank == "each" else (duty.flank,)
+    return [(gear, flank) for gear in own_gear or gears for flank in flanks]
+
+
+def worst_root(duty: FlankDuty, contacts: Sequence[FlankContact]) -> RootStress:
+    """Return the root stress of the contact with the largest stress under the flank's largest load.
+
+    Parameters
+    ----------
+    duty : FlankDuty
+        Loads of the rated flank.
+    contacts : Sequence[FlankContact]
+        Contacts of that flank.
+
+    Returns
+    -------
+    RootStress
+        Root stress of the rated gear in that contact.
+    """
+    roots = [contact.roots[duty.gear] for contact in contacts]
+    return max(roots, key=lambda root: root.at_torque(duty.largest).max())
+
+
+def worst_pressure(contacts: Sequence[FlankContact]) -> ContactPressure:
+    """Combine the contacts by their largest values at every torque that one of them has solved.
+
+    Parameters
+    ----------
+    contacts : Sequence[FlankContact]
+        Contacts of a rated flank.
+
+    Returns
+    -------
+    ContactPressure
+        Largest pressure with its error, edge load, edge length and fillet share.
+    """
+    torques = np.unique([torque for contact in contacts for torque in contact.pressure.torques])
+    by_contact = [_at_torques(entry.pressure, torques) for entry in contacts]
+    pressures, errors = (
+        np.array([getattr(entry, name) for entry in by_contact]) for name in ("pressure", "error")
+    )
+    worst = np.argmax(np.nan_to_num(pressures), axis=0)
+    columns = np.arange(worst.size)
+    largest = {
+        name: np.max([getattr(entry, name) for entry in by_contact], axis=0)
+        for name in ("edge_load", "edge_length", "fillet_share")
+    }
+    return ContactPressure(torques, pressures[worst, columns], errors[worst, columns], **largest)
+
+
+def _at_torques(pressure: ContactPressure, torques: Array) -> ContactPressure:
+    """Interpolate the pressure at more torques (n,) N m than were solved."""
+    if np.array_equal(pressure.torques, torques):
+        return pressure
+    edges = np.array([pressure.edge_at(torque) for torque in torques])
+    return ContactPressure(
+        torques=torques,
+        pressure=np.array([pressure.at(torque) for torque in torques]),
+        error=np.array([pressure.error_at(torque) for torque in torques]),
+        edge_load=edges[:, 0],
+        edge_length=edges[:, 1],
+        fillet_share=pressure.fillet_at(torques),
+    )

@@ -12,14 +12,14 @@ import numpy as np
 import scipy
 
 from facegear.arrays import AnyArray, Array, Arrays
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.flank_errors import FLANKS
-from facegear.poses.surface import PoseSurface
+from facegear.bodies import BODIES
+from facegear.machine.poses.surface import PoseSurface
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import FlankContact, contacts_of
 from facegear.strength.rating import LoadStresses
 from facegear.strength.root_stress import RootStress
+from facegear.teeth.placement import FLANKS
 
 if TYPE_CHECKING:
     import pandas as pd

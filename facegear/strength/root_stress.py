@@ -10,11 +10,10 @@ import numpy as np
 import scipy
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.strength.between_torques import Scale, scale
+from facegear.strength.contact_pressure import Scale, scale
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
-
 
 LONE = 0.5
 """Exponent of stress over torque below a single solved torque, dimensionless: less than its true value, so

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers
-from facegear.geometry.flank_errors import FLANKS, GEARS
+from facegear.bodies import BODIES
 from facegear.strength.columns import (
     ALONG_FACE_COLUMNS,
     FILLETS,
@@ -15,6 +15,7 @@ from facegear.strength.columns import (
     ROOT_STRESS_COLUMNS,
 )
 from facegear.strength.root_stress import RootStress, down_the_fillet
+from facegear.teeth.placement import FLANKS, GEARS
 
 STANDARD_ANGLE = np.radians(30.0)
 """Between the fillet's tangent and the tooth's middle line at the section of ISO 6336-3."""
@@ -173,3 +174,43 @@ def root_from_arrays(arrays: Arrays, body: str, gear: str = "upper", flank: str 
         angle=arrays[f"{body}_tangent_rad"],
         error=arrays[f"{body}_error"],
     )
+
+
+def stress_surface(
+    arrays: Arrays,
+) -> tuple[Array, dict[str, Integers], dict[str, Array]]:
+    """Return the fillets as a surface with fields of stress.
+
+    Fields are the largest and smallest stress (Pa) over the passage at each torque; `body` 0 pinion, 1 face
+    gear; `fillet` 0 below the loaded flank, 1 below the other.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        ROOT_STRESS_ARRAYS.
+
+    Returns
+    -------
+    (n, 3) array, dict, dict
+        Points in their body frames, m; cells, (cells, 4) indices of points under `quad`; fields (n,) by name,
+        Pa or dimensionless.
+    """
+    points, cells, start = [], [], 0
+    parts_by_name: dict[str, list[Array]] = {}
+    for number, body in enumerate(BODIES):
+        position, stress = arrays[f"{body}_position_m"], arrays[f"{body}_stress_pa"]
+        down, along = position.shape[1:3]
+        nodes = start + np.arange(position[..., 0].size).reshape(len(FILLETS), down, along)
+        corners = nodes[:, :-1, :-1], nodes[:, 1:, :-1], nodes[:, 1:, 1:], nodes[:, :-1, 1:]
+        cells.append(np.stack([corner.ravel() for corner in corners], axis=-1))
+        points.append(position.reshape(-1, 3))
+        start += nodes.size
+        fields = {"body": np.full(nodes.size, float(number))}
+        fields["fillet"] = np.repeat(np.arange(float(len(FILLETS))), down * along)
+        for row, torque in enumerate(arrays["torque_n_m"]):
+            fields[f"largest_pa_at_{torque:g}_n_m"] = stress[row].max(axis=0).ravel()
+            fields[f"smallest_pa_at_{torque:g}_n_m"] = stress[row].min(axis=0).ravel()
+        for name, values in fields.items():
+            parts_by_name.setdefault(name, []).append(values)
+    fields_by_name = {name: np.concatenate(parts) for name, parts in parts_by_name.items()}
+    return np.concatenate(points), {"quad": np.concatenate(cells)}, fields_by_name

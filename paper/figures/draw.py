@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.plots.campbell import CLASS_COLOURS
-from facegear.plots.colours import BLUE, COLOURS, RED, grey
-from facegear.plots.description import NARROW, Axis, Bars, Curve, Figure, Key, Line, Look, Panel
-from facegear.plots.response import SIDE_STYLES
-from facegear.plots.sweep import AXIS_STYLES, DIRECTION_STYLES, select
+from facegear.report.figures.colours import BLUE, COLOURS, RED, grey
+from facegear.report.figures.description import NARROW, Axis, Figure, Key, Panel
+from facegear.report.figures.marks import Bars, Curve, Line, Look
+from facegear.report.figures.motion import AXIS_STYLES, CLASS_COLOURS, DIRECTION_STYLES, SIDE_STYLES, select
 from paper.figures.claims_of import STUDIES
 from paper.scorecard.claims import Claim
 from paper.scorecard.criteria_sharing import MAX_UNDEFINED

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.scenarios.statistics import fraction_of
+from facegear.studies.statistics import fraction_of
 from paper.scorecard.claims import Claim
 
 CONFIDENCE = 0.95

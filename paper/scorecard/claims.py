@@ -5,8 +5,8 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, parse, refuse
-from facegear.config.yaml_file import read_yaml
+from facegear.schema.base import Section, parse, refuse
+from facegear.schema.yaml_file import read_yaml
 
 TORQUE, GEAR_DATA = "torque per engine", "gear data"
 """Names of undisclosed inputs: of the dynamics, and of the teeth."""

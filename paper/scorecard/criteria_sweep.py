@@ -7,7 +7,7 @@ so that none of them dominates. It is judged on the upward sweep unless said oth
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.dynamics.sweeps.maxima import local_maxima
+from facegear.motion.between_samples import local_maxima
 from facegear.number_format import count_noun
 from paper.scorecard.outcome import ClaimOutcome, Tables, nearest, number, statement
 

@@ -7,9 +7,9 @@ import pandas as pd
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.number_format import count_noun
-from facegear.plots.save import save
-from facegear.provenance.stage import stage
-from facegear.report.inputs import inputs_in_words
+from facegear.pipeline.provenance.stage import stage
+from facegear.report.figures.save import save
+from facegear.report.machine import inputs_in_words
 from paper.figures.claims_of import NUMBERS, claims_of
 from paper.figures.draw import draw, shown_data
 from paper.figures.page import file_name, render

@@ -4,9 +4,9 @@ import pandas as pd
 
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
-from facegear.load_sharing.collect import NOMINAL, collect_tables
-from facegear.provenance.stage import stage
-from facegear.report.inputs import inputs_in_words
+from facegear.pipeline.provenance.stage import stage
+from facegear.report.machine import inputs_in_words
+from facegear.sharing.tables import NOMINAL, collect_tables
 from paper.scorecard.claims import read_claims
 from paper.scorecard.page import counts, render
 from paper.scorecard.rows import outcome_table, scorecard

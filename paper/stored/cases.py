@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from facegear.config.base import parse
-from facegear.config.cases import expand_cases, folder_name, set_key
-from facegear.config.model import Config
+from facegear.build.cases import expand_cases, folder_name, set_key
+from facegear.build.config import Config
+from facegear.schema.base import parse
 
 DECISIVE = (
     *("tooth_pair", "mesh", "contact", "mesh_stiffness"),

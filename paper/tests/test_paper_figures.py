@@ -201,7 +201,7 @@ def test_the_page_holds_every_claim_with_its_verdict_and_leads_to_the_other_inpu
 
 
 def test_the_inputs_that_one_may_switch_between_are_configs_of_those_cases():
-    from facegear.config.yaml_file import read_yaml
+    from facegear.schema.yaml_file import read_yaml
 
     for one in INPUTS:
         values = read_yaml(ROOT / one.config)

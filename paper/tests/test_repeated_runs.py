@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from facegear.config.load import load_config
+from facegear.build.load import load_config
 from paper.reproduction import read_reproduction
 from paper.scorecard.base_rates import RATE_COLUMNS
 from paper.scorecard.claims import read_claims

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.load import load_config
+from facegear.build.load import load_config
 from facegear.errors import ConfigErrors
 from paper.reproduction import read_reproduction
 

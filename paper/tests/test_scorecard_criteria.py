@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.dynamics.steady_state.spectra import spectrum
+from facegear.motion.steady_state.statistics import spectrum
 from paper.scorecard.criteria import CRITERIA
 
 SPEEDS = np.linspace(1000.0, 2000.0, 101)

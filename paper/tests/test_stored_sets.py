@@ -7,10 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.config.cases import set_key
-from facegear.config.load import load_config
-from facegear.config.machines import MachineInputs
-from facegear.harmonics.series import Harmonics
+from facegear.build.cases import set_key
+from facegear.build.load import load_config
+from facegear.build.machine import MachineInputs
+from facegear.harmonics import Harmonics
 from paper.stored.sets import config_changes, set_cases
 from paper.stored.waveforms import Waveform
 

@@ -2,7 +2,7 @@
 
 from math import acos, pi, sin, sqrt, tan
 
-from facegear.geometry.design import PairDesign
+from facegear.teeth.design import PairDesign
 
 
 def section_loss_factor(design: PairDesign, radius: float) -> float:

@@ -8,15 +8,14 @@ import pytest
 import scipy.sparse as sp
 from skfem import MeshHex1, MeshHex2
 
-from facegear.contact.bodies.assembly import elements_of
-from facegear.contact.bodies.body import ElasticBody
+from facegear.contact.bodies.elements import ElasticBody, elements_of
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, interpolation, pressure_basis
 from facegear.contact.options import Refinement
-from facegear.contact.solver import solve_contact
-from facegear.geometry.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Shaper
-from facegear.mesh.sizes import MeshSizes
+from facegear.contact.position_solver import solve_contact
+from facegear.teeth.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.mesh_sizes import MeshSizes
 
 STEEL = Material(206e9, 0.3)
 FINE = MeshSizes(1.5e-3, 3.2e-3, 3e-3), Refinement(4, 2, 2, 2.0)

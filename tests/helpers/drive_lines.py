@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 from lumped_machines import make_layout, make_machine
 
-from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed_shaft import Bearing, Shaft, condense_shaft
-from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.drive_line import DriveLine, Seat, TurningMass
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
 
 TILT_INERTIA = 1.5e-3
 CHAINS = {

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from facegear.mesh_law.force_table import ForceTable
+from facegear.meshing.force_table import ForceTable
 
 
 def power_table(levels=400, depth=0.0, first=1e-5, last=4.0, size=1.0, exponent=1.5):

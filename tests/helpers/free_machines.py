@@ -3,9 +3,9 @@
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.transmission.layout import DOF_PER_BODY, Layout
-from facegear.transmission.lumped_bodies import lumped_model
-from facegear.transmission.modes import Modes, drive_flanks, modes_of
+from facegear.machine.layout import DOF_PER_BODY, Layout
+from facegear.machine.linear_model import lumped_model
+from facegear.machine.modes import Modes, drive_flanks, modes_of
 
 
 def natural_modes(layout: Layout, mesh_stiffness: float) -> Modes:

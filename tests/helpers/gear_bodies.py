@@ -9,18 +9,17 @@ from math import pi
 import numpy as np
 from lumped_machines import make_layout, make_machine
 
-from facegear.gear_body.body import SolvedBody, solve_body
-from facegear.gear_body.matrices import BodyMatrices, body_matrices
-from facegear.gear_body.mesh import body_mesh
-from facegear.gear_body.patch import Patch
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.gear_body.reduction import reduced_body
-from facegear.gear_body.section import Hub, Rim, Section, Web, rectangle, wheel
-from facegear.geometry.design import Material
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.loaded_contacts import forces_by_active_sets
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.loaded_contacts import forces_by_active_sets
+from facegear.parts.body_mesh import body_mesh
+from facegear.parts.gear_body import SolvedBody, reduced_body, solve_body
+from facegear.parts.matrices import BodyMatrices, body_matrices
+from facegear.parts.reduced_body import ReducedBody
+from facegear.parts.section import Section, rectangle
+from facegear.parts.wheel import Hub, Patch, Rim, Web, wheel
+from facegear.teeth.design import Material
 
 STEEL = Material(206e9, 0.3)
 TEETH = 143

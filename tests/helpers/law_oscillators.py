@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 from oscillators import one_degree
 
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import at_parameter
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import State
+from facegear.motion.branches.family import Family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.points import at_parameter
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import State
 
 
 def oscillator(law, damping=0.0, amplitude=0.0, mean=1.0, lower=-np.inf, upper=0.0):

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
-from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
+from facegear.harmonics import Harmonics
+from facegear.machine.kinematics import PRINTED_KINEMATICS
+from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side
+from facegear.machine.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
 
 PLACES = (
     ("tail idler", Role.TAIL, 0.0),

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from facegear.geometry import face_gear
-from facegear.geometry.design import DeviationGrid
-from facegear.geometry.nominal import flank_face
-from facegear.geometry.pinion_surface import SurfacePoints
-from facegear.geometry.placement import to_left_flank
-from facegear.geometry.separation import Separation, separation
+from facegear.teeth import face_gear
+from facegear.teeth.design import DeviationGrid
+from facegear.teeth.placement import to_left_flank
+from facegear.teeth.separation import Separation, separation
+from facegear.teeth.surfaces import SurfacePoints, flank_face
 
 UM, MM = 1e-6, 1e-3
 

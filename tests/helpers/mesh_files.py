@@ -2,7 +2,7 @@
 
 import meshio
 
-from facegear.io.checksums import verify
+from facegear.io.atomic import verify
 
 
 def read_msh(path):

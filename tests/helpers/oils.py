@@ -1,8 +1,9 @@
 """Oils of the package in SI units."""
 
-from facegear.config.base import parse
-from facegear.config.oil_card import OIL_CARDS, OilCard, oil_of
-from facegear.config.yaml_file import read_yaml
+from facegear.build.lubrication import oil_of
+from facegear.schema.base import parse
+from facegear.schema.cards import OIL_CARDS, OilCard
+from facegear.schema.yaml_file import read_yaml
 
 NAMES = sorted(path.stem for path in OIL_CARDS.glob("*.yaml"))
 

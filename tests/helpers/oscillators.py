@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from facegear.dynamics.integrator.system import System
-from facegear.mesh_law.linear import LinearLaw, Piecewise
+from facegear.meshing.linear import LinearLaw, Piecewise
+from facegear.motion.integrator.system import System
 
 
 def one_degree(

@@ -6,15 +6,14 @@ import numpy as np
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.simulate import Model, static_start
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Role, Side, Tilt
-from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
+from facegear.harmonics import Harmonics
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import KINEMATICS, PRINTED_KINEMATICS
+from facegear.machine.layout import Role, Side, Tilt
+from facegear.machine.machine import OpenFlanks, mesh_frequency
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.simulate import Model, static_start
 
 FINE = Settings(tolerance=1e-14)
 

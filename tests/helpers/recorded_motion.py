@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.integrator.system import System
-from facegear.dynamics.motion import Settings, State
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.integrator.system import System
+from facegear.motion.plan import Settings, State
 
 ROOM = 256
 """Steps of a period that there is room for before their number is known."""

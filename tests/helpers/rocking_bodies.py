@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.transmission.linear_model import LinearModel, Spin
+from facegear.machine.linear_model import LinearModel, Spin
 
 TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
 

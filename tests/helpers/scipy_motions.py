@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.steady_state.simulate import static_start
-from facegear.harmonics.series import stacked_values
+from facegear.harmonics import stacked_values
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.steady_state.simulate import static_start
 
 
 def kicked(model, size):

@@ -11,10 +11,10 @@ from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
 from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import elastic_tooth
-from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.mesh.sizes import named_sizes
+from facegear.strength.root_form import SpurGear
 from facegear.strength.root_stress import down_the_fillet
-from facegear.strength.spur import SpurGear
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.mesh_sizes import named_sizes
 from validation.contact.twin import slab_tooth
 
 

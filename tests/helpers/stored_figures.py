@@ -9,14 +9,14 @@ from matplotlib.container import BarContainer, ErrorbarContainer
 from matplotlib.contour import ContourSet
 
 import facegear
-from facegear.config.arguments import typed_arguments
+from facegear.pipeline.arguments import typed_arguments
 from facegear.pipeline.needs import resolved_needs, shared_sources
 from facegear.pipeline.reported import asked_for
 from facegear.pipeline.stage import load
 from facegear.pipeline.table import STAGES
-from facegear.plots.draw_matplotlib import draw
-from facegear.plots.draw_plotly import interactive
-from facegear.plots.plotly_marks import straight
+from facegear.report.figures.draw_matplotlib import draw
+from facegear.report.figures.draw_plotly import interactive
+from facegear.report.figures.plotly_values import straight
 
 
 def stored_figures(config, results):

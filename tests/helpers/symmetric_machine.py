@@ -4,10 +4,10 @@ from dataclasses import replace
 from functools import cache
 
 import facegear
-from facegear.config.dynamics import sweep_plan
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import MachineInputs
-from facegear.dynamics.steady_state.simulate import build_model
+from facegear.build.machine import MachineInputs
+from facegear.build.machine_layout import ToothNumbers
+from facegear.build.plans import sweep_plan
+from facegear.motion.steady_state.simulate import build_model
 
 
 @cache

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from facegear.config.machine_layout import ToothNumbers
-from facegear.harmonics.series import Harmonics
+from facegear.build.machine_layout import ToothNumbers
+from facegear.harmonics import Harmonics
 
 TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)
 STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from facegear.dynamics.branches.continuation import follow
-from facegear.dynamics.branches.points import at_parameter
+from facegear.motion.branches.continuation import follow
+from facegear.motion.branches.points import at_parameter
 
 
 def branch_at(period_map, z, value, run):

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.cases import expand_cases
-from facegear.config.load import load_config
-from facegear.config.yaml_file import read_yaml
+from facegear.build.cases import expand_cases
+from facegear.build.load import load_config
 from facegear.errors import FacegearError
+from facegear.schema.yaml_file import read_yaml
 
 CONFIGS = sorted((Path(__file__).parents[2] / "config").glob("*.yaml"))
 STRANGE = [

@@ -15,7 +15,7 @@ README = (ROOT / "README.md").read_text()
 FILES = {
     "facegear/py.typed",
     "facegear/example.yaml",
-    "facegear/config/config.schema.json",
+    "facegear/schema/config.schema.json",
     "facegear/report/page.html.j2",
     "facegear/report/page.css",
     "facegear/report/plotly-cartesian.min.js",

@@ -7,11 +7,11 @@ import pytest
 from lumped_machines import make_layout, make_machine
 
 from facegear.by_content import content, kept_by_content
-from facegear.dynamics.integrator.reduction import reduce
-from facegear.dynamics.steady_state.simulate import build_model
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.motion.integrator.reduction import reduce
+from facegear.motion.steady_state.simulate import build_model
 
 
 def test_a_pure_function_is_evaluated_once_for_arguments_that_say_the_same():

@@ -6,11 +6,11 @@ import pytest
 from ruamel.yaml import YAML
 
 from facegear.__main__ import main
+from facegear.build.load import load_config
 from facegear.checking import check_config
-from facegear.config.load import load_config
-from facegear.config.yaml_file import read_yaml
-from facegear.variants.first_machine import first_machine
-from facegear.variants.starting_wishes import MachineWishes
+from facegear.new_machine.first_machine import first_machine
+from facegear.new_machine.wishes import MachineWishes
+from facegear.schema.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = sorted([*(ROOT / "config").glob("*.yaml"), *(ROOT / "examples" / "machines").glob("*.yaml")])

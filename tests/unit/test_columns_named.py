@@ -10,9 +10,9 @@ import pandas as pd
 import pytest
 
 import facegear
+from facegear.pipeline.results.base import Result
 from facegear.pipeline.stage import load
 from facegear.pipeline.table import STAGES
-from facegear.results.base import Result
 
 ROOT = Path(__file__).parents[2]
 CASES = {
@@ -47,8 +47,8 @@ def stored_columns(kind, method):
 
 
 def kinds():
-    for module in pkgutil.iter_modules(facegear.results.__path__):
-        import_module(f"facegear.results.{module.name}")
+    for module in pkgutil.iter_modules(facegear.pipeline.results.__path__):
+        import_module(f"facegear.pipeline.results.{module.name}")
     return Result.__subclasses__()
 
 

@@ -6,7 +6,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-from facegear.config.yaml_file import read_yaml
+from facegear.schema.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

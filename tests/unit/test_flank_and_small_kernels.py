@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from facegear._kernels import flanks, samples, statics, strength
-from facegear.mesh_law.laws_at_phases import LinearHeld, LoadDependentHeld
-from facegear.transmission.block_statics import Springs
+from facegear.machine.block_statics import Springs
+from facegear.meshing.law import LinearHeld, LoadDependentHeld
 
 BLANK_FIELDS = (
     *("base", "ratio", "space", "lift", "tip_centre", "tip_rounding", "tip_roll", "edge_start", "inner"),

@@ -15,12 +15,12 @@ from ruamel.yaml import YAML
 
 import facegear
 from facegear import errors
-from facegear.compare.answers import open_answer
-from facegear.compare.judge import compare
 from facegear.errors import FacegearError
 from facegear.io.workbook import LONGEST_NAME
+from facegear.pipeline.results.base import Result
 from facegear.pipeline.table import STAGES
-from facegear.results.base import Result
+from facegear.report.compare.answers import open_answer
+from facegear.report.compare.judge import compare
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -366,8 +366,8 @@ def test_every_table_of_an_answer_is_a_sheet_of_its_workbook(gearbox, tmp_path, 
 
 def test_every_answer_of_the_door_has_something_to_write_into_a_workbook():
     """A stage that writes no csv needs sheets of its own."""
-    for module in pkgutil.iter_modules(facegear.results.__path__):
-        import_module(f"facegear.results.{module.name}")
+    for module in pkgutil.iter_modules(facegear.pipeline.results.__path__):
+        import_module(f"facegear.pipeline.results.{module.name}")
     for answer in Result.__subclasses__():
         files = STAGES[answer.STAGE].files
         tables = [name for name, file in files.items() if file.path.endswith((".csv", ".parquet"))]

@@ -7,7 +7,7 @@ import pytest
 from forked_python import run_together
 
 import facegear
-import facegear.__main__ as command_line
+from facegear import __main__ as command_line
 
 SOURCES = "in the folder of facegear's sources)"
 MEAN = {"mesh_stiffness.mesh_law": "constant_load", "modal.stiffness": "average"}

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 import facegear
-import facegear.__main__ as command_line
-from facegear.config.yaml_file import read_yaml
+from facegear import __main__ as command_line
 from facegear.exchange.rexs import Shaft, Spur, Unit, write_rexs
 from facegear.gearbox import load
+from facegear.schema.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "tutorials" / "first_machine.md").read_text()

@@ -74,7 +74,7 @@ def test_a_patch_of_another_program_is_found(source):
     "source",
     [
         "class A:\n    def __init__(self, other):\n        self._kept = other._kept",
-        "from facegear.config import load\nload._cache = 1",
+        "from facegear.schema import load\nload._cache = 1",
         "from collections import namedtuple\nPoint = namedtuple('Point', 'x')\nPoint(1)._replace(x=2)",
         "import numpy as np\nx = np.zeros(3)\nx.shape = (3, 1)\nx[0] = 1",
         "import os\nos.environ['A'] = '1'",

@@ -8,7 +8,7 @@ import pytest
 import facegear
 from facegear.__main__ import main
 from facegear.errors import FacegearError, NotConverged
-from facegear.results.chain import Chain
+from facegear.pipeline.results.chain import Chain
 
 ROOT = Path(__file__).parents[2]
 CASE = str(ROOT / "config" / "harmonics_only.yaml")

@@ -5,7 +5,7 @@ import pytest
 import references
 from references import against, agrees
 
-DECLARED = {"capability": "geometry", "module": "facegear.geometry.limits"}
+DECLARED = {"capability": "geometry", "module": "facegear.teeth.limits"}
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import pytest
 
 import facegear
 from facegear.errors import FacegearError
-from facegear.load_sharing.hunting_tables import GROUP_COLUMNS
-from facegear.load_sharing.running_machine import RUNNING_COLUMNS
+from facegear.sharing.hunting import GROUP_COLUMNS
+from facegear.sharing.running_machine import RUNNING_COLUMNS
 
 BEARING = {"x": 1e9, "y": 1e9, "z": 1e9}
 PAIR = {

@@ -5,10 +5,10 @@ import re
 import pytest
 
 from facegear.__main__ import main
+from facegear.build.load import load_config
 from facegear.checking import check_config
-from facegear.config.load import load_config
-from facegear.config.yaml_file import read_yaml
-from facegear.variants.first_machine import first_machine
+from facegear.new_machine.first_machine import first_machine
+from facegear.schema.yaml_file import read_yaml
 from validation.starters import COUNT, SHARING, draw_machines, run_all
 
 LIGHTEST = (18, 4, 16)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from facegear.pipeline.provenance.fingerprint import fingerprint, stage_fingerprint
+from facegear.pipeline.provenance.sources import recall, remember
 from facegear.pipeline.table import STAGES
-from facegear.provenance.fingerprint import fingerprint, stage_fingerprint
-from facegear.provenance.sources import recall, remember
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "facegear", "paper", "validation", "config")
@@ -77,7 +77,7 @@ def dry_run(*arguments: str) -> subprocess.CompletedProcess[str]:
 def processes() -> multiprocessing.context.ForkServerContext:
     """Processes in which Snakemake is imported already, as its imports are most of a dry run."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["snakemake.cli", "facegear.config.cases", "facegear.pipeline.needs"])
+    context.set_forkserver_preload(["snakemake.cli", "facegear.build.cases", "facegear.pipeline.needs"])
     return context
 
 

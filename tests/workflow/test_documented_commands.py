@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from projects import dry_run, environment
 
-import facegear.__main__ as command_line
-from facegear.compare.answers import answer_names
+from facegear import __main__ as command_line
+from facegear.report.compare.answers import answer_names
 
 ROOT = Path(__file__).parents[2]
 DOCS = (ROOT / "docs" / part for part in (".", "tutorials", "how_to", "explanation", "reference"))

@@ -9,7 +9,7 @@ import pytest
 from projects import ROOT
 
 import facegear
-from facegear.provenance import fingerprint
+from facegear.pipeline.provenance import fingerprint
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 ANSWERS = ("geometry", "contact", "stiffness", "modes", "response", "sweep", "load_sharing")

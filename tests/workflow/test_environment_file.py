@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.yaml_file import read_yaml
+from facegear.schema.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[2]
 

@@ -5,7 +5,7 @@ import pytest
 from projects import ROOT
 from stored_figures import require_equal_drawings, stored_figures
 
-from facegear.plots.description import Figure
+from facegear.report.figures.description import Figure
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 UNITS = {

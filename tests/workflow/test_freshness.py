@@ -42,8 +42,8 @@ def test_a_first_run_parses_the_sources_of_the_rules_that_it_needs_alone(tmp_pat
     Project(tmp_path / "run", sources).run("results/paper/modal/frequencies.csv")
     parsed = json.loads((sources / ".snakemake" / "sources.json").read_text())["files"]
     names = {module for _, imports in parsed.values() for _, module, _ in imports}
-    assert "facegear.transmission.modes" in names
-    assert "facegear.contact.bodies.factor" not in names
+    assert "facegear.machine.modes" in names
+    assert "facegear.sparse.matrices" not in names
 
 
 @pytest.fixture(scope="session")
@@ -85,24 +85,24 @@ def test_copy_of_the_sources_has_nothing_to_do(edited):
 @pytest.mark.parametrize(
     ("function", "reruns", "spares"),
     [
-        ("facegear.geometry.limits:radius_limits", {"geometry"}, {"modal"}),
+        ("facegear.teeth.limits:radius_limits", {"geometry"}, {"modal"}),
         (
-            "facegear.contact.bodies.factor:solve_sparse",
+            "facegear.sparse.matrices:solve_sparse",
             {"compliance", "contact"},
             {"geometry", "mesh", "modal"},
         ),
         (
-            "facegear.transmission.modes:modes_of",
+            "facegear.machine.modes:modes_of",
             {"modal"},
             {"geometry", "mesh", "compliance", "contact", "stiffness"},
         ),
         (
-            "facegear.load_sharing.coefficients:sharing_coefficient",
+            "facegear.sharing.even_shares:sharing_coefficient",
             {"load_sharing"},
             {"contact", "stiffness", "dynamics_response", "modal"},
         ),
         (
-            "facegear.plots.modal:figures",
+            "facegear.report.figures.machine:modal_figures",
             {"modes_figures"},
             {"modal", "contact", "dynamics_response", "load_sharing"},
         ),
@@ -115,12 +115,12 @@ def test_editing_a_function_reruns_its_stages_and_those_after_it(edited, functio
 
 
 def test_a_function_that_nothing_calls_reruns_nothing(edited):
-    name = "facegear/transmission/modes.py"
+    name = "facegear/machine/modes.py"
     last = (ROOT / name).read_text()[-40:]
     assert edited(name, last, f"{last}\n\ndef added() -> int:\n    return 1\n") == set()
 
 
-@pytest.mark.parametrize("module", ["facegear/contact/bodies/factor.py", "facegear/geometry/design.py"])
+@pytest.mark.parametrize("module", ["facegear/sparse/matrices.py", "facegear/teeth/design.py"])
 def test_a_comment_reruns_nothing(edited, module):
     last = (ROOT / module).read_text()[-40:]
     assert edited(module, last, f"{last}# only a comment\n") == set()

@@ -7,7 +7,7 @@ import re
 import pytest
 from projects import ROOT
 
-from facegear.config.yaml_file import read_yaml
+from facegear.schema.yaml_file import read_yaml
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))

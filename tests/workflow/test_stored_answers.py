@@ -5,7 +5,9 @@ import sys
 
 from projects import ROOT
 
-RENEW = "where this is meant: python -m facegear.compare.answers current results/quick (CONTRIBUTING.md)"
+RENEW = (
+    "where this is meant: python -m facegear.report.compare.answers current results/quick (CONTRIBUTING.md)"
+)
 
 
 def test_the_quick_case_gives_the_stored_answers(quick):

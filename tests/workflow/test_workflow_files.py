@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 from projects import ROOT, SCRIPTS, Project, copy_sources, dry_run
 
-from facegear.config.load import load_config
-from facegear.config.yaml_file import read_yaml
+from facegear.build.load import load_config
 from facegear.pipeline.stage import FIGURES
 from facegear.pipeline.table import STAGES as TABLE
-from facegear.report.inputs import inputs_in_words
+from facegear.report.machine import inputs_in_words
+from facegear.schema.yaml_file import read_yaml
 
 pytestmark = pytest.mark.xdist_group("workflow_files")
-STAGES = sorted((ROOT / "facegear" / "stages").glob("*.py"))
+STAGES = sorted((ROOT / "facegear" / "pipeline" / "stages").glob("*.py"))
 RULES_AS_JSON = """
 import json
 from types import SimpleNamespace

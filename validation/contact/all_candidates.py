@@ -6,8 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.contact.candidates import Candidates
-from facegear.contact.position_solver import PositionContact
-from facegear.contact.solver import solve_contact
+from facegear.contact.position_solver import PositionContact, solve_contact
 
 
 def solve_candidates(

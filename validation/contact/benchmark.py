@@ -11,18 +11,16 @@ import pandas as pd
 
 from facegear.contact.bodies.compliance import coupled_compliance, whole
 from facegear.contact.bodies.layer import tied_system
-from facegear.contact.bodies.mirror import halves
-from facegear.contact.bodies.substructure import condense
-from facegear.contact.gear_flank import GearFlank
+from facegear.contact.bodies.substructure import condense, halves
+from facegear.contact.gear_flank import BUILDERS, GearFlank, contact_model, extent, gear_flank
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, CutFaces, Refinement, Sector
-from facegear.contact.pair import BUILDERS, contact_model, extent, gear_flank
 from facegear.contact.position import LoadedPosition
 from facegear.contact.teeth import elastic_tooth
 from facegear.errors import NotConverged
-from facegear.geometry.design import Material, PairDesign
-from facegear.harmonics.fit import fit_harmonics
-from facegear.mesh.sizes import MeshSizes, named_sizes
+from facegear.harmonics import fit_harmonics
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes, named_sizes
 from validation.contact.refinement_levels import CUTS, DEFAULT, LIMITS, LINEAR, SECTORS
 
 Result = TypeVar("Result")

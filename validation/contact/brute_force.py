@@ -15,11 +15,11 @@ from skfem import ElementLineP2
 from skfem.quadrature import get_quadrature
 
 from facegear.arrays import Array, Integers
-from facegear.contact.bodies.factor import solve_sparse
 from facegear.errors import NotConverged
-from facegear.geometry import pinion
-from facegear.geometry.design import Material
-from facegear.geometry.unloaded import PAIRS
+from facegear.sparse.matrices import solve_sparse
+from facegear.teeth import pinion
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.design import Material
 from validation.contact.brute_mesh import FacetChain, FlatGear, FlatMesh, flat_gear, refine
 from validation.contact.twin import involute_separation, rotate, standard_centre
 

@@ -13,9 +13,9 @@ from skfem import Basis, ElementTriP2, ElementVector, MeshQuad, MeshTri
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.geometry.design import Material, PairDesign
-from facegear.mesh.sector import sector
-from facegear.mesh.sizes import MeshSizes
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.tooth_mesh import sector
 from validation.contact.twin import slab_tooth
 
 

@@ -16,13 +16,11 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.contact.teeth import LOADED_SIDE
 from facegear.errors import FacegearError
-from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.placement import to_pinion_section
-from facegear.mesh.export import element_faces
-from facegear.mesh.orderings import SERENDIPITY20
-from facegear.mesh.sector import SectorMesh, sector
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import gear_tooth, pinion_tooth
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_files import SERENDIPITY20, element_faces
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.placement import to_pinion_section
+from facegear.teeth.tooth_mesh import SectorMesh, gear_tooth, pinion_tooth, sector
 from validation.contact.process import run_alone
 
 PROGRAM = "ccx"

@@ -2,8 +2,8 @@
 
 from math import pi, tan
 
-from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion import junction_roll
+from facegear.teeth.design import PairDesign
+from facegear.teeth.pinion import junction_roll
 
 
 def single_stiffness(first: PairDesign, second: PairDesign) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.errors import FacegearError
-from facegear.geometry.design import Material
+from facegear.teeth.design import Material
 from validation.contact.process import run_alone
 
 VERSION = "10.4.4"

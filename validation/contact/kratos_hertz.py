@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Integers
-from facegear.geometry.design import Material
+from facegear.teeth.design import Material
 from validation.contact.kratos import VERSION, TwoBodies, solve
 
 RADIUS, YOUNG, POISSON = 10.0, 210_000.0, 0.3

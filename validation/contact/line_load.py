@@ -7,13 +7,13 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.surface import interpolation
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.options import Ends, Refinement
-from facegear.contact.pair import BUILDERS
 from facegear.contact.root_gauges import RootGauges, root_gauges
 from facegear.contact.teeth import ContactSide, elastic_tooth
-from facegear.geometry.design import Material, PairDesign
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import FeTooth
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.tooth_mesh import FeTooth
 
 HEIGHT = 0.25
 """Position of the line on the flank, 0 at its tip end to 1 at its root end, evenly in the mesh's rows."""

@@ -10,15 +10,15 @@ from typing import Literal
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.contact.bodies.gauges import gauges_on
-from facegear.contact.pair import BUILDERS
+from facegear.contact.bodies.surface import gauges_on
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.root_gauges import fillet_sides
 from facegear.contact.teeth import LOADED_SIDE, contact_side
-from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.placement import to_pinion_section
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import FeTooth
 from facegear.strength.root_stress import down_the_fillet
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.placement import to_pinion_section
+from facegear.teeth.tooth_mesh import FeTooth
 from validation.contact.kratos import TwoBodies
 from validation.contact.sector_model import angles_at
 from validation.contact.stress_peer import ENDS

@@ -20,8 +20,8 @@ from facegear.contact.pressure import flank_pressure
 from facegear.contact.root_gauges import RootGauges, root_gauges
 from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.errors import FacegearError
-from facegear.geometry.design import Material
-from facegear.mesh.tooth import FeTooth
+from facegear.teeth.design import Material
+from facegear.teeth.tooth_mesh import FeTooth
 from validation.contact.pair_bodies import PairBodies, along, largest_inside
 from validation.contact.process import ProcessResult, run_alone
 from validation.contact.sector_model import SectorPair

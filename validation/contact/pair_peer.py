@@ -14,9 +14,9 @@ import pandas as pd
 from facegear.arrays import Array
 from facegear.contact.options import Element, Refinement
 from facegear.errors import FacegearError
-from facegear.geometry.design import Material, PairDesign
-from facegear.mesh.sizes import MeshSizes
 from facegear.progress import Progress
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact import calculix, kratos, pair_own
 from validation.contact.pair_bodies import FIXED_FACES, PairBodies
 from validation.contact.pair_own import Answer, PairRequest
@@ -27,7 +27,7 @@ POSITION = 0.34
 SLICE = 2.1
 """Middle part of the face, in modules: small enough for meshes that see the strip of contact."""
 LEVELS = {"medium": (0.10, 0.60, 0.60), "fine": (0.05, 0.60, 0.60)}
-"""Sizes of its meshes, as in `facegear.mesh.sizes.RESOLUTIONS`."""
+"""Sizes of its meshes, as in `facegear.teeth.mesh_sizes.RESOLUTIONS`."""
 STRIP_REFINEMENT = Refinement(2, 1, 2, 2.0)
 """Cuts of the fine mesh's flank layer in the reference."""
 PARTS = (0.3, 0.6, 0.9)

@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 from scipy.interpolate import PchipInterpolator
 
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.options import Refinement
-from facegear.contact.pair import BUILDERS
-from facegear.geometry.design import Material, PairDesign
-from facegear.mesh.sizes import MeshSizes, named_sizes
 from facegear.progress import Progress
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes, named_sizes
 from validation.contact.calculix import run_deck, write_deck
 from validation.contact.refinement_levels import CUTS
 from validation.contact.sector_model import SectorPair, angles_at, sector_pair

@@ -14,19 +14,18 @@ from facegear.arrays import Array
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.ring import plane_compliance
 from facegear.contact.bodies.substructure import condense
-from facegear.contact.candidates import Candidates
+from facegear.contact.candidates import Candidates, product
 from facegear.contact.flanks import FlankPair, flank_pair
-from facegear.contact.influence import product
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.options import ContactOptions, Refinement
-from facegear.contact.pair import BUILDERS
 from facegear.contact.position import LoadedPosition, first_turn, solve_position
 from facegear.contact.position_solver import PositionContact
 from facegear.contact.search import find_candidates
 from facegear.contact.teeth import LOADED_SIDE, contact_side, elastic_tooth
-from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import FeTooth
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.tooth_mesh import FeTooth
+from facegear.teeth.unloaded import unloaded_contact
 from validation.contact.all_candidates import solve_candidates
 
 Blocks = dict[tuple[int, int], Array]

@@ -4,8 +4,8 @@ import pandas as pd
 
 from facegear.contact.ltca import even_positions
 from facegear.contact.options import Refinement
-from facegear.geometry.design import Material, PairDesign
-from facegear.mesh.sizes import MeshSizes
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact.benchmark import summary, with_errors
 from validation.contact.peer_study import LOADED_TEETH
 from validation.contact.sector_model import sector_pair

@@ -11,12 +11,11 @@ import scipy.sparse as sp
 from threadpoolctl import threadpool_limits
 
 from facegear.arrays import Array
-from facegear.contact.gear_flank import GearFlank
+from facegear.contact.gear_flank import GearFlank, gear_flank
 from facegear.contact.options import ContactPlan
-from facegear.contact.pair import gear_flank
-from facegear.geometry.design import Material, PairDesign
-from facegear.mesh.sizes import MeshSizes
 from facegear.strength.root_stress import down_the_fillet, root_stress
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact.line_load import LoadedTooth, loaded_tooth
 from validation.contact.stress_levels import HALVED_SIZES
 

@@ -14,15 +14,15 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Integers
-from facegear.contact.bodies.gauges import gauges_on
+from facegear.contact.bodies.surface import gauges_on
 from facegear.contact.root_gauges import fillet_sides
 from facegear.errors import FacegearError
-from facegear.geometry.design import Material, PairDesign
 from facegear.io import abaqus
-from facegear.mesh.orderings import SERENDIPITY20
-from facegear.mesh.sector import SectorMesh, sector
-from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
+from facegear.teeth.design import Material, PairDesign
+from facegear.teeth.mesh_files import SERENDIPITY20
+from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
+from facegear.teeth.tooth_mesh import SectorMesh, sector
 from validation.contact.calculix import run_program
 from validation.contact.line_load import LoadedTooth, loaded_tooth
 
@@ -31,7 +31,7 @@ LEVELS = ("coarse", "medium")
 END = 2.1
 """Outer part of the face, in modules, where the gear's fillet is sharpest: small enough for finer meshes."""
 END_LEVELS = {"medium": (0.10, 0.40, 0.40), "fine": (0.05, 0.27, 0.32), "finer": (0.035, 0.27, 0.32)}
-"""Sizes of the outer part's meshes, as in `facegear.mesh.sizes.RESOLUTIONS`."""
+"""Sizes of the outer part's meshes, as in `facegear.teeth.mesh_sizes.RESOLUTIONS`."""
 
 TEETH = 3
 """Number of teeth of the sector, its cut faces free; the middle one is loaded."""

@@ -6,10 +6,10 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.contact.pressure import INSIDE, FlankPressure
-from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion_surface import SurfacePoints, flank_points
-from facegear.geometry.placement import conjugate_angle
-from facegear.geometry.separation import separation
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import conjugate_angle
+from facegear.teeth.separation import separation
+from facegear.teeth.surfaces import SurfacePoints, flank_points
 from validation.contact.half_space import half_space, pressures
 
 ACROSS, ALONG = 12, 2

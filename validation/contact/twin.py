@@ -1,6 +1,6 @@
 """Plane-strain twin: two spur gears through the same bodies, influence matrix and contact solver.
 
-The pinion is as in `facegear.geometry.design`, its axis the y axis; the gear is a second pinion body rotated
+The pinion is as in `facegear.teeth.design`, its axis the y axis; the gear is a second pinion body rotated
 by half a turn below it, so that both touch with their right sides. Involute flanks only; at any centre
 distance the gear is rotated until its backlash is closed on that side.
 """
@@ -12,21 +12,19 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
-from facegear.contact.candidates import Candidates, candidates_of
+from facegear.contact.candidates import Candidates, candidates_of, flank_cover, flank_points, influence_matrix
 from facegear.contact.flanks import PinionSurface
-from facegear.contact.influence import influence_matrix
 from facegear.contact.lattice import Lattice
-from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.options import Ends, Refinement
 from facegear.contact.position import LoadedPosition, first_turn, solve_position
 from facegear.contact.position_solver import PositionContact
 from facegear.contact.teeth import ContactSide, elastic_tooth
-from facegear.geometry import pinion
-from facegear.geometry.design import Material, PairDesign, involute
-from facegear.geometry.placement import body_rotation
-from facegear.geometry.unloaded import PAIRS
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import FeTooth, pinion_tooth
+from facegear.teeth import pinion
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.design import Material, PairDesign, involute
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.placement import body_rotation
+from facegear.teeth.tooth_mesh import FeTooth, pinion_tooth
 from validation.contact.all_candidates import solve_candidates
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 
 from facegear.contact.options import Refinement
-from facegear.geometry.design import AssemblyErrors, Material, PairDesign, PinionGeometry
-from facegear.mesh.sizes import MeshSizes
 from facegear.progress import Progress
+from facegear.teeth.design import AssemblyErrors, Material, PairDesign, PinionGeometry
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact.brute_force import gears_at, loaded_rotations
 from validation.contact.brute_mesh import flat_mesh
 from validation.contact.iso import mesh_stiffness

@@ -8,16 +8,16 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.continuation import Branch, ContinuationSettings, follow, reverse_tangent
-from facegear.dynamics.branches.explore import crossings
-from facegear.dynamics.branches.family import Family, speed_family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import BranchPoint, at_parameter
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.integrator.system import System
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start, steady_state
-from facegear.transmission.machine import Machine
+from facegear.machine.machine import Machine
+from facegear.motion.branches.continuation import Branch, ContinuationSettings, follow, reverse_tangent
+from facegear.motion.branches.explore import crossings
+from facegear.motion.branches.family import Family, speed_family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.points import BranchPoint, at_parameter
+from facegear.motion.branches.special import Kind
+from facegear.motion.integrator.system import System
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.simulate import Model, build_model, simulate, static_start, steady_state
 from validation.dynamics.oscillators import Oscillator
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)

@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Integers
-from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.averages import Averages
-from facegear.dynamics.steady_state.response import SteadyState
-from facegear.dynamics.steady_state.simulate import Model
-from facegear.dynamics.sweeps.sweep import Piece, collect, join_pieces, run_speeds, tighter
+from facegear.motion.plan import Motion, Settings, State
+from facegear.motion.steady_state.averages import Averages
+from facegear.motion.steady_state.response import SteadyState
+from facegear.motion.steady_state.simulate import Model
+from facegear.motion.sweeps.sweep import Piece, collect, join_pieces, run_speeds, tighter
 
 MAX_CHANGE = 1e-3
 """Relative change of the RMS up to which a speed counts as converged."""

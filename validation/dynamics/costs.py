@@ -9,12 +9,11 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
-from facegear.dynamics.sweeps.plan import SweepPlan
-from facegear.dynamics.sweeps.sweep import Piece, collect, run_speeds
-from facegear.transmission.machine import Machine, mesh_frequency
+from facegear.machine.machine import Machine, mesh_frequency
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings, SweepPlan
+from facegear.motion.steady_state.simulate import Model, build_model, simulate
+from facegear.motion.sweeps.sweep import Piece, collect, run_speeds
 from validation.dynamics.methods import scipy_method
 from validation.dynamics.problems import ComparedResult, Problem
 

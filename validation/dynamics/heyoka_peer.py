@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.kernel_system import MIN_CLEARANCE, TAU
-from facegear.dynamics.integrator.system import System
-from facegear.mesh_law.linear import LinearLaw
-from facegear.mesh_law.load_dependent import LoadDependentLaw
+from facegear.meshing.linear import LinearLaw
+from facegear.meshing.load_dependent import LoadDependentLaw
+from facegear.motion.integrator.kernel_system import MIN_CLEARANCE, TAU
+from facegear.motion.integrator.system import System
 from validation.dynamics.problems import SAMPLES, Problem
 
 EDGE = 1e-13

@@ -13,10 +13,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.side_by_side import WIDTH, run_many
-from facegear.dynamics.steady_state.orbits import monodromy
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.requests import WIDTH, run_many
+from facegear.motion.steady_state.orbits import monodromy
 from validation.dynamics import heyoka_peer
 from validation.dynamics.problems import SAMPLES, ComparedResult, Problem
 from validation.dynamics.right_side import compiled_right_side, fixed_rk4, plain_right_side

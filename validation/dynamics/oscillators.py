@@ -12,13 +12,13 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.system import System
-from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.side_by_side import run_many
-from facegear.dynamics.steady_state.response import SteadyState
-from facegear.dynamics.steady_state.simulate import steady_state
-from facegear.mesh_law.linear import LinearLaw
+from facegear.meshing.linear import LinearLaw
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.system import System
+from facegear.motion.plan import Motion, Settings, State
+from facegear.motion.requests import run_many
+from facegear.motion.steady_state.response import SteadyState
+from facegear.motion.steady_state.simulate import steady_state
 from validation.dynamics.closed_form import LONGEST, Oscillators, run_closed_form
 
 FURTHER = 20_000

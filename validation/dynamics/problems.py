@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.integrator.system import System
-from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
-from facegear.transmission.machine import Machine, OpenFlanks, mesh_frequency
+from facegear.machine.machine import Machine, OpenFlanks, mesh_frequency
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.integrator.system import System
+from facegear.motion.plan import Motion, Settings, State
+from facegear.motion.steady_state.simulate import build_model, simulate, static_start
 from validation.dynamics.oscillators import Oscillator
 
 SAMPLES = 16

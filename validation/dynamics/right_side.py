@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.integrator.system import System
-from facegear.mesh_law.linear import LinearLaw
+from facegear.meshing.linear import LinearLaw
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.integrator.system import System
 
 
 def compiled_right_side(integrator: Integrator) -> Callable[[float, Array], Array]:

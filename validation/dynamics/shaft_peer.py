@@ -15,16 +15,15 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.errors import FacegearError
-from facegear.harmonics.series import Harmonics
-from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed_shaft import Bearing, CondensedShaft, Shaft, condense_shaft
-from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
-from facegear.transmission.linear_model import LinearModel
-from facegear.transmission.machine import Damping, Machine
-from facegear.transmission.modes import modes_of
-from facegear.transmission.shaft_tables import chain_frequencies
+from facegear.harmonics import Harmonics
+from facegear.machine.drive_line import DriveLine, Seat, TurningMass
+from facegear.machine.kinematics import KINEMATICS
+from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side
+from facegear.machine.linear_model import LinearModel
+from facegear.machine.machine import Damping, Machine
+from facegear.machine.modes import modes_of
+from facegear.machine.shaft_tables import chain_frequencies
+from facegear.parts.shafts import Bearing, CondensedShaft, Elasticity, Segment, Shaft, condense_shaft
 from validation.contact.process import run_alone
 
 ROSS, OPENTORSION = "2.3.0", "0.3.2"

@@ -9,14 +9,14 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.response import SteadyState
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.run import Sharing, group_average, load_sharing_of_many
-from facegear.load_sharing.sampling import densely_sampled
-from facegear.load_sharing.statistics import Average
-from facegear.transmission.machine import Machine
+from facegear.machine.machine import Machine
+from facegear.motion.plan import Motion, Settings
+from facegear.motion.steady_state.response import SteadyState
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.sharing.even_shares import group_average
+from facegear.sharing.options import SharingOptions
+from facegear.sharing.run import Sharing, load_sharing_of_many
+from facegear.sharing.statistics import Average, densely_sampled
 from validation.dynamics.convergence import exact
 
 COUNT = 20

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.dynamics.steady_state.mesh_samples import mesh_response
-from facegear.dynamics.steady_state.statistics import moments
+from facegear.motion.steady_state.mesh_samples import mesh_response
+from facegear.motion.steady_state.statistics import moments
 from validation.dynamics.methods import Method, our_tangents, prepare_ours, run_ours
 from validation.dynamics.problems import SAMPLES, ComparedResult, Problem
 

@@ -14,10 +14,11 @@ import pandas as pd
 
 from facegear.arrays import Array, Integers
 from facegear.errors import FacegearError
-from facegear.gear_body.body import solve_body
-from facegear.gear_body.mesh import BodyMesh, body_mesh
-from facegear.gear_body.section import Hub, Rim, Section, Web, wheel
-from facegear.geometry.design import Material
+from facegear.parts.body_mesh import BodyMesh, body_mesh
+from facegear.parts.gear_body import solve_body
+from facegear.parts.section import Section
+from facegear.parts.wheel import Hub, Rim, Web, wheel
+from facegear.teeth.design import Material
 from validation.contact.calculix import run_program
 
 STEEL, DENSITY = Material(206e9, 0.3), 7850.0

@@ -20,17 +20,17 @@ from skfem.helpers import dot
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from facegear.arrays import Array, Integers
-from facegear.gear_body.matrices import body_matrices
-from facegear.gear_body.mesh import BodyMesh, body_mesh
-from facegear.gear_body.modes import order_modes
-from facegear.gear_body.section import Hub, Layer, Rim, Section, Web, web_ends, wheel
-from facegear.geometry.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Shaper
-from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import gear_tooth
-from facegear.mesh.tooth_volume import tooth_fill
-from facegear.tooth_layer.fit import fitted_teeth
-from facegear.tooth_layer.sector import SIZES
+from facegear.parts.body_mesh import BodyMesh, body_mesh
+from facegear.parts.matrices import body_matrices
+from facegear.parts.modes import order_modes
+from facegear.parts.section import Layer, Section
+from facegear.parts.tooth_layer import SIZES, fitted_teeth
+from facegear.parts.wheel import Hub, Rim, Web, web_ends, wheel
+from facegear.teeth.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.mesh_quality import hex_mesh
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.section_outline import tooth_fill
+from facegear.teeth.tooth_mesh import gear_tooth
 
 STEEL, DENSITY = Material(206e9, 0.3), 7850.0
 LAST_ORDER = 6

@@ -6,20 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from facegear.config.contact import Contact, contact_plan
-from facegear.config.elastic_bodies import body_shape, contact_patch
-from facegear.config.gear_body import BodySection
-from facegear.config.load import load_config
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.elastic_bodies import body_shape, contact_patch
+from facegear.build.load import load_config
+from facegear.build.plans import contact_plan
+from facegear.build.tooth_pair import ToothPair, pair
+from facegear.contact.gear_flank import contact_model
 from facegear.contact.ltca import even_positions, loaded_contact
-from facegear.contact.pair import contact_model
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.sweep import run_speeds
-from facegear.gear_body.body import SolvedBody, solve_body
-from facegear.gear_body.reduction import reduced_body
-from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled_machine import SampledMachine
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model
+from facegear.motion.sweeps.sweep import run_speeds
+from facegear.parts.gear_body import SolvedBody, reduced_body, solve_body
+from facegear.pipeline.stages.studies import chunk_of
+from facegear.schema.contact import Contact
+from facegear.schema.gear_body import BodySection
+from facegear.studies.sampled_machine import SampledMachine
 from validation.contact.benchmark import Level, compliances, level
 from validation.growth.machines import PERIODS, Running, bending, resized, shipped_machine
 

@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from facegear.config.load import load_config
-from facegear.config.machines import MachineInputs
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Layout, Role
-from facegear.transmission.machine import Machine, OpenFlanks, balanced_torques, mesh_frequency
+from facegear.build.load import load_config
+from facegear.build.machine import MachineInputs
+from facegear.harmonics import Harmonics
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.imperfections import perfect
+from facegear.machine.layout import Layout, Role
+from facegear.machine.machine import Machine, OpenFlanks, balanced_torques, mesh_frequency
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.steady_state.simulate import Model, build_model, static_start
+from facegear.parts.reduced_body import ReducedBody
 
 SPEED_RPM = 7500.0
 """Speed of the pinion, rpm."""

@@ -5,11 +5,11 @@ import time
 import numpy as np
 import pandas as pd
 
-from facegear.geometry.design import PairDesign
-from facegear.mesh.orderings import SERENDIPITY20
-from facegear.mesh.quality import scaled_jacobians, volume
-from facegear.mesh.sizes import RESOLUTIONS, named_sizes
-from facegear.mesh.tooth import gear_tooth, pinion_tooth
+from facegear.teeth.design import PairDesign
+from facegear.teeth.mesh_files import SERENDIPITY20
+from facegear.teeth.mesh_quality import scaled_jacobians, volume
+from facegear.teeth.mesh_sizes import RESOLUTIONS, named_sizes
+from facegear.teeth.tooth_mesh import gear_tooth, pinion_tooth
 
 BUILDERS = {"pinion": pinion_tooth, "face_gear": gear_tooth}
 

@@ -28,24 +28,24 @@ def _tests(folder: str, *names: str) -> tuple[str, ...]:
 
 
 MODULES = {
-    "contact solver": Module(("facegear/contact/solver.py",), _tests("contact", "contact_solver")),
+    "contact solver": Module(("facegear/contact/position_solver.py",), _tests("contact", "contact_solver")),
     "mesh law": Module(
         (
-            "facegear/mesh_law/linear.py",
-            "facegear/mesh_law/load_dependent.py",
-            "facegear/mesh_law/force_table.py",
+            "facegear/meshing/linear.py",
+            "facegear/meshing/load_dependent.py",
+            "facegear/meshing/force_table.py",
         ),
         _tests("mesh_law", "linear_law", "load_dependent_law"),
     ),
     "statics": Module(
-        ("facegear/transmission/statics.py",),
+        ("facegear/machine/statics.py",),
         _tests("transmission", "statics", "statics_by_energy", "geometric_statics"),
     ),
     "geometry": Module(
         (
-            "facegear/geometry/closed_forms.py",
-            "facegear/geometry/face_gear.py",
-            "facegear/geometry/pinion.py",
+            "facegear/teeth/closed_forms.py",
+            "facegear/teeth/face_gear.py",
+            "facegear/teeth/pinion.py",
         ),
         _tests("geometry", "face_gear", "limits", "pinion", "validate"),
     ),

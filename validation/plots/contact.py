@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
-from facegear.plots.draw_matplotlib import styled
+from facegear.report.figures.draw_matplotlib import styled
 from validation.contact.refinement_levels import LIMITS
 
 TITLES = {"mean": "Mean stiffness", "amplitude_1": "First harmonic"}

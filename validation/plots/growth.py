@@ -8,7 +8,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
-from facegear.plots.draw_matplotlib import styled
+from facegear.report.figures.draw_matplotlib import styled
 from validation.growth.measure import exponents
 
 COLUMNS = 2

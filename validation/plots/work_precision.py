@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from facegear.plots.draw_matplotlib import styled
+from facegear.report.figures.draw_matplotlib import styled
 
 MARKERS = "osv^<>Dp*Xh"
 

@@ -10,15 +10,14 @@ from dataclasses import replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.contact.candidates import Candidates
-from facegear.contact.influence import influence_matrix
+from facegear.contact.candidates import Candidates, influence_matrix
 from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
 from facegear.contact.options import ContactOptions
 from facegear.contact.position import LoadedPosition
 from facegear.contact.search import find_candidates
-from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.placement import pinion_angle
-from facegear.geometry.unloaded import unloaded_motion
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.placement import pinion_angle
+from facegear.teeth.unloaded import unloaded_motion
 
 STEPS = {"offset": 2e-7, "axial_shift": 2e-7, "shaft_angle_error": 1e-6}
 FARTHER = 1.3

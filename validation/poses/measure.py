@@ -14,15 +14,14 @@ import numpy as np
 import pandas as pd
 
 import facegear
-from facegear.config.contact import contact_plan
-from facegear.config.tooth_pair import pair
-from facegear.contact.gear_flank import from_arrays
-from facegear.contact.pair import contact_model
-from facegear.contact.posed import posed_contacts
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.design import AssemblyErrors
-from facegear.poses.surface import SURFACE_ARRAYS
-from facegear.stages.pose_surface import pose_surface, quantities
+from facegear.bodies import BODIES
+from facegear.build.plans import contact_plan
+from facegear.build.tooth_pair import pair
+from facegear.contact.analysis import posed_contacts
+from facegear.contact.gear_flank import contact_model, from_arrays
+from facegear.machine.poses.surface import SURFACE_ARRAYS
+from facegear.pipeline.stages.poses import pose_surface, quantities
+from facegear.teeth.design import AssemblyErrors
 from validation.poses.frozen import STEPS, frozen_reactions
 
 FOLDER = Path(__file__).parent

@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 
 import facegear
-from facegear.config.tooth_pair import pair
-from facegear.mesh.sizes import MeshSizes
+from facegear.build.tooth_pair import pair
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact.pair_peer import LEVELS, SLICE, posed_peer_study
 
 TABLE = Path(__file__).parents[2] / "docs" / "measured" / "pose_peer.csv"

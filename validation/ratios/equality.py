@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.config.dynamics import SWEEP_ACCURACY
+from facegear.schema.motion import SWEEP_ACCURACY
 from validation.ratios.points import EXAMPLE, ROOT
 from validation.ratios.run import BASELINE, Job, is_regular, read_answers, relative_change
 from validation.ratios.trees import Tree, checked_out, present

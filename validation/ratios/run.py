@@ -14,7 +14,7 @@ from types import MappingProxyType
 import numpy as np
 import pandas as pd
 
-from facegear.compare.quantities import RESIDUALS
+from facegear.report.compare.quantities import RESIDUALS
 from validation.ratios.points import POINTS, Point
 from validation.ratios.trees import Tree, checked_out, present
 

@@ -55,11 +55,10 @@ def main(job: str, answers: str, inputs: str) -> None:
 def _stage(request: dict[str, Any], inputs: str) -> Callable[[], Any]:
     """Call of a stage whose inputs are computed now, or read where this code has kept them."""
     import facegear
+    from facegear.pipeline.results.chain import Chain
+    from facegear.pipeline.results.store import PartialResults, Store
     from facegear.pipeline.run import call
     from facegear.pipeline.table import STAGES
-    from facegear.results.chain import Chain
-    from facegear.results.partial import PartialResults
-    from facegear.results.store import Store
 
     gearbox = facegear.load(request["config"], results=None).with_values(request["changes"])
     stage = STAGES[request["stage"]]
@@ -97,9 +96,9 @@ def _mesh_period(gearbox: Any) -> dict[str, Any]:
     """
     import numpy as np
 
-    from facegear.dynamics.integrator.integrator import Integrator
-    from facegear.dynamics.steady_state.simulate import build_model, static_start
-    from facegear.transmission.machine import mesh_frequency
+    from facegear.machine.machine import mesh_frequency
+    from facegear.motion.integrator.integrator import Integrator
+    from facegear.motion.steady_state.simulate import build_model, static_start
 
     model = build_model(gearbox._machine())
     speed = gearbox.values["dynamics"]["speed_rpm"]
@@ -148,8 +147,8 @@ def _oscillators(count: int, sources: str) -> dict[str, Any]:
     from dataclasses import replace
 
     sys.path.append(sources)
-    from facegear.dynamics.motion import Settings
-    from facegear.dynamics.steady_state.simulate import steady_state
+    from facegear.motion.plan import Settings
+    from facegear.motion.steady_state.simulate import steady_state
     from validation.dynamics.oscillators import random_oscillators
 
     looks = {"label": Settings(), "second_look": replace(Settings(), second_looks=SECOND_LOOKS)}

@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 import pandas as pd
 
 from facegear.io import columnar
-from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled_machine import SampledMachine
+from facegear.pipeline.stages.studies import chunk_of
+from facegear.studies.sampled_machine import SampledMachine
 
 MODELS = ("quasi_static", "dynamic")
 SAMPLES_EXTRAPOLATED, CORES = 10_000, 2

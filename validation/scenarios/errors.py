@@ -6,9 +6,8 @@ from statistics import NormalDist
 import numpy as np
 import pandas as pd
 
-from facegear.scenarios.distributions import Distribution, Shape
-from facegear.scenarios.sampling import Cause, Population, index_samples, samples
-from facegear.scenarios.statistics import percentile, sobol_indices
+from facegear.studies.sampling import Cause, Distribution, Population, Shape, index_samples, samples
+from facegear.studies.statistics import percentile, sobol_indices
 
 WEIGHTS = np.array([4.0, 3.0, 2.0, 1.0, 0.5, 0.25])
 """Weights of the causes in the linear machine."""

@@ -1,10 +1,10 @@
 """Branches of periodic motions: error against tolerance, and cost of an orbit against settling."""
 
 from facegear.io import tables
+from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
+from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
-from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS
 from validation.dynamics.branches import DAMPING, ERRORS, TOLERANCES, accuracy, costs
 
 with stage(snakemake) as run:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.io import tables
-from facegear.mesh.sizes import MeshSizes, named_sizes
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
+from facegear.teeth.mesh_sizes import MeshSizes, named_sizes
 from validation.contact.peer_study import HAND_OVER, POSITIONS, peer_study
 
 with stage(snakemake) as run:

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
 from validation.contact.stress_peer import stress_peer_tables
 
 with stage(snakemake) as run:

@@ -1,9 +1,10 @@
 """One resolution of the contact benchmark."""
 
-from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.plans import contact_plan
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
+from facegear.schema.contact import Contact
 from validation.contact.benchmark import level, measure
 
 with stage(snakemake) as run:

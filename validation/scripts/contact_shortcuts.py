@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.io import tables
-from facegear.mesh.sizes import MeshSizes
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact.benchmark import Level, shortcuts
 from validation.contact.sector_study import whole_sectors
 

@@ -2,16 +2,17 @@
 
 import pandas as pd
 
-from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.chunk_arrays import SHAPES, from_arrays
-from facegear.dynamics.sweeps.sweep import join_pieces
-from facegear.dynamics.symmetries import mesh_images
+from facegear.build.plans import sweep_plan
 from facegear.io import arrays, tables
+from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
+from facegear.motion.steady_state.simulate import build_model
+from facegear.motion.sweeps.sweep import join_pieces
+from facegear.motion.sweeps.whole_sweep import SHAPES, from_arrays
+from facegear.motion.symmetries import mesh_images
+from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
-from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS
+from facegear.schema.motion import Sweep
 from validation.dynamics.convergence import (
     convergence_table,
     not_converged,

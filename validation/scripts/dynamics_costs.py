@@ -1,11 +1,12 @@
 """Cost and error of sweeps against settings."""
 
-from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.build.plans import sweep_plan
 from facegear.io import tables
+from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
+from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
-from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS
+from facegear.schema.motion import Sweep
 from validation.dynamics.costs import sweep_costs
 
 with stage(snakemake) as run:

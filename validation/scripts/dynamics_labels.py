@@ -1,9 +1,9 @@
 """Do the classes of random oscillators hold, and are their orbits those that the runs come to?"""
 
-from facegear.dynamics.motion import Settings
 from facegear.io import tables
+from facegear.motion.plan import Settings
+from facegear.pipeline.provenance.stage import stage
 from facegear.progress import Progress
-from facegear.provenance.stage import stage
 from validation.dynamics.oscillators import suite, verdict
 
 COUNT = 500

@@ -4,11 +4,11 @@ import pandas as pd
 
 import facegear
 from facegear.io import tables
+from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
+from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.run import machine_inputs
-from facegear.plots.save import save_drawn
 from facegear.progress import Progress
-from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS
+from facegear.report.figures.save import save_drawn
 from validation.dynamics.methods import all_methods, tangent_methods
 from validation.dynamics.problems import law_problems, machine_problems, oscillator_problem, tangent_problems
 from validation.dynamics.work_precision import (

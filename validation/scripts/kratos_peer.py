@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
 from validation.contact.kratos_hertz import hertz_peer
 
 with stage(snakemake) as run:

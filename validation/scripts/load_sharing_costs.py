@@ -1,12 +1,13 @@
 """Time and error of load sharing over random machines."""
 
-from facegear.config.dynamics import Accuracy, settings
-from facegear.config.load_sharing import LoadSharing, sharing_options
+from facegear.build.plans import settings, sharing_options
 from facegear.io import tables
+from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
+from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.run import machine_inputs
 from facegear.progress import Progress
-from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS
+from facegear.schema.motion import Accuracy
+from facegear.schema.sharing import LoadSharing
 from validation.dynamics.sharing_costs import COUNT, sharing_costs, sharing_summary
 
 with stage(snakemake) as run:

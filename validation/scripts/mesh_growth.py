@@ -1,8 +1,8 @@
 """Time to mesh one tooth of either body against its number of nodes, over the named resolutions."""
 
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
 from validation.mesh.growth import growth_table
 
 with stage(snakemake) as run:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.io import tables
-from facegear.mesh.sizes import MeshSizes
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact.pair_peer import LEVELS, SLICE, middle, pair_peer_study
 
 TORQUE = 600.0

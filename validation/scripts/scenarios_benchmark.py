@@ -2,9 +2,9 @@
 
 from facegear.contact.gear_flank import ARRAY_SHAPES
 from facegear.io import arrays, tables
-from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS
-from facegear.variants.sampled_machine import SampledMachine
+from facegear.meshing.stiffness_source import HARMONICS_COLUMNS
+from facegear.pipeline.provenance.stage import stage
+from facegear.studies.sampled_machine import SampledMachine
 from validation.scenarios.costs import costs
 from validation.scenarios.errors import statistics_errors
 

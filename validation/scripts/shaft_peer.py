@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
 from validation.dynamics.shaft_peer import shaft_peer
 
 with stage(snakemake) as run:

@@ -2,12 +2,10 @@
 
 import pandas as pd
 
-from facegear.config.contact import Contact
-from facegear.config.contact_setup import contact_setup
-from facegear.config.mesh import Mesh
-from facegear.config.tooth_pair import ToothPair
+from facegear.build.tooth_pair import ToothPair, contact_setup
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
+from facegear.schema.contact import Contact, Mesh
 from validation.contact.stress_benchmark import stress_costs
 
 with stage(snakemake) as run:

@@ -2,10 +2,10 @@
 
 import pandas as pd
 
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.io import tables
-from facegear.mesh.sizes import named_sizes, thin_fillet
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
+from facegear.teeth.mesh_sizes import named_sizes, thin_fillet
 from validation.contact.stress_benchmark import stress_convergence
 from validation.contact.stress_levels import OF_LEVEL
 

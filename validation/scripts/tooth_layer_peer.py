@@ -1,7 +1,7 @@
 """Natural frequencies of gear bodies with their real teeth, by one sector of the whole gear in space."""
 
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
 from validation.gear_body.cyclic_teeth import FINENESSES, paper, peer_table, second
 
 with stage(snakemake) as run:

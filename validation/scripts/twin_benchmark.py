@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.io import tables
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
 from validation.contact.twin_study import twin_study
 
 with stage(snakemake) as run:

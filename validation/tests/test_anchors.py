@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.config.load import load_config
-from facegear.config.yaml_file import read_yaml
+from facegear.build.load import load_config
+from facegear.schema.yaml_file import read_yaml
 from validation.anchors import (
     COLUMNS,
     CONFIGS,

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 from references import against, agrees
 
-from facegear.gear_body.mesh import body_mesh
-from facegear.gear_body.section import section_properties
+from facegear.parts.body_mesh import body_mesh
+from facegear.parts.section import section_properties
 from validation.gear_body.calculix import frequencies_of, revolve, section
 
 MEASURED = Path(__file__).parents[2] / "docs" / "measured" / "calculix_body.csv"
@@ -58,7 +58,7 @@ MODE NO.   X-COMPONENT     Y-COMPONENT
     "third-party program",
     "CalculiX, bricks of 20 nodes of the whole body (docs/measured/calculix_body.csv, `make peers`)",
     capability="gear_bodies",
-    module="facegear.gear_body.modes",
+    module="facegear.parts.modes",
 )
 def test_first_frequencies_are_those_of_calculix_on_the_whole_body_in_space():
     table = pd.read_csv(MEASURED)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from contact_bodies import STEEL, pair_design
 
-from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.mesh.sizes import MeshSizes
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.unloaded import unloaded_contact
 from validation.contact.calculix import write_deck
 
 TURN = 1e-3

@@ -3,9 +3,9 @@
 import pandas as pd
 import pytest
 
-from facegear.config.contact import Contact, contact_plan
-from facegear.config.mesh import Mesh
+from facegear.build.plans import contact_plan
 from facegear.errors import NotConverged
+from facegear.schema.contact import Contact, Mesh
 from validation.contact.benchmark import cheapest, with_errors
 from validation.contact.refinement_levels import CUTS, DEFAULT, FINEST, LEVELS
 

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from references import against, agrees
 
-from facegear.gear_body.mesh import body_mesh
+from facegear.parts.body_mesh import body_mesh
 from validation.gear_body.cyclic_teeth import bare_sector, fourier, frequencies, second
 
 GEARS = ("paper", "second")
@@ -32,7 +32,7 @@ def test_sector_without_its_tooth_has_the_frequencies_of_fourier_elements():
     "second implementation",
     "one sector of the whole gear, bricks of 27 nodes (docs/measured/cyclic_teeth.csv, `make peers`)",
     capability="gear_bodies",
-    module="facegear.tooth_layer.fit",
+    module="facegear.parts.tooth_layer",
 )
 @pytest.mark.parametrize(("gear", "stated"), [("paper", 0.005), ("second", 0.008)])
 def test_fitted_layer_gives_a_gear_the_frequencies_of_its_real_teeth(gear, stated):

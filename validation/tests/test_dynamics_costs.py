@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lumped_machines import make_machine
 
-from facegear.dynamics.steady_state.simulate import build_model
+from facegear.motion.steady_state.simulate import build_model
 from validation.growth.machines import resized
 
 

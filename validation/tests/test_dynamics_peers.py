@@ -9,9 +9,9 @@ from force_tables import power_table
 from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.transmission.machine import FlankTables
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.machine import FlankTables
+from facegear.motion.integrator.integrator import Integrator
 from validation.dynamics.heyoka_peer import batch, scale_system, trajectory
 from validation.dynamics.methods import all_methods, rk4, run_ours, tangent_methods
 from validation.dynamics.problems import (
@@ -41,7 +41,7 @@ def problems():
     "second implementation",
     "the equations of motion written plainly with NumPy",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_compiled_and_plain_right_hand_sides_agree(problems):
     for problem in (problems[1], problems[3]):
@@ -90,7 +90,7 @@ def test_the_table_lists_failures_and_interpolates_times(problems):
     "third-party program",
     "heyoka: Taylor's method with located events",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_heyoka_follows_the_same_motion_through_every_switch(problems):
     heyoka = pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
@@ -105,7 +105,7 @@ def test_heyoka_follows_the_same_motion_through_every_switch(problems):
     "third-party program",
     "heyoka: Taylor's method with located events",
     capability="dynamics_response mesh_law",
-    module="facegear.mesh_law.load_dependent",
+    module="facegear.meshing.load_dependent",
 )
 @pytest.mark.parametrize("number", [0, 1], ids=["damper in contact only", "load-dependent law"])
 def test_heyoka_follows_the_same_motion_on_other_laws(number):
@@ -126,7 +126,7 @@ def test_heyoka_follows_the_same_motion_on_other_laws(number):
     "third-party program",
     "heyoka: Taylor's method with located events",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_heyoka_carries_the_same_tangents(problems):
     pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")

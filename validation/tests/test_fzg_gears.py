@@ -10,8 +10,8 @@ from spur_gears import fzg_c, slab_design
 
 from facegear.contact.hertz import contact_modulus, strip_pressure
 from facegear.contact.options import Refinement
-from facegear.geometry.design import involute
-from facegear.mesh.sizes import MeshSizes
+from facegear.teeth.design import involute
+from facegear.teeth.mesh_sizes import MeshSizes
 from validation.contact.twin import analyse_twin, twin_model
 
 FORCE = 5912.1 / 14e-3

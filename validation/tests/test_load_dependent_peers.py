@@ -9,12 +9,12 @@ from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.steady_state.simulate import build_model, static_start
-from facegear.transmission.layout import Side
-from facegear.transmission.machine import FlankTables, mesh_frequency
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Side
+from facegear.machine.machine import FlankTables, mesh_frequency
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.steady_state.simulate import build_model, static_start
 from validation.dynamics.right_side import plain_right_side
 
 pytestmark = pytest.mark.xdist_group("load_dependent")  # its compiled motion is that of other tests
@@ -37,7 +37,7 @@ def model():
     "third-party program",
     "DOP853 of SciPy on the equations written plainly with NumPy",
     capability="dynamics_response mesh_law",
-    module="facegear.mesh_law.load_dependent",
+    module="facegear.meshing.load_dependent",
 )
 @pytest.mark.parametrize("speed", [4000.0, 8000.0, 12000.0])
 def test_dop853_follows_the_same_motion_through_the_levels_of_the_table(model, speed):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from contact_bodies import STEEL, pair_design
 
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import CORNERS
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.tooth_mesh import CORNERS
 from validation.contact.pair_bodies import PairBodies, held_nodes
 from validation.contact.pair_peer import POSITION, middle
 

@@ -28,7 +28,7 @@ def theirs(case, start):
     "third-party program",
     "ROSS 2.3.0 (docs/measured/shaft_peer.csv, `make peers`)",
     capability="shafts",
-    module="facegear.shafts.condensed_shaft",
+    module="facegear.parts.shafts",
 )
 def test_a_pinion_gives_way_on_its_shaft_as_in_ross():
     for name, given in SHAFTS.items():
@@ -45,7 +45,7 @@ def test_a_pinion_gives_way_on_its_shaft_as_in_ross():
     "third-party program",
     "ROSS 2.3.0 (docs/measured/shaft_peer.csv, `make peers`)",
     capability="modal",
-    module="facegear.transmission.drive_line",
+    module="facegear.machine.drive_line",
 )
 def test_a_spinning_pinion_whirls_on_its_shaft_as_in_ross():
     for name, given in SHAFTS.items():
@@ -63,7 +63,7 @@ def test_a_spinning_pinion_whirls_on_its_shaft_as_in_ross():
     "third-party program",
     "openTorsion 0.3.2 (docs/measured/shaft_peer.csv, `make peers`)",
     capability="shafts",
-    module="facegear.transmission.drive_line",
+    module="facegear.machine.drive_line",
 )
 def test_masses_on_torsional_springs_swing_as_in_opentorsion():
     for name, (inertias, springs) in CHAINS.items():

@@ -23,7 +23,7 @@ CLOSE = 2e-6
     "second implementation",
     "a hundred changed configs, each put at rest",
     capability="sharing_map",
-    module="facegear.load_sharing.sharing_advice",
+    module="facegear.sharing.sharing_advice",
 )
 @pytest.mark.parametrize(
     "words",

@@ -9,8 +9,8 @@ from contact_bodies import STEEL, pair_design
 from references import against, agrees
 
 from facegear.errors import FacegearError
-from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
+from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
 from validation.contact.line_load import loaded_tooth
 from validation.contact.stress_benchmark import stress_convergence
 from validation.contact.stress_peer import outer_end, read_nodes, stress_peer_study

@@ -9,11 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import facegear.results
+import facegear.pipeline.results
 from facegear.gearbox import Gearbox
+from facegear.pipeline.provenance.fingerprint import loaded_modules
+from facegear.pipeline.results.base import Result
 from facegear.pipeline.table import STAGES
-from facegear.provenance.fingerprint import loaded_modules
-from facegear.results.base import Result
 from validation.references import (
     COLUMNS,
     DECLARED_COLUMNS,
@@ -36,8 +36,8 @@ WITHOUT_NUMBERS = {"with_values", "study", "report", "run", "figures", "summary"
 
 def methods():
     """Stage or name of every public method of the Gearbox that computes."""
-    for module in pkgutil.iter_modules(facegear.results.__path__):
-        importlib.import_module(f"facegear.results.{module.name}")
+    for module in pkgutil.iter_modules(facegear.pipeline.results.__path__):
+        importlib.import_module(f"facegear.pipeline.results.{module.name}")
     stages = {one.__name__: one.STAGE for one in Result.__subclasses__()}
     public = [name for name in vars(Gearbox) if not name.startswith("_") and callable(vars(Gearbox)[name])]
     gives = {name: inspect.get_annotations(vars(Gearbox)[name])["return"] for name in public}

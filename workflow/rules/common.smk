@@ -14,17 +14,17 @@ if imported is not None and not Path(imported.__file__).is_relative_to(ROOT):
     for name in [name for name in sys.modules if name.partition(".")[0] == "facegear"]:
         del sys.modules[name]
 
-from facegear.config.cases import expand_cases
-from facegear.config.load import base_path, load_config
-from facegear.config.notes import notes
+from facegear.build.cases import expand_cases
+from facegear.build.load import base_path, load_config
+from facegear.build.notes import notes
 from facegear.errors import FacegearError
 from facegear.pipeline.needs import require_section, resolved_needs, shared_sources, value_at
 from facegear.pipeline.rows.shared import MACHINE
 from facegear.pipeline.stage import FIGURES, Case, From
 from facegear.pipeline.table import STAGES
-from facegear.provenance.fingerprint import fingerprint
-from facegear.provenance.rebuild import rebuild_command
-from facegear.provenance.sources import recall, remember
+from facegear.pipeline.provenance.fingerprint import fingerprint
+from facegear.pipeline.provenance.manifest import rebuild_command
+from facegear.pipeline.provenance.sources import recall, remember
 from paper.reproduction import read_reproduction
 
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"

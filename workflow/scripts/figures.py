@@ -5,13 +5,13 @@ from importlib import import_module
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
 
-from facegear.provenance.stage import stage
+from facegear.pipeline.provenance.stage import stage
 
 with stage(snakemake) as run:
-    from facegear.config.arguments import typed_arguments
+    from facegear.pipeline.arguments import typed_arguments
     from facegear.pipeline.run import read_all
     from facegear.pipeline.stage import load
-    from facegear.plots.save import save
+    from facegear.report.figures.save import save
 
     stages = import_module("facegear.pipeline.table").STAGES  # as in stage.py
     paths = list(zip(snakemake.output.svg, snakemake.output.json, strict=True))

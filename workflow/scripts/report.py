@@ -2,19 +2,18 @@
 
 from pathlib import Path
 
-from facegear.config.notes import notes
-from facegear.config.tooth_pair import ToothPair
-from facegear.config.tooth_pair import pair as tooth_pair
-from facegear.contact.columns import PRESSURE_ARRAYS
+from facegear.build.notes import notes
+from facegear.build.tooth_pair import ToothPair
+from facegear.build.tooth_pair import pair as tooth_pair
+from facegear.contact.pattern import PRESSURE_ARRAYS
 from facegear.io import arrays, documents, tables
 from facegear.io.atomic import atomic_path
 from facegear.lubrication.columns import LOCAL_ARRAYS
+from facegear.pipeline.provenance.stage import stage
 from facegear.pipeline.reported import table_name
-from facegear.provenance.stage import stage
-from facegear.report.body_view import body_view
 from facegear.report.case import case_report
 from facegear.report.machine import Base
-from facegear.report.pair_view import pair_view
+from facegear.report.viewers import body_view, pair_view
 from facegear.strength.columns import ROOT_STRESS_ARRAYS
 
 with stage(snakemake) as run:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 signal.signal(signal.SIGINT, signal.SIG_DFL)  # before long imports: Ctrl-C ends a job without a traceback
 
-from facegear.provenance.stage import job, parts_of, record_part
+from facegear.pipeline.provenance.stage import job, parts_of, record_part
 
 with job(snakemake):
     from facegear.pipeline.run import call, read_all, write_stage

@@ -6,14 +6,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from facegear.arrays import AnyArray, Array, Arrays, Integers
-from facegear.contact.bodies.body import ElasticBody
-from facegear.contact.bodies.dense import backward, cholesky, forward, plus_square
+from facegear.contact.bodies.elements import ElasticBody
 from facegear.contact.bodies.layer import TiedSystem, tied_system
-from facegear.contact.bodies.mirror import halves, unfold_matrix
 from facegear.contact.bodies.ring import LEFT, RIGHT, moved_faces, rest_stiffness
-from facegear.contact.bodies.substructure import Superelement, condense
+from facegear.contact.bodies.substructure import Superelement, condense, halves, unfold_matrix
 from facegear.contact.options import Element, Ends, Refinement
 from facegear.progress import Progress
+from facegear.sparse.matrices import backward, cholesky, forward, plus_square
 
 SHARES = (7, 3)
 """Tenths of the time that factorisation and joining the teeth take at the default resolution."""

@@ -12,11 +12,9 @@ import scipy.sparse as sp
 from skfem import ElementHex2, MeshHex1, MeshHex2
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.bodies.assembly import elements_of
-from facegear.contact.bodies.body import ElasticBody
-from facegear.contact.bodies.cellwise import Part
-from facegear.contact.bodies.elements import hex_values
+from facegear.contact.bodies.elements import ElasticBody, elements_of, hex_values
 from facegear.contact.options import Element, Refinement
+from facegear.sparse.matrices import Part
 
 ROUNDING = 1e-12
 """Below this the value of a function is that of a node on another face."""

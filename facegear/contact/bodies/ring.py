@@ -8,8 +8,8 @@ of teeth. Matrices (2s, 2s) hold the left face first, then the right one.
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.contact.bodies.dense import cholesky, forward, inverse, plus_square, solve_factored
 from facegear.contact.options import Ends
+from facegear.sparse.matrices import cholesky, forward, inverse, plus_square, solve_factored
 
 APART = 3e-9
 """Stiffness between the ends of a chain, over the largest of it, whose square is rounding."""

@@ -1,6 +1,6 @@
 """Branches of periodic motions."""
 
-from facegear.pipeline import asked
+from facegear.pipeline import arguments, machine_conditions
 from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, SPEED, SWEEP
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
 
@@ -9,13 +9,14 @@ BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
 ROWS = (
     Stage(
         name="branches_starts",
+        module="motion",
         title="Where random starts end at one speed",
         machine="machine",
         needs=BRANCHES,
         section="branches",
         upstream=MOTION_INPUTS,
         files={
-            "motions": File("branches/starts/{number}.npz", "facegear.dynamics.branches.motion_arrays:SHAPES")
+            "motions": File("branches/starts/{number}.npz", "facegear.motion.branches.motion_arrays:SHAPES")
         },
         wildcards={"number": NUMBER},
         minutes=30,
@@ -23,18 +24,19 @@ ROWS = (
     ),
     Stage(
         name="branches",
+        module="motion",
         title="Branches of periodic motions",
         machine="machine",
         needs={**BRANCHES, **SWEEP},
         section="branches",
         upstream={
             **MOTION_INPUTS,
-            "starts": From("branches_starts", "motions", each_wildcards=asked.random_starts),
-            "chunks": From("dynamics_sweep_chunk", "chunk", each_wildcards=asked.sweep_chunks),
+            "starts": From("branches_starts", "motions", each_wildcards=arguments.random_starts),
+            "chunks": From("dynamics_sweep_chunk", "chunk", each_wildcards=arguments.sweep_chunks),
             "jumps": From("dynamics_sweep", "jumps"),
         },
         files={
-            "branches": File("branches/branches.csv", "facegear.dynamics.branches.columns:BRANCH_FINITE"),
+            "branches": File("branches/branches.csv", "facegear.motion.branches.columns:BRANCH_FINITE"),
             "ends": File("branches/ends.csv", ("branch", "period", "points"), text=("image_of", "tried")),
             "unfollowed": File("branches/unfollowed.csv", ("period", "origin"), may_be_empty=True),
             "multipliers": File("branches/multipliers.csv", ("branch", "speed_rpm", "real", "imaginary")),
@@ -61,16 +63,17 @@ ROWS = (
                 text=("class_before", "branch", "kind", "note"),
             ),
             "orbits": File(
-                "branches/special_points.npz", "facegear.dynamics.branches.motion_arrays:SPECIAL_SHAPES"
+                "branches/special_points.npz", "facegear.motion.branches.motion_arrays:SPECIAL_SHAPES"
             ),
         },
-        condition=asked.branches,
+        condition=machine_conditions.branches,
         memory_mb=1300,
         minutes=60,
         priority=50,
     ),
     Stage(
         name="branches_loci",
+        module="motion",
         title="Loci of folds and period doublings",
         machine="machine",
         needs=BRANCHES,
@@ -85,7 +88,7 @@ ROWS = (
             )
         },
         figures=Figures(
-            draw="facegear.plots.branches:figures",
+            draw="facegear.report.figures.branches:figures",
             names=("branches", "branch_loci", "branch_fractions", "branch_multipliers"),
             chapter="branches",
             upstream={
@@ -96,7 +99,7 @@ ROWS = (
             },
             needs={**SPEED, "pinions": "transmission.pinions"},
         ),
-        condition=asked.branches,
+        condition=machine_conditions.branches,
         minutes=60,
     ),
 )

@@ -1,6 +1,6 @@
 """The machine in motion: response at one speed, and the speed sweep."""
 
-from facegear.pipeline import asked, studies
+from facegear.pipeline import arguments, asked, contact_studies
 from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
@@ -16,6 +16,7 @@ from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, 
 ROWS = (
     Stage(
         name="dynamics_response",
+        module="motion",
         title="Response at the nominal speed",
         machine="machine",
         needs={**MACHINE, **ACCURACY, **SPEED},
@@ -33,6 +34,7 @@ ROWS = (
     ),
     Stage(
         name="shaft_orders",
+        module="machine",
         title="Vibration at the orders of the gears' turns",
         machine="machine",
         needs={
@@ -45,13 +47,13 @@ ROWS = (
         files={
             "orders": File(
                 "dynamics/shaft_orders.csv",
-                "facegear.stages.shaft_orders:COLUMNS",
+                "facegear.pipeline.stages.machine:COLUMNS",
                 may_be_empty=True,
                 text=("turning", "mesh"),
             ),
             "over_speed": File(
                 "dynamics/shaft_orders_over_speed.csv",
-                "facegear.stages.shaft_orders:OVER_SPEED",
+                "facegear.pipeline.stages.machine:OVER_SPEED",
                 may_be_empty=True,
                 text=("turning", "mesh"),
             ),
@@ -63,23 +65,24 @@ ROWS = (
             ),
         },
         figures=Figures(
-            draw="facegear.plots.shaft_orders:figures",
+            draw="facegear.report.figures.turning_machine:shaft_orders_figures",
             names=("shaft_orders",),
             chapter="dynamics",
             upstream=from_stage("shaft_orders", "orders", "over_speed"),
         ),
-        condition=asked.turning_errors,
+        condition=arguments.turning_errors,
         local=True,
     ),
     Stage(
         name="dynamics_sweep_chunk",
+        module="motion",
         title="Speed sweep, one chunk",
         machine="machine",
         needs={**MACHINE, **SWEEP},
         upstream=MOTION_INPUTS,
         files={
             "chunk": File(
-                "dynamics/chunks/{direction}_{number}.npz", "facegear.dynamics.sweeps.chunk_arrays:SHAPES"
+                "dynamics/chunks/{direction}_{number}.npz", "facegear.motion.sweeps.whole_sweep:SHAPES"
             )
         },
         wildcards={"direction": "up|down", "number": NUMBER},
@@ -88,12 +91,13 @@ ROWS = (
     ),
     Stage(
         name="dynamics_sweep",
+        module="motion",
         title="Jumps and resonances",
         machine="machine",
         needs={**MACHINE, **SWEEP},
         upstream={
             **MOTION_INPUTS,
-            "chunks": From("dynamics_sweep_chunk", "chunk", each_wildcards=asked.sweep_chunks),
+            "chunks": From("dynamics_sweep_chunk", "chunk", each_wildcards=arguments.sweep_chunks),
         },
         files={
             "sweep": File(
@@ -112,7 +116,7 @@ ROWS = (
             "waterfall": File("dynamics/waterfall.npz", {"orders": (None,)}),
         },
         figures=Figures(
-            draw="facegear.plots.dynamics:figures",
+            draw="facegear.report.figures.motion:dynamics_figures",
             names=("mesh_deflections", "pinion_sweep", "gear_sweep", "mesh_sweep", "campbell", "waterfall"),
             chapter="dynamics",
             upstream={
@@ -130,23 +134,24 @@ ROWS = (
     ),
     Stage(
         name="law_loads",
+        module="motion",
         title="Loads in the table of the mesh law",
         upstream={
             **from_stage("mesh_law", "levels"),
             **from_stage("dynamics_response", "response", "summary"),
             **from_stage("dynamics_sweep", "sweep"),
         },
-        files={"loads": File("dynamics/law_loads.csv", "facegear.dynamics.law_loads:LAW_LOAD_COLUMNS")},
+        files={"loads": File("dynamics/law_loads.csv", "facegear.motion.response_tables:LAW_LOAD_COLUMNS")},
         figures=Figures(
-            draw="facegear.plots.mesh_law:load_figures",
-            names=studies.law_figures,
+            draw="facegear.report.figures.stiffness:law_load_figures",
+            names=contact_studies.law_figures,
             chapter="dynamics",
             upstream={
                 **from_stage("law_loads", "loads"),
                 **from_stage("dynamics_sweep", "sweep"),
-                "others": From("dynamics_sweep", "sweep", each_wildcards=studies.other_laws),
+                "others": From("dynamics_sweep", "sweep", each_wildcards=contact_studies.other_laws),
             },
-            needs={"labels": ComputedValue(studies.law_labels, ("studies", "mesh_stiffness"))},
+            needs={"labels": ComputedValue(contact_studies.law_labels, ("studies", "mesh_stiffness"))},
         ),
         condition=asked.load_dependent_machine,
         local=True,

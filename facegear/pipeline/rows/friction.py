@@ -1,6 +1,6 @@
 """Friction, heat and film."""
 
-from facegear.pipeline import asked, studies
+from facegear.pipeline import asked, contact_studies, machine_conditions
 from facegear.pipeline.rows.shared import MACHINE, MOTION_INPUTS, PAIR, SPEED
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
@@ -9,6 +9,7 @@ STORED_CONTACT = from_stage("contact", "ltca", "pressure")
 PAIR_ROWS = (
     Stage(
         name="lubrication",
+        module="friction",
         title="Sliding, friction, heat and film of the pair",
         needs={**PAIR, **SPEED, "lubrication": "lubrication"},
         section="lubrication",
@@ -26,7 +27,7 @@ PAIR_ROWS = (
             ),
         },
         figures=Figures(
-            draw="facegear.plots.friction:figures",
+            draw="facegear.report.figures.friction:figures",
             names=("friction_path", "friction_flank", "efficiency_map"),
             chapter="friction",
             upstream={
@@ -43,6 +44,7 @@ PAIR_ROWS = (
 ROWS = (
     Stage(
         name="machine_loss",
+        module="friction",
         title="Loss and heat of the machine",
         machine="inputs",
         needs={**PAIR, **MACHINE, **SPEED, "lubrication": "lubrication", "strength": "strength"},
@@ -50,24 +52,25 @@ ROWS = (
         upstream={
             **STORED_CONTACT,
             **MOTION_INPUTS,
-            "response": From("dynamics_response", "response", when=asked.friction_in_motion),
-            "duty_loads": From("duty_loads", "duty_loads", when=asked.machine_loads),
+            "response": From("dynamics_response", "response", when=machine_conditions.friction_in_motion),
+            "duty_loads": From("duty_loads", "duty_loads", when=machine_conditions.machine_loads),
         },
         files={
             "meshes": File("lubrication/mesh_losses.csv", "facegear.lubrication.columns:MESH_FINITE"),
             "bodies": File("lubrication/body_heat.csv", ("bin", "speed_rpm", "heat_w"), text=("body",)),
             "machine": File("lubrication/machine_loss.csv", ("bin", "speed_rpm", "power_in_w", "loss_w")),
         },
-        condition=asked.machine_friction,
+        condition=machine_conditions.machine_friction,
         local=True,
         together=8,
     ),
     Stage(
         name="friction_studies",
+        module="friction",
         title="Loss and heat of the studies' cases side by side",
-        needs={"points": ComputedValue(studies.friction_points, ("studies",))},
+        needs={"points": ComputedValue(contact_studies.friction_points, ("studies",))},
         upstream={
-            name: From("machine_loss", name, each_wildcards=studies.friction_cases)
+            name: From("machine_loss", name, each_wildcards=contact_studies.friction_cases)
             for name in ("meshes", "machine")
         },
         files={
@@ -77,7 +80,7 @@ ROWS = (
                 text=("study", "point", "label", "hottest_mesh"),
             )
         },
-        condition=studies.friction_studied,
+        condition=contact_studies.friction_studied,
         local=True,
     ),
 )

@@ -1,17 +1,7 @@
 """The machine at rest: ratings and modes."""
 
-from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import (
-    BODIES,
-    FLANKS,
-    HARMONICS,
-    LAW,
-    MACHINE,
-    MESHES,
-    PAIR,
-    POSES,
-    SPEED,
-)
+from facegear.pipeline import asked, machine_conditions
+from facegear.pipeline.rows.shared import BODIES, FLANKS, HARMONICS, LAW, MACHINE, MESHES, PAIR, POSES, SPEED
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 ROWS = (
@@ -34,25 +24,26 @@ ROWS = (
             "shapes": File("bodies/shapes.npz"),
         },
         figures=Figures(
-            draw="facegear.plots.gear_bodies:figures",
+            draw="facegear.report.figures.turning_machine:gear_bodies_figures",
             names=("body_shapes", "body_waves", "body_campbell"),
             chapter="modes",
             upstream=from_stage("gear_bodies", "modes", "crossings", "shapes"),
             needs={"last_rpm": "dynamics.sweep.to_rpm", "teeth": "tooth_pair.pinion_teeth"},
         ),
-        condition=asked.elastic_gears,
+        condition=machine_conditions.elastic_gears,
         memory_mb=500,
         local=True,
     ),
     Stage(
         name="ratings",
+        module="machine",
         title="Gear ratio, speeds, torques and powers",
         machine="machine",
         needs={**MACHINE, **SPEED},
         upstream={**HARMONICS, **BODIES},
         files={name: File(f"machine/{name}.csv") for name in ("ratings", "bodies", "meshes")},
         figures=Figures(
-            draw="facegear.plots.gearbox_layout:figures",
+            draw="facegear.report.figures.machine:gearbox_layout_figures",
             names=("machine",),
             chapter="load_sharing",
             upstream=from_stage("ratings", "meshes"),
@@ -63,6 +54,7 @@ ROWS = (
     ),
     Stage(
         name="shafts",
+        module="machine",
         title="Shafts of pinions, engines and rotors under load",
         machine="inputs",
         needs=MACHINE,
@@ -77,31 +69,34 @@ ROWS = (
             "torsion": File("shafts/torsion.csv", ("body", "mass", "windup_deg"), may_be_empty=True),
         },
         figures=Figures(
-            draw="facegear.plots.shafts:figures",
-            names=asked.shaft_figures,
+            draw="facegear.report.figures.machine:shafts_figures",
+            names=machine_conditions.shaft_figures,
             chapter="load_sharing",
             upstream=from_stage("shafts", "bearings", "deflections"),
-            needs={**MACHINE, "width_mm": ComputedValue(asked.pinion_width, ("tooth_pair",))},
+            needs={**MACHINE, "width_mm": ComputedValue(machine_conditions.pinion_width, ("tooth_pair",))},
         ),
-        condition=asked.drive_line,
+        condition=machine_conditions.drive_line,
         local=True,
     ),
     Stage(
         name="operating_pose",
+        module="poses",
         title="Teeth where the machine's own forces put them",
         machine="machine",
         needs={**MACHINE, **PAIR, "contact": "contact"},
         upstream={"surface": From("pose_surface", "surface"), **FLANKS, **MESHES, **BODIES},
         files={
-            "meshes": File("poses/meshes.csv", "facegear.poses.tables:FINITE", text=("mesh", "flank")),
+            "meshes": File(
+                "poses/meshes.csv", "facegear.machine.poses.tables:FINITE", text=("mesh", "flank")
+            ),
             "loads": File("poses/loads.csv", ("load_fraction", "unloaded_path_mm"), text=("mesh", "flank")),
             "leaving": File("poses/leaving.csv", ("load_fraction",), may_be_empty=True, text=("mesh", "end")),
             "check": File("poses/check.csv", ("surface", "direct"), text=("quantity",)),
-            "as_assembled": File("poses/as_assembled.npz", "facegear.contact.columns:PRESSURE_ARRAYS"),
-            "running": File("poses/running.npz", "facegear.contact.columns:PRESSURE_ARRAYS"),
+            "as_assembled": File("poses/as_assembled.npz", "facegear.contact.pattern:PRESSURE_ARRAYS"),
+            "running": File("poses/running.npz", "facegear.contact.pattern:PRESSURE_ARRAYS"),
         },
         figures=Figures(
-            draw="facegear.plots.operating_pose:figures",
+            draw="facegear.report.figures.contact:operating_pose_figures",
             names=("pose_pattern", "pose_paths"),
             chapter="load_sharing",
             upstream=from_stage("operating_pose", "meshes", "loads", "as_assembled", "running"),
@@ -111,6 +106,7 @@ ROWS = (
     ),
     Stage(
         name="gear_waves",
+        module="gear_bodies",
         title="Modes at the nominal speed and the waves of face gears that bend",
         machine="machine",
         needs={**MACHINE, **SPEED, "last_rpm": "dynamics.sweep.to_rpm"},
@@ -123,17 +119,18 @@ ROWS = (
             ),
         },
         figures=Figures(
-            draw="facegear.plots.gear_waves:figures",
+            draw="facegear.report.figures.turning_machine:gear_waves_figures",
             names=("machine_campbell",),
             chapter="modes",
             upstream=from_stage("gear_waves", "campbell", "campbell_crossings"),
             needs={"last_rpm": "dynamics.sweep.to_rpm", "teeth": "tooth_pair.pinion_teeth"},
         ),
-        condition=asked.elastic_gears,
+        condition=machine_conditions.elastic_gears,
         local=True,
     ),
     Stage(
         name="modal",
+        module="machine",
         title="Natural frequencies and mode shapes",
         machine="inputs",
         needs={
@@ -154,7 +151,7 @@ ROWS = (
             "contacts": File("modal/contacts.csv", ("contact", "state", "stiffness_n_per_m")),
         },
         figures=Figures(
-            draw="facegear.plots.modal:figures",
+            draw="facegear.report.figures.machine:modal_figures",
             names=("mode_shapes",),
             chapter="modes",
             upstream=from_stage("modal", "frequencies", "shapes"),

@@ -1,15 +1,15 @@
 """Needs and sources that several chapters share: slices of the config, and files of earlier stages."""
 
-from facegear.config.changes import TEETH
-from facegear.pipeline import asked
+from facegear.pipeline import arguments, asked, machine_conditions
 from facegear.pipeline.stage import ComputedValue, From, Needs, from_stage
+from facegear.schema.changes import TEETH
 
 PAIR: Needs = {"tooth_pair": "tooth_pair"}
 MACHINE: Needs = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
 SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
 ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}
 SWEEP: Needs = {"sweep": "dynamics.sweep"}
-OPTIONS = ComputedValue(asked.load_sharing_options, ("load_sharing",))
+OPTIONS = ComputedValue(arguments.load_sharing_options, ("load_sharing",))
 """Settings by which load sharing is averaged."""
 SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": OPTIONS}
 
@@ -20,13 +20,13 @@ POSES = {"poses": From("pose_surface", "surface", when=asked.poses)}
 MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
 HARMONICS = {**MESHES, **POSES}
 """Sources of the mesh stiffness and of its contact over pose."""
-BODIES = {"bodies": From("gear_bodies", "reduced", when=asked.elastic_gears)}
+BODIES = {"bodies": From("gear_bodies", "reduced", when=machine_conditions.elastic_gears)}
 """Face gears that bend."""
 TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=asked.single_teeth)}
 """Teeth that deviate from the others."""
 MOTION_INPUTS = {
     **HARMONICS,
     **BODIES,
-    "friction": From("lubrication", "excitation", when=asked.friction_in_motion),
+    "friction": From("lubrication", "excitation", when=machine_conditions.friction_in_motion),
 }
 """Sources of everything that stages take that compute the motion of the machine."""

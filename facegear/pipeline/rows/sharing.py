@@ -1,6 +1,6 @@
 """Stages of load sharing among meshes."""
 
-from facegear.pipeline import asked, studies
+from facegear.pipeline import arguments, machine_conditions, studies
 from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
@@ -19,6 +19,7 @@ CASE_COLUMNS = ("study", "point", "label")
 ROWS = (
     Stage(
         name="load_sharing",
+        module="sharing",
         title="Load sharing at the nominal speed",
         machine="machine",
         needs=SHARING,
@@ -28,11 +29,12 @@ ROWS = (
             "summary": File("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
             "forces": File("load_sharing/forces.csv", ("mean_n", "largest_n"), text=("mesh", "group")),
         },
-        condition=asked.has_groups_of_pinions,
+        condition=machine_conditions.has_groups_of_pinions,
         together=8,
     ),
     Stage(
         name="load_sharing_summary",
+        module="sharing",
         title="Load sharing of all studies",
         needs={"points": ComputedValue(studies.points, ("studies",))},
         upstream={
@@ -46,7 +48,7 @@ ROWS = (
             ),
         },
         figures=Figures(
-            draw="facegear.plots.load_sharing:figures",
+            draw="facegear.report.figures.sharing:load_sharing_figures",
             names=studies.sharing_figures,
             chapter="load_sharing",
             upstream=from_stage("load_sharing_summary", "studies", "summary"),
@@ -55,11 +57,12 @@ ROWS = (
                 "groups": ComputedValue(studies.kinds_of_groups, ("transmission", "tooth_pair")),
             },
         ),
-        condition=asked.shares_load,
+        condition=machine_conditions.shares_load,
         local=True,
     ),
     Stage(
         name="study_forces",
+        module="sharing",
         title="Forces of meshes over the numbers of studies",
         needs={"points": ComputedValue(studies.numbered_points, ("studies",))},
         upstream={"tables": From("load_sharing", "forces", each_wildcards=studies.numbered_cases)},
@@ -71,7 +74,7 @@ ROWS = (
             )
         },
         figures=Figures(
-            draw="facegear.plots.study_forces:figures",
+            draw="facegear.report.figures.sharing:study_forces_figures",
             names=studies.force_figures,
             chapter="load_sharing",
             upstream=from_stage("study_forces", "forces"),
@@ -82,6 +85,7 @@ ROWS = (
     ),
     Stage(
         name="load_sharing_reference",
+        module="sharing",
         title="Load sharing at rest, running slowly and over a range of speeds",
         machine="machine",
         needs={
@@ -95,12 +99,13 @@ ROWS = (
             "reference": File("load_sharing/reference.csv"),
             "speeds": File("load_sharing/speed_range.csv"),
         },
-        condition=asked.shares_load,
+        condition=machine_conditions.shares_load,
         minutes=15,
         priority=58,
     ),
     Stage(
         name="hunting",
+        module="sharing",
         title="Quasi-static load sharing over the hunting cycle",
         machine="machine",
         needs={**MACHINE, "positions": "load_sharing.hunting_positions"},
@@ -129,22 +134,23 @@ ROWS = (
             ),
         },
         figures=Figures(
-            draw="facegear.plots.hunting:figures",
+            draw="facegear.report.figures.sharing:hunting_figures",
             names=("layout", "hunting", "bearing_stiffness", "sensitivity"),
             chapter="load_sharing",
             upstream=from_stage("hunting", "meshes", "bearings", "cycles", "scan", "sensitivity"),
             needs=MACHINE,
         ),
-        condition=asked.hunting,
+        condition=machine_conditions.hunting,
     ),
     Stage(
         name="sharing_map",
+        module="sharing",
         title="Map of load sharing, and what to change",
         machine="inputs",
         needs={
             **MACHINE,
             "sharing_map": "sharing_map",
-            "torques": ComputedValue(asked.duty_torques, ("strength",)),
+            "torques": ComputedValue(arguments.duty_torques, ("strength",)),
         },
         section="sharing_map",
         upstream={**HARMONICS, **BODIES},
@@ -176,15 +182,16 @@ ROWS = (
             "reasons": File("load_sharing/sharing_map_reasons.csv", (), may_be_empty=True, text=("reason",)),
         },
         figures=Figures(
-            draw="facegear.plots.sharing_map:figures",
+            draw="facegear.report.figures.sharing:sharing_map_figures",
             names=("sharing_map",),
             chapter="load_sharing",
             upstream=from_stage("sharing_map", "curves", "inputs", "points"),
         ),
-        condition=asked.sharing_map,
+        condition=machine_conditions.sharing_map,
     ),
     Stage(
         name="following",
+        module="sharing",
         title="Load sharing of the running machine while its runouts turn",
         machine="machine",
         needs={
@@ -199,6 +206,6 @@ ROWS = (
             "groups": File("load_sharing/following_groups.csv", may_be_empty=True),
             "meshes": File("load_sharing/following_meshes.csv"),
         },
-        condition=asked.follows_rotation,
+        condition=machine_conditions.follows_rotation,
     ),
 )

@@ -1,6 +1,6 @@
 """Root stress, and safety and life under a duty cycle."""
 
-from facegear.pipeline import asked
+from facegear.pipeline import arguments, asked, machine_conditions
 from facegear.pipeline.rows.shared import (
     ACCURACY,
     BODIES,
@@ -16,7 +16,7 @@ from facegear.pipeline.rows.shared import (
 )
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
-GEARS = {"gears": ComputedValue(asked.gears_met, ("transmission",))}
+GEARS = {"gears": ComputedValue(arguments.gears_met, ("transmission",))}
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
 
 POSED_CONTACT = {
@@ -28,6 +28,7 @@ POSED_CONTACT = {
 LOAD_ROWS = (
     Stage(
         name="root_stress",
+        module="strength",
         title="Root stress of both gears",
         needs={**PAIR, "mesh": "mesh", "contact": "contact"},
         upstream={**FLANKS, "loads": From("contact", "loads")},
@@ -41,12 +42,12 @@ LOAD_ROWS = (
             "stress": File("strength/root_stress.npz", "facegear.strength.columns:ROOT_STRESS_ARRAYS"),
             "vtu": File(
                 "strength/root_stress.vtu",
-                view="facegear.strength.fillet_surface:stress_surface",
+                view="facegear.strength.root_tables:stress_surface",
                 of="stress",
             ),
         },
         figures=Figures(
-            draw="facegear.plots.strength:root_figures",
+            draw="facegear.report.figures.strength:root_figures",
             names=("root_stress_passage", "root_stress_along_face"),
             chapter="strength",
             upstream=from_stage("root_stress", "passage", "along_face"),
@@ -72,6 +73,7 @@ LOAD_ROWS = (
     ),
     Stage(
         name="duty_poses",
+        module="duty",
         title="Where the load of every bin of the duty cycle puts the teeth",
         machine="inputs",
         needs={**MACHINE, "strength": "strength"},
@@ -79,7 +81,7 @@ LOAD_ROWS = (
         upstream={"surface": From("pose_surface", "surface"), **MESHES, **BODIES},
         files={
             "duty_poses": File(
-                "strength/duty_poses.csv", "facegear.stages.duty_poses:COLUMNS", text=("mesh", "flank")
+                "strength/duty_poses.csv", "facegear.pipeline.stages.duty:COLUMNS", text=("mesh", "flank")
             )
         },
         condition=asked.posed_rating,
@@ -87,6 +89,7 @@ LOAD_ROWS = (
     ),
     Stage(
         name="duty_loads",
+        module="duty",
         title="Loads of the running machine in every bin of the duty cycle",
         machine="inputs",
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
@@ -104,13 +107,14 @@ LOAD_ROWS = (
 ROWS = (
     Stage(
         name="rating",
+        module="strength",
         title="Safety and life of the tooth pair",
         needs={**PAIR, "strength": "strength", **GEARS},
         section="strength",
         upstream={
             **STRESS,
-            "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
-            "mesh_losses": From("machine_loss", "meshes", when=asked.scuffed_loads),
+            "duty_spectrum": From("duty_loads", "duty_spectrum", when=machine_conditions.machine_loads),
+            "mesh_losses": From("machine_loss", "meshes", when=machine_conditions.scuffed_loads),
             **POSED_CONTACT,
             **POSES,
             "duty_poses": From("duty_poses", "duty_poses", when=asked.poses),
@@ -122,7 +126,7 @@ ROWS = (
             "curves": File("strength/curves.csv", "facegear.strength.columns:CURVE_COLUMNS"),
         },
         figures=Figures(
-            draw="facegear.plots.strength:rating_figures",
+            draw="facegear.report.figures.strength:rating_figures",
             names=("life", "damage"),
             chapter="strength",
             upstream=from_stage("rating", "rating", "damage", "curves"),
@@ -131,6 +135,7 @@ ROWS = (
     ),
     Stage(
         name="dynamic_root_stress",
+        module="strength",
         title="Root stress of the running machine",
         needs={**MACHINE, **PAIR, **GEARS},
         upstream={
@@ -144,16 +149,17 @@ ROWS = (
                 "strength/dynamic_stress.csv", "facegear.strength.columns:DYNAMIC_STRESS_FINITE"
             )
         },
-        condition=asked.machine_stress,
+        condition=machine_conditions.machine_stress,
     ),
     Stage(
         name="stress_over_speed",
+        module="strength",
         title="Root stress and pressure over the speed range",
         machine="inputs",
         needs={**MACHINE, **PAIR, **GEARS},
         upstream={
             "sweep": From("dynamics_sweep", "sweep"),
-            "branches": From("branches", "branches", when=asked.branches),
+            "branches": From("branches", "branches", when=machine_conditions.branches),
             **STRESS,
             **HARMONICS,
             **BODIES,
@@ -165,12 +171,12 @@ ROWS = (
             )
         },
         figures=Figures(
-            draw="facegear.plots.stress_over_speed:figures",
+            draw="facegear.report.figures.strength:stress_over_speed_figures",
             names=("stress_over_speed",),
             chapter="strength",
             upstream={"table": From("stress_over_speed", "stress_over_speed")},
             needs=SPEED,
         ),
-        condition=asked.machine_stress,
+        condition=machine_conditions.machine_stress,
     ),
 )

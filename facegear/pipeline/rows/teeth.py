@@ -1,16 +1,16 @@
 """Tooth pair: geometry, meshes, compliance, contact, stiffness."""
 
-from facegear.pipeline import asked, studies
+from facegear.pipeline import arguments, asked, contact_studies
 from facegear.pipeline.rows.shared import FLANKS, PAIR
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 MESH: Needs = {**PAIR, "mesh": "mesh"}
 BODY = {"body": "pinion|face_gear"}
-CONTACT_POINTS = ComputedValue(studies.contact_points, ("studies",))
+CONTACT_POINTS = ComputedValue(contact_studies.contact_points, ("studies",))
 STUDIED_CONTACT = {
-    "pair": From("geometry", "pair", each_wildcards=studies.contact_cases),
+    "pair": From("geometry", "pair", each_wildcards=contact_studies.contact_cases),
     **{
-        kind: From("contact", kind, each_wildcards=studies.contact_cases)
+        kind: From("contact", kind, each_wildcards=contact_studies.contact_cases)
         for kind in ("ltca", "by_torque", "pressure")
     },
 }
@@ -18,6 +18,7 @@ STUDIED_CONTACT = {
 ROWS = (
     Stage(
         name="geometry",
+        module="teeth",
         title="Tooth geometry",
         needs=PAIR,
         files={
@@ -31,7 +32,7 @@ ROWS = (
             "contact": File("geometry/contact.npz", {"contour_gap": (None, None), "path_roll": (None,)}),
         },
         figures=Figures(
-            draw="facegear.plots.tooth_pair:figures",
+            draw="facegear.report.figures.teeth:tooth_pair_figures",
             names=("tooth_pair", "tooth_sections", "separation"),
             chapter="teeth",
             upstream=from_stage("geometry", "pair", "flanks", "contact"),
@@ -41,6 +42,7 @@ ROWS = (
     ),
     Stage(
         name="mesh",
+        module="teeth",
         title="Meshes of both bodies",
         needs=MESH,
         files={
@@ -56,18 +58,20 @@ ROWS = (
     ),
     Stage(
         name="cad",
+        module="teeth",
         title="Exact teeth for CAD",
-        needs={**MESH, "case": ComputedValue(asked.config_name, ("case",))},
+        needs={**MESH, "case": ComputedValue(arguments.config_name, ("case",))},
         files={"step": File("cad/{body}.step"), "stl": File("cad/{body}.stl")},
         wildcards=BODY,
     ),
     Stage(
         name="compliance",
+        module="teeth",
         title="Flank compliance",
         needs={
-            "tooth_pair": ComputedValue(asked.without_gaps, ("tooth_pair",)),
+            "tooth_pair": ComputedValue(arguments.without_gaps, ("tooth_pair",)),
             "mesh": "mesh",
-            "contact": ComputedValue(asked.without_loads, ("tooth_pair", "mesh", "contact")),
+            "contact": ComputedValue(arguments.without_loads, ("tooth_pair", "mesh", "contact")),
         },
         files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:ARRAY_SHAPES")},
         wildcards=BODY,
@@ -81,19 +85,19 @@ ROWS = (
         needs={**PAIR, "contact": "contact"},
         upstream=FLANKS,
         files={
-            "ltca": File("contact/ltca.csv", "facegear.contact.columns:LTCA_FINITE"),
+            "ltca": File("contact/ltca.csv", "facegear.contact.pattern:LTCA_FINITE"),
             "by_torque": File(
                 "contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")
             ),
             "by_flank": File("contact/by_flank.csv", ("offset_um", "torque_n_m", "path_radius_mm")),
-            "pressure": File("contact/pressure.npz", "facegear.contact.columns:PRESSURE_ARRAYS"),
-            "loads": File("contact/loads.npz", "facegear.contact.columns:LOAD_ARRAYS"),
+            "pressure": File("contact/pressure.npz", "facegear.contact.pattern:PRESSURE_ARRAYS"),
+            "loads": File("contact/loads.npz", "facegear.contact.pattern:LOAD_ARRAYS"),
             "vtu": File(
                 "contact/pressure.vtu", view="facegear.contact.pattern:pressure_surface", of="pressure"
             ),
         },
         figures=Figures(
-            draw="facegear.plots.contact:figures",
+            draw="facegear.report.figures.contact:contact_figures",
             names=("contact_curves", "contact_pattern"),
             chapter="contact",
             upstream=from_stage("contact", "ltca", "pressure"),
@@ -105,16 +109,19 @@ ROWS = (
     ),
     Stage(
         name="stiffness",
+        module="contact",
         title="Mesh stiffness",
         needs={"mesh_stiffness": "mesh_stiffness"},
         upstream={"ltca": From("contact", "ltca", when=asked.computed_stiffness)},
         files={
             "tvms": File("stiffness/tvms.csv", ("position", "k_n_per_m", "k_series_n_per_m")),
-            "harmonics": File("stiffness/harmonics.csv", "facegear.stiffness.tables:HARMONICS_COLUMNS"),
+            "harmonics": File(
+                "stiffness/harmonics.csv", "facegear.meshing.stiffness_source:HARMONICS_COLUMNS"
+            ),
             "spectrum": File("stiffness/spectrum.csv", ("order", "amplitude_n_per_m")),
         },
         figures=Figures(
-            draw="facegear.plots.stiffness:figures",
+            draw="facegear.report.figures.stiffness:stiffness_figures",
             names=("mesh_stiffness", "stiffness_harmonics"),
             chapter="mesh_stiffness",
             upstream=from_stage("stiffness", "tvms", "spectrum"),
@@ -125,6 +132,7 @@ ROWS = (
     ),
     Stage(
         name="topography",
+        module="teeth",
         title="Flanks as measured, with nominal points and normals",
         needs=PAIR,
         files={
@@ -133,7 +141,7 @@ ROWS = (
             )
         },
         figures=Figures(
-            draw="facegear.plots.topography:figures",
+            draw="facegear.report.figures.teeth:topography_figures",
             names=("topography_pinion", "topography_face_gear"),
             chapter="teeth",
             upstream=from_stage("topography", "points"),
@@ -143,17 +151,18 @@ ROWS = (
     ),
     Stage(
         name="tooth_errors",
+        module="contact",
         title="Teeth that deviate from the others of their gear",
         needs={**PAIR, "torque": "mesh_stiffness.torque_n_m"},
         upstream={**FLANKS, "loads": From("contact", "loads")},
         files={
-            "curves": File("contact/tooth_errors.npz", "facegear.contact.columns:TOOTH_ERROR_ARRAYS"),
+            "curves": File("contact/tooth_errors.npz", "facegear.contact.pattern:TOOTH_ERROR_ARRAYS"),
             "orders": File(
                 "contact/tooth_errors.csv", ("order", "unloaded_um", "loaded_um"), may_be_empty=True
             ),
         },
         figures=Figures(
-            draw="facegear.plots.tooth_errors:figures",
+            draw="facegear.report.figures.teeth:tooth_errors_figures",
             names=("tooth_errors",),
             chapter="contact",
             upstream=from_stage("tooth_errors", "curves", "orders"),
@@ -163,15 +172,16 @@ ROWS = (
     ),
     Stage(
         name="mesh_law",
+        module="contact",
         title="Load-dependent mesh law",
         needs={**PAIR, "contact": "contact", "mesh_stiffness": "mesh_stiffness"},
         upstream={**FLANKS, **from_stage("contact", "ltca")},
         files={
-            "law": File("stiffness/law.npz", "facegear.stiffness.load_dependent:LAW_ARRAYS"),
-            "levels": File("stiffness/law.csv", "facegear.stiffness.load_dependent:LEVEL_COLUMNS"),
+            "law": File("stiffness/law.npz", "facegear.meshing.fitted_law:LAW_ARRAYS"),
+            "levels": File("stiffness/law.csv", "facegear.meshing.fitted_law:LEVEL_COLUMNS"),
         },
         figures=Figures(
-            draw="facegear.plots.mesh_law:figures",
+            draw="facegear.report.figures.stiffness:mesh_law_figures",
             names=("mesh_law", "mesh_law_surface"),
             chapter="mesh_stiffness",
             upstream=from_stage("mesh_law", "law"),
@@ -183,6 +193,7 @@ ROWS = (
     ),
     Stage(
         name="pose_surface",
+        module="poses",
         title="Contact over pose",
         needs={
             **PAIR,
@@ -192,7 +203,7 @@ ROWS = (
         },
         upstream=FLANKS,
         files={
-            "surface": File("poses/surface.npz", "facegear.poses.surface:SURFACE_ARRAYS"),
+            "surface": File("poses/surface.npz", "facegear.machine.poses.surface:SURFACE_ARRAYS"),
             "nodes": File("poses/nodes.csv", ("unloaded_path_mm", "torque_n_m", "stiffness_n_per_m")),
             "errors": File("poses/errors.csv", ("largest", "rms"), text=("quantity", "left_out")),
         },
@@ -203,11 +214,12 @@ ROWS = (
     ),
     Stage(
         name="load_dependence",
+        module="contact",
         title="Stiffness against load",
         upstream=from_stage("contact", "ltca"),
         files={"table": File("stiffness/load_dependence.csv", ("definition", "torque_n_m", "mean_n_per_m"))},
         figures=Figures(
-            draw="facegear.plots.stiffness:load_figures",
+            draw="facegear.report.figures.stiffness:load_figures",
             names=("stiffness_load",),
             chapter="mesh_stiffness",
             upstream=from_stage("load_dependence", "table"),
@@ -217,22 +229,23 @@ ROWS = (
     ),
     Stage(
         name="contact_studies",
+        module="contact",
         title="Contact of the studies' cases side by side",
         needs={"points": CONTACT_POINTS},
         upstream=STUDIED_CONTACT,
         files={"table": File("contact/studies.csv")},
         figures=Figures(
-            draw="facegear.plots.contact_study:figures",
-            names=studies.contact_figures,
+            draw="facegear.report.figures.contact:contact_study_figures",
+            names=contact_studies.contact_figures,
             chapter="contact",
             upstream=STUDIED_CONTACT,
             needs={
                 "points": CONTACT_POINTS,
-                "titles": ComputedValue(studies.contact_titles, ("studies",)),
-                "torque": ComputedValue(studies.contact_torque, ("contact", "mesh_stiffness")),
+                "titles": ComputedValue(contact_studies.contact_titles, ("studies",)),
+                "torque": ComputedValue(contact_studies.contact_torque, ("contact", "mesh_stiffness")),
             },
         ),
-        condition=studies.contact_studied,
+        condition=contact_studies.contact_studied,
         local=True,
     ),
 )

@@ -1,23 +1,25 @@
 """Machines with their tolerances, and designs that are searched."""
 
-from facegear.pipeline import asked
+from facegear.pipeline import arguments, asked, machine_conditions
 from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, OPTIONS, PAIR, SHARING, SPEED
 from facegear.pipeline.stage import NUMBER, ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
-SOLID = ComputedValue(asked.solid_pair, ("transmission", "tooth_pair"))
+SOLID = ComputedValue(machine_conditions.solid_pair, ("transmission", "tooth_pair"))
 SAMPLE_NEEDS: Needs = {
     **SHARING,
     "tolerances": CAUSES,
-    "pair": ComputedValue(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
-    "lubrication_sections": ComputedValue(asked.lubricated_samples, ("lubrication", "tooth_pair")),
+    "pair": ComputedValue(arguments.pair_where(arguments.sampled_contact), asked.PAIR_SECTIONS),
+    "lubrication_sections": ComputedValue(arguments.lubricated_samples, ("lubrication", "tooth_pair")),
     "solid": SOLID,
 }
 SAMPLED_FROM = {
     **HARMONICS,
     **BODIES,
-    **{name: From("contact", name, when=asked.stored_rubbing) for name in ("ltca", "pressure")},
-    "flanks": From("compliance", "arrays", each_wildcards=asked.both_bodies, when=asked.sampled_contact),
+    **{name: From("contact", name, when=arguments.stored_rubbing) for name in ("ltca", "pressure")},
+    "flanks": From(
+        "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.sampled_contact
+    ),
 }
 SEARCH_NEEDS: Needs = {
     **PAIR,
@@ -27,18 +29,21 @@ SEARCH_NEEDS: Needs = {
     "options": OPTIONS,
     "search": "search",
     "tolerances": "tolerances",
-    "pair": ComputedValue(asked.pair_where(asked.searched_contact), asked.PAIR_SECTIONS),
+    "pair": ComputedValue(arguments.pair_where(arguments.searched_contact), asked.PAIR_SECTIONS),
     "solid": SOLID,
 }
 SEARCHED_FROM = {
     **HARMONICS,
     **BODIES,
-    "flanks": From("compliance", "arrays", each_wildcards=asked.both_bodies, when=asked.searched_contact),
+    "flanks": From(
+        "compliance", "arrays", each_wildcards=arguments.both_bodies, when=arguments.searched_contact
+    ),
 }
 
 ROWS = (
     Stage(
         name="tolerances_chunk",
+        module="studies",
         title="Samples of the machine with its tolerances",
         needs=SAMPLE_NEEDS,
         section="tolerances",
@@ -49,11 +54,12 @@ ROWS = (
     ),
     Stage(
         name="tolerances",
+        module="studies",
         title="Percentiles, fractions and Sobol indices",
         needs={"tolerances": "tolerances"},
         section="tolerances",
         upstream={
-            design: From("tolerances_chunk", "chunk", each_wildcards=asked.tolerance_chunks(design))
+            design: From("tolerances_chunk", "chunk", each_wildcards=arguments.tolerance_chunks(design))
             for design in ("samples", "indices")
         },
         files={
@@ -70,16 +76,17 @@ ROWS = (
             "sampling": File("tolerances/sampling.csv", may_be_empty=True),
         },
         figures=Figures(
-            draw="facegear.plots.tolerances:figures",
+            draw="facegear.report.figures.tolerances:tolerances_figures",
             names=("tolerance_distributions", "tolerance_importance", "tolerance_scatter"),
             chapter="tolerances",
             upstream=from_stage("tolerances", "samples", "percentiles", "importance", "indices"),
         ),
-        condition=asked.tolerances,
+        condition=machine_conditions.tolerances,
         local=True,
     ),
     Stage(
         name="tolerances_map",
+        module="studies",
         title="Percentiles over torque and speed",
         needs={**SAMPLE_NEEDS, "tolerances": (*CAUSES, "tolerances.confidence", "tolerances.load_map")},
         section="tolerances",
@@ -97,17 +104,18 @@ ROWS = (
             "load_sampling": File("tolerances/load_sampling.csv", may_be_empty=True),
         },
         figures=Figures(
-            draw="facegear.plots.tolerances:map_figures",
+            draw="facegear.report.figures.tolerances:map_figures",
             names=("tolerance_map",),
             chapter="tolerances",
             upstream=from_stage("tolerances_map", "load_map"),
         ),
-        condition=asked.load_map,
+        condition=machine_conditions.load_map,
         resumable="load_map",
         minutes=240,
     ),
     Stage(
         name="search_island",
+        module="search",
         title="Evolution of designs from one seed",
         needs=SEARCH_NEEDS,
         section="search",
@@ -122,7 +130,10 @@ ROWS = (
         title="Front of all islands, and its winners at full accuracy",
         needs=SEARCH_NEEDS,
         section="search",
-        upstream={**SEARCHED_FROM, "islands": From("search_island", "designs", each_wildcards=asked.islands)},
+        upstream={
+            **SEARCHED_FROM,
+            "islands": From("search_island", "designs", each_wildcards=arguments.islands),
+        },
         files={
             "designs": File("search/designs.parquet", ("generation", "seed", "error")),
             "front": File("search/front.csv", may_be_empty=True),
@@ -130,13 +141,13 @@ ROWS = (
             "winners": File("search/winners.csv", ("design",), text=("design",)),
         },
         figures=Figures(
-            draw="facegear.plots.search:figures",
+            draw="facegear.report.figures.comparison:search_figures",
             names=("search_front", "search_hypervolume"),
             chapter="search",
             upstream=from_stage("search", "designs", "front", "hypervolume", "winners"),
             needs={"objectives": "search.objectives"},
         ),
-        condition=asked.search,
+        condition=machine_conditions.search,
         minutes=60,
     ),
 )

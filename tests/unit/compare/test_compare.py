@@ -9,12 +9,12 @@ import pytest
 
 import facegear
 from facegear.__main__ import main
-from facegear.compare import answers
-from facegear.compare.causes import causes
-from facegear.compare.judge import Verdict, answer_tables, compare, tables_not_stored
 from facegear.errors import CorruptFile, FacegearError
-from facegear.io.checksums import sha256
+from facegear.io.atomic import sha256
 from facegear.number_format import count_noun
+from facegear.report.compare import answers
+from facegear.report.compare.judge import Verdict, answer_tables, compare, tables_not_stored
+from facegear.report.compare.page import causes
 
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.command_line import check_configfiles
+from facegear.build.load import check_configfiles
 
 ROOT = Path(__file__).parents[3]
 PAPER = str(ROOT / "config" / "paper.yaml")

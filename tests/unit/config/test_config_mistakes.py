@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, parse, refuse
-from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors
+from facegear.schema.base import Section, parse, refuse
+from facegear.schema.yaml_file import read_yaml
 
 
 class Bearing(Section):

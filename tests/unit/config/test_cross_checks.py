@@ -5,16 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.cases import expand_cases
-from facegear.config.contact import contact_plan
-from facegear.config.load import load_config
-from facegear.config.mesh import mesh_sizes
-from facegear.config.model import Config, resolved_values
-from facegear.config.notes import notes
-from facegear.config.tooth_pair import pair_design
+from facegear.build.cases import expand_cases
+from facegear.build.config import Config, resolved_values
+from facegear.build.load import load_config
+from facegear.build.notes import notes
+from facegear.build.plans import contact_plan, mesh_sizes
+from facegear.build.tooth_pair import pair_design
 from facegear.contact.resolution import estimated_memory
 from facegear.errors import ConfigErrors
+from facegear.schema.base import parse
 
 ROOT = Path(__file__).parents[3]
 QUICK = load_config(ROOT / "config" / "quick.yaml").model_dump(mode="json")

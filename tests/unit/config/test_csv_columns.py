@@ -2,12 +2,12 @@
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.flank_csv import read_flanks
-from facegear.config.gear_body import BodySection
-from facegear.config.stiffness import MeshStiffness
-from facegear.config.strength import BIN_COLUMNS, Strength
 from facegear.errors import ConfigErrors
+from facegear.schema.base import parse
+from facegear.schema.csv_file import read_flanks
+from facegear.schema.gear_body import BodySection
+from facegear.schema.stiffness import MeshStiffness
+from facegear.schema.strength import BIN_COLUMNS, Strength
 
 FILES = {
     "orders": ("order,sin_n_per_m,cos_n_per_m", "0,0,4e8"),

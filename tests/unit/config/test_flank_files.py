@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import facegear
-from facegear.config.tooth_pair import pair_design
+from facegear.build.tooth_pair import pair_design
 from facegear.errors import ConfigErrors
-from facegear.geometry.deviations import deviation
-from facegear.geometry.nominal import flank_face, nominal_points
+from facegear.teeth.modifications import deviation
+from facegear.teeth.surfaces import flank_face, nominal_points
 
 HEAD = "# pitch and thickness: included\nbody,tooth,flank,face_mm,profile_mm,deviation_um"
 FACES, PROFILES = (251.0, 257.0, 263.0, 269.0, 274.0), (0.2, 2.0, 3.75, 5.0)

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 import facegear
-from facegear.config.keys import KEYS, keys_named
-from facegear.config.schema import json_schema
+from facegear.build.json_schema import json_schema
 from facegear.errors import ConfigError, InvalidInput
 from facegear.pipeline.run import call
 from facegear.pipeline.stage import Stage
+from facegear.schema.base import KEYS, keys_named
 
 LIBRARY = Path(facegear.__file__).parent
 

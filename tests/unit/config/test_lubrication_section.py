@@ -4,12 +4,13 @@ import copy
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.lubrication import LubricationSection, limits_of, lubrication_request, map_speeds
-from facegear.config.oil_card import OIL_CARDS
+from facegear.build.lubrication import limits_of, lubrication_request, map_speeds
 from facegear.errors import ConfigErrors
 from facegear.lubrication.friction import Constant, Schlenk
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk
+from facegear.schema.base import parse
+from facegear.schema.cards import OIL_CARDS
+from facegear.schema.lubrication import LubricationSection
 
 SECTION = {
     "oil": "polyol_ester_5_cst",

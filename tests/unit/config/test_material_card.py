@@ -2,10 +2,11 @@
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.material_card import CARDS, material_card
-from facegear.config.strength import BodyStrength
+from facegear.build.strength import material_card
 from facegear.errors import ConfigErrors
+from facegear.schema.base import parse
+from facegear.schema.cards import CARDS
+from facegear.schema.strength import BodyStrength
 
 
 @pytest.mark.parametrize("path", sorted(CARDS.glob("*.yaml")), ids=lambda path: path.stem)

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.load import load_config
-from facegear.config.model import Config, resolved_values
-from facegear.config.reference import reference
+from facegear.build.config import Config, resolved_values
+from facegear.build.load import load_config
+from facegear.build.reference import reference
 from facegear.errors import ConfigErrors
+from facegear.schema.base import parse
 
 SCHEMA = Config.model_json_schema()
 CONFIGS = sorted((Path(__file__).parents[3] / "config").glob("*.yaml"))

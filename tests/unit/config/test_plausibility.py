@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from facegear.__main__ import main
-from facegear.config.cases import expand_cases
-from facegear.config.load import config_of, load_config, read_layers
-from facegear.config.plausibility import expected_sizes, plausibility_notes
+from facegear.build.cases import expand_cases
+from facegear.build.load import config_of, load_config, read_layers
+from facegear.schema.plausibility import expected_sizes, plausibility_notes
 
 ROOT = Path(__file__).parents[3]
 SHIPPED = sorted(

@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 
 import facegear
 from facegear.__main__ import main
-from facegear.config.base import NEW_KEYS, parse
-from facegear.config.cases import expand_cases, set_key
-from facegear.config.load import load_config
-from facegear.config.model import Config
-from facegear.config.notes import notes
-from facegear.config.search import Search
-from facegear.config.strength import Strength
-from facegear.config.tolerances import Tolerances
+from facegear.build.cases import expand_cases, set_key
+from facegear.build.config import Config
+from facegear.build.load import load_config
+from facegear.build.notes import notes
 from facegear.errors import ConfigError, ConfigErrors
+from facegear.schema.base import NEW_KEYS, parse
+from facegear.schema.strength import Strength
+from facegear.schema.studies import Search
+from facegear.schema.tolerances import Tolerances
 
 CONFIG = Path(__file__).parents[3] / "config"
 TWO = load_config(CONFIG / "two_pinion.yaml").model_dump(mode="json")

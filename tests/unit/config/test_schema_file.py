@@ -4,25 +4,25 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.load import load_config, read_layers
-from facegear.config.model import Config
-from facegear.config.reference import reference
-from facegear.config.schema import SCHEMA, json_schema
+from facegear.build.config import Config
+from facegear.build.json_schema import SCHEMA, json_schema
+from facegear.build.load import load_config, read_layers
+from facegear.build.reference import reference
 from facegear.errors import ConfigErrors
+from facegear.schema.base import parse
 
 ROOT = Path(__file__).parents[3]
 
 
 def test_schema_file_is_what_the_models_say():
     assert SCHEMA.read_text() == json_schema(), (
-        "run: python -m facegear.config.schema > facegear/config/config.schema.json"
+        "run: python -m facegear.build.json_schema > facegear/schema/config.schema.json"
     )
 
 
 def test_the_page_of_all_keys_is_what_the_models_say():
     stored = (ROOT / "docs" / "reference" / "config.md").read_text()
-    assert stored == reference(), "run: python -m facegear.config.reference > docs/reference/config.md"
+    assert stored == reference(), "run: python -m facegear.build.reference > docs/reference/config.md"
     assert "| `transmission.pinions[].angle_deg` | `null` | number from -360, to 360 or null |" in stored
 
 

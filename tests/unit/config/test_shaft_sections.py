@@ -8,12 +8,12 @@ from ruamel.yaml import YAML
 from three_pinions import STIFFNESS, TEETH, TEXT
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.changes import add_changes, movable
-from facegear.config.lumped_model import machine
-from facegear.config.transmission import Transmission
+from facegear.build.lumped_model import machine
 from facegear.errors import ConfigErrors
-from facegear.transmission.statics import mean_equilibrium
+from facegear.machine.statics import mean_equilibrium
+from facegear.schema.base import parse
+from facegear.schema.changes import add_changes, movable
+from facegear.schema.transmission import Transmission
 
 EXAMPLE = Path(__file__).parents[3] / "config" / "shafts.yaml"
 SHAFT = """

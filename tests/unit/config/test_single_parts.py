@@ -9,15 +9,14 @@ from ruamel.yaml import YAML
 from three_pinions import STIFFNESS, TEETH, TEXT
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.buildable import require_buildable, require_room
-from facegear.config.changes import add_changes, movable
-from facegear.config.lumped_model import machine
-from facegear.config.notes import notes
-from facegear.config.transmission import Transmission
+from facegear.build.lumped_model import machine
+from facegear.build.notes import notes, require_buildable, require_room
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.statics import mean_equilibrium, static_equilibrium
+from facegear.harmonics import Harmonics
+from facegear.machine.statics import mean_equilibrium, static_equilibrium
+from facegear.schema.base import parse
+from facegear.schema.changes import add_changes, movable
+from facegear.schema.transmission import Transmission
 
 
 def section(**changes):

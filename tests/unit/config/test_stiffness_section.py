@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.config.base import parse
-from facegear.config.checks import check_pitch
-from facegear.config.stiffness import MeshStiffness, stiffness_request
+from facegear.build.checks import check_pitch
+from facegear.build.plans import stiffness_request
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.harmonics.series import Harmonics
-from facegear.stiffness.source import stiffness_given
+from facegear.harmonics import Harmonics
+from facegear.meshing.stiffness_source import stiffness_given
+from facegear.schema.base import parse
+from facegear.schema.stiffness import MeshStiffness
 
 HEADER = "order,sin_n_per_m,cos_n_per_m\n"
 

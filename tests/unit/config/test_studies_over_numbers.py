@@ -2,9 +2,9 @@
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.cases import find_numeric_axis, study_points
-from facegear.config.studies import Study
+from facegear.build.cases import find_numeric_axis, study_points
+from facegear.schema.base import parse
+from facegear.schema.studies import Study
 
 WEB = "transmission.face_gear.body.web"
 BEARING = "transmission.pinion.bearing_stiffness_n_per_m"

@@ -3,9 +3,9 @@
 import pytest
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.studies import Study
 from facegear.errors import ConfigErrors, FacegearError
+from facegear.schema.base import parse
+from facegear.schema.studies import Study
 
 TORQUE = "transmission.torque.per_input_n_m"
 

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.mesh import Mesh, mesh_sizes
-from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.config.yaml_file import read_yaml
+from facegear.build.plans import mesh_sizes
+from facegear.build.tooth_pair import ToothPair, materials, pair_design
 from facegear.errors import ConfigErrors
-from facegear.geometry.design import AssemblyErrors
+from facegear.schema.base import parse
+from facegear.schema.contact import Mesh
+from facegear.schema.yaml_file import read_yaml
+from facegear.teeth.design import AssemblyErrors
 
 ROOT = Path(__file__).parents[3]
 

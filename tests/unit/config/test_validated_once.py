@@ -6,15 +6,15 @@ from pathlib import Path
 import pytest
 
 import facegear
-from facegear.config.arguments import typed_arguments
-from facegear.config.base import parse
-from facegear.config.cases import expand_cases
-from facegear.config.load import load_config
-from facegear.config.tooth_pair import ToothPair
-from facegear.config.transmission import Transmission
+from facegear.build.cases import expand_cases
+from facegear.build.load import load_config
+from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigErrors
+from facegear.pipeline.arguments import typed_arguments
+from facegear.pipeline.results.chain import Chain
 from facegear.pipeline.run import machine_inputs
-from facegear.results.chain import Chain
+from facegear.schema.base import parse
+from facegear.schema.transmission import Transmission
 
 CONFIG = Path(__file__).parents[3] / "config" / "concentric.yaml"
 

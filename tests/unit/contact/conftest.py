@@ -5,11 +5,11 @@ from collections.abc import Callable
 import pytest
 from contact_bodies import COARSE, FINE, STEEL, pair_design
 
+from facegear.contact.gear_flank import contact_model, gear_flank
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import contact_model, gear_flank
-from facegear.geometry.design import PairDesign
-from facegear.mesh.sizes import MeshSizes
+from facegear.teeth.design import PairDesign
+from facegear.teeth.mesh_sizes import MeshSizes
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

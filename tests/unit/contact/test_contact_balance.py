@@ -9,17 +9,17 @@ from contact_bodies import STEEL, pair_design, stiffness
 from references import against, agrees
 
 from facegear.contact.bodies.compliance import flank_compliance
-from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.layer import tied_system
+from facegear.contact.candidates import influence_matrix
 from facegear.contact.flanks import flank_pair
-from facegear.contact.influence import influence_matrix
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.options import ContactOptions, Refinement
-from facegear.contact.pair import BUILDERS
+from facegear.contact.position_solver import solve_contact
 from facegear.contact.search import find_candidates
-from facegear.contact.solver import solve_contact
 from facegear.contact.teeth import elastic_tooth
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.mesh.sizes import MeshSizes
+from facegear.sparse.matrices import solve_sparse
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.unloaded import unloaded_contact
 
 CUTS = Refinement(2, 1, 2, 2.0)
 TORQUE = 400.0

@@ -8,17 +8,17 @@ import pytest
 from contact_bodies import COARSE
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.bodies import BODIES
+from facegear.build.plans import contact_plan
+from facegear.build.tooth_pair import ToothPair, pair
 from facegear.contact import analysis
-from facegear.contact.gear_flank import from_arrays, to_arrays
-from facegear.contact.pair import gear_flank
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.flank_errors import FLANKS, GEARS, errors_at
-from facegear.stages.contact import contents
-from facegear.stages.root_stress import root_contents
+from facegear.contact.gear_flank import from_arrays, gear_flank, to_arrays
+from facegear.pipeline.stages.contact import contents
+from facegear.pipeline.stages.strength import root_contents
+from facegear.schema.base import parse
+from facegear.schema.contact import Contact
 from facegear.strength.root_tables import root_from_arrays
+from facegear.teeth.placement import FLANKS, GEARS, errors_at
 
 CONTACT = {
     "torques_n_m": [600.0],

@@ -11,18 +11,16 @@ from test_pair_contact import misaligned
 from facegear.contact import ltca
 from facegear.contact.basis_functions import functions_within
 from facegear.contact.bodies.surface import face_functions
-from facegear.contact.candidates import candidates_of
-from facegear.contact.influence import influence_matrix
-from facegear.contact.known_contact import known_contact
+from facegear.contact.candidates import candidates_of, flank_cover, flank_points, influence_matrix
 from facegear.contact.lattice import Lattice
-from facegear.contact.loads import flank_cover, flank_points
-from facegear.contact.ltca import loaded_contact
+from facegear.contact.ltca import known_contact, loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.position_solver import PositionSolver
 from facegear.contact.search import cover_of, facing_points, find_candidates
-from facegear.geometry.opposite import locate_hits
-from facegear.geometry.separation import separation
-from facegear.geometry.unloaded import PAIRS, unloaded_contact
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.opposite import locate_hits
+from facegear.teeth.separation import separation
+from facegear.teeth.unloaded import unloaded_contact
 
 PLACES = [{}, {"offset": 3e-4}, {"shaft_angle_error": 3.5e-3}]
 LIMIT = 1.2e-3

@@ -6,10 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.contact import Contact, contact_plan
+from facegear.build.plans import contact_plan
+from facegear.contact.gear_flank import gear_flank
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import (
     PLANES,
     along_the_ellipse,
@@ -19,9 +18,11 @@ from facegear.contact.resolution import (
     half_width,
 )
 from facegear.errors import ConfigErrors, InvalidInput
-from facegear.geometry.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Relief, Shaper
-from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.pipeline.needs import stage_needs
+from facegear.schema.base import parse
+from facegear.schema.contact import Contact
+from facegear.teeth.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
 
 STEEL = Material(206e9, 0.3)
 M = 3.75e-3

@@ -42,7 +42,7 @@ def point_contact(refinement, radius=0.01, half_width=2e-4):
     "analytic",
     "Johnson, Contact Mechanics, 5.6: disc between rigid plates",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 def test_line_contact_meets_hertz_within_a_percent_with_five_nodes_in_the_half_width():
     approach, peak, contact = line_contact(12, Refinement(8, 1, 4, 2.0))
@@ -55,7 +55,7 @@ def test_line_contact_meets_hertz_within_a_percent_with_five_nodes_in_the_half_w
     "analytic",
     "Johnson, Contact Mechanics, 5.6: disc between rigid plates",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 def test_line_contact_converges_to_hertz():
     errors = [abs(line_contact(n, r)[0]) for n, r in ((6, Refinement()), (24, Refinement(8, 1, 4, 2.0)))]
@@ -67,7 +67,7 @@ def test_line_contact_converges_to_hertz():
     "analytic",
     "Hertz: rigid sphere on a half space",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 def test_point_contact_meets_hertz_within_a_percent():
     approach, peak, contact = point_contact(Refinement(4, 4, 4, 1.0))
@@ -80,7 +80,7 @@ def test_point_contact_meets_hertz_within_a_percent():
     "analytic",
     "Johnson, Contact Mechanics, 5.6: disc between rigid plates",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 @pytest.mark.parametrize("width", [1e-4, 4e-4])
 def test_approach_of_a_line_contact_follows_the_logarithm_of_the_strip(width):

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear._kernels import contact as kernels
-from facegear.contact.solver import NEWTON_STEPS, TOLERANCE, kkt_residual
+from facegear.contact.position_solver import NEWTON_STEPS, TOLERANCE, kkt_residual
 
 LIMITS = NEWTON_STEPS, TOLERANCE
 TOGETHER, BLOCK = 16, 512

@@ -5,10 +5,10 @@ import pytest
 
 from facegear.contact.ltca import loaded_contact
 from facegear.errors import FacegearError
-from facegear.geometry.design import AssemblyErrors
-from facegear.mesh_law.load_dependent import load_dependent_law
-from facegear.stages.mesh_law import flank_contacts
-from facegear.stiffness.load_dependent import fitted_tables
+from facegear.meshing.fitted_law import fitted_tables
+from facegear.meshing.load_dependent import load_dependent_law
+from facegear.pipeline.stages.contact import flank_contacts
+from facegear.teeth.design import AssemblyErrors
 
 LARGEST, POSITIONS, ORDERS = 600.0, 8, 3
 

@@ -9,7 +9,7 @@ from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
-from facegear.contact.solver import solve_contact
+from facegear.contact.position_solver import solve_contact
 
 PRESSURE = 2e8
 HEIGHTS = (1.0, 0.7)
@@ -52,7 +52,7 @@ def pressed_blocks(lower, upper, cuts):
     "manufactured",
     "patch test of contact: uniform pressure",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 @pytest.mark.parametrize("cuts", [Refinement(), Refinement(2, 3, 2, 2.0)])
 def test_matching_blocks_pass_a_uniform_pressure_to_rounding(cuts):
@@ -65,7 +65,7 @@ def test_matching_blocks_pass_a_uniform_pressure_to_rounding(cuts):
     "manufactured",
     "patch test of contact: uniform pressure",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 def test_blocks_that_do_not_match_pass_a_uniform_pressure_ever_better():
     worst = []

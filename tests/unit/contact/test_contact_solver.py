@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 from facegear._kernels import contact as kernels
-from facegear.contact import solver
-from facegear.contact.solver import kkt_residual, solve_contact
+from facegear.contact import position_solver
+from facegear.contact.position_solver import kkt_residual, solve_contact
 from facegear.errors import NotConverged
 
 
@@ -65,7 +65,7 @@ def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
     problem = random_problem(seed, size)
     usual = solve_contact(*problem, 1.0)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(solver, "NEWTON_STEPS", 1)
+        patch.setattr(position_solver, "NEWTON_STEPS", 1)
         slow = solve_contact(*problem, 1.0)
     np.testing.assert_allclose(slow.force, usual.force, atol=1e-10 * usual.force.max())
     assert slow.residual < 1e-12
@@ -75,7 +75,7 @@ def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
     "second implementation",
     "enumeration of all active sets",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10**6))
@@ -107,7 +107,7 @@ def test_solution_is_the_best_of_all_active_sets(seed):
     "second implementation",
     "difference of two solutions",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 def test_slope_is_the_change_of_rotation_with_torque():
     compliance, gap, lever_arm = random_problem(7, 40)
@@ -125,7 +125,7 @@ def test_slope_is_the_change_of_rotation_with_torque():
     "analytic",
     "linear elasticity",
     capability="contact",
-    module="facegear.contact.solver",
+    module="facegear.contact.position_solver",
 )
 def test_without_gaps_rotation_grows_in_proportion_to_torque():
     compliance, _, lever_arm = random_problem(3, 30)
@@ -140,7 +140,7 @@ def test_without_gaps_rotation_grows_in_proportion_to_torque():
 def test_the_points_that_touch_as_a_start_leave_one_step_to_do(seed, size):
     problem = random_problem(seed, size)
     cold = solve_contact(*problem, 1.0)
-    assert cold.steps < solver.NEWTON_STEPS
+    assert cold.steps < position_solver.NEWTON_STEPS
     assert solve_contact(*problem, 1.0, cold.active).steps == 1
 
 
@@ -164,7 +164,7 @@ def test_no_point_that_can_carry_the_torque_is_reported_with_its_place():
 
 def test_contact_without_a_solution_is_reported_with_the_steps_that_were_tried():
     with pytest.raises(NotConverged, match="here: 40 Newton and 160 exchange steps"):
-        solver.check_solved(0, 0.0, 3, "here")
+        position_solver.check_solved(0, 0.0, 3, "here")
 
 
 def test_torque_that_does_not_drive_is_refused():

@@ -5,10 +5,9 @@ import pandas as pd
 from contact_patterns import line_arrays
 from references import against, agrees
 
-from facegear.contact.columns import LTCA_COLUMNS
-from facegear.contact.studies import StudiedContact, study_table
-from facegear.contact.summary import by_torque, path_by_position
-from facegear.plots.contact_study import contact_study, pattern_study
+from facegear.contact.pattern import LTCA_COLUMNS
+from facegear.contact.summary import StudiedContact, by_torque, path_by_position, study_table
+from facegear.report.figures.contact import contact_study, pattern_study
 
 TORQUES = (100.0, 300.0)
 
@@ -39,7 +38,7 @@ def case(name, moved_mm, torques=TORQUES):
     "manufactured",
     "a pattern moved by a known length",
     capability="contact_studies",
-    module="facegear.contact.studies",
+    module="facegear.contact.summary",
 )
 def test_shifts_of_both_paths_are_from_the_machine_itself():
     table = study_table([case("machine", 0.0), case("offset", 1.5), case("tilt", -0.25, TORQUES[:1])])

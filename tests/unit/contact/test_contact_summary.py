@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.contact.columns import LTCA_COLUMNS
+from facegear.contact.pattern import LTCA_COLUMNS
 from facegear.contact.summary import contact_summary, path_radii
 
 

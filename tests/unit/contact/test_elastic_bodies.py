@@ -12,12 +12,8 @@ from references import against, agrees
 from skfem import Basis, ElementHex1, ElementHex2, ElementTetP1, ElementVector, MeshHex1, MeshHex2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from facegear.contact.bodies import dissection
-from facegear.contact.bodies.cellwise import cell_unknowns
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.elements import mesh_of
-from facegear.contact.bodies.elimination import schur_complement
-from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.ring import LEFT, RIGHT, apart, chain, join_chains, moved_faces, rest_stiffness
 from facegear.contact.bodies.substructure import condense
@@ -26,11 +22,13 @@ from facegear.contact.options import Refinement
 from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import contact_side, elastic_tooth
 from facegear.errors import FacegearError
-from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.sector import sector
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import gear_tooth, pinion_tooth
+from facegear.sparse import dissection
+from facegear.sparse.elimination import schur_complement
+from facegear.sparse.matrices import cell_unknowns, solve_sparse
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.mesh_quality import hex_mesh
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.tooth_mesh import gear_tooth, pinion_tooth, sector
 from validation.contact.sector_model import sector_blocks
 from validation.contact.twin import slab_tooth
 
@@ -79,7 +77,7 @@ def bent(points):
     "third-party program",
     "scikit-fem's own assembly of the elastic form",
     capability="compliance",
-    module="facegear.contact.bodies.assembly",
+    module="facegear.contact.bodies.elements",
 )
 @pytest.mark.parametrize(
     ("element", "kind"), [("hex27", ElementHex2), ("hex8", ElementHex1), ("tet4", ElementTetP1)]
@@ -185,7 +183,7 @@ def test_influence_matrix_is_symmetric():
     "third-party program",
     "SciPy's SuperLU",
     capability="compliance",
-    module="facegear.contact.bodies.elimination",
+    module="facegear.sparse.elimination",
 )
 @pytest.mark.parametrize("leaf", [20, 300, 10**6])
 def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, monkeypatch):
@@ -218,7 +216,7 @@ def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, m
     "third-party program",
     "PARDISO of MKL beside SciPy's SuperLU",
     capability="compliance",
-    module="facegear.contact.bodies.factor",
+    module="facegear.sparse.matrices",
 )
 def test_both_sparse_solvers_give_the_same_displacements():
     pypardiso = pytest.importorskip("pypardiso", reason="extra `benchmark`, where MKL has a wheel")

@@ -12,6 +12,7 @@ from scipy.integrate import quad
 from scipy.special import ellipe, ellipk
 
 from facegear.contact import lines
+from facegear.contact.analysis import ltca_table, pressure_arrays
 from facegear.contact.hertz import contact_modulus, strip_pressure
 from facegear.contact.lines import ContactLines, contact_lines, unloaded_lines
 from facegear.contact.ltca import loaded_contact
@@ -20,12 +21,12 @@ from facegear.contact.pattern import imprint, pattern
 from facegear.contact.position import Spot
 from facegear.contact.pressure import INSIDE, flank_pressure, line_loads
 from facegear.contact.resolution import PLANES, ellipse_half_length
-from facegear.contact.tables import ltca_table, pressure_arrays
-from facegear.geometry.analysis import path_curvatures
-from facegear.geometry.design import AssemblyErrors, Relief
-from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.separation import separation
-from facegear.geometry.unloaded import PAIRS, unloaded_contact
+from facegear.teeth.analysis import path_curvatures
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.design import AssemblyErrors, Relief
+from facegear.teeth.separation import separation
+from facegear.teeth.surfaces import flank_points
+from facegear.teeth.unloaded import unloaded_contact
 from validation.contact.half_space import half_space, pressures
 from validation.contact.strip_study import strip_at
 

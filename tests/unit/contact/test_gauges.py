@@ -8,8 +8,8 @@ from contact_bodies import STEEL, stiffness_of
 from references import against, agrees
 from skfem import MeshHex1, MeshHex2
 
-from facegear.contact.bodies.factor import solve_sparse
-from facegear.contact.bodies.gauges import gauges_on
+from facegear.contact.bodies.surface import gauges_on
+from facegear.sparse.matrices import solve_sparse
 
 INNER, OUTER = 1.0, 3.0
 

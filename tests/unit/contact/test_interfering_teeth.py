@@ -4,21 +4,21 @@ import numpy as np
 import pytest
 from contact_bodies import COARSE, STEEL, pair_design, sound
 
-from facegear.contact.fillet_contact import line_rows, on_flank
+from facegear.contact.analysis import ltca_table
 from facegear.contact.flanks import flank_pair
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, Refinement
-from facegear.contact.pair import BUILDERS
 from facegear.contact.position import Spot
-from facegear.contact.pressure import flank_pressure
+from facegear.contact.pressure import flank_pressure, line_rows, on_flank
 from facegear.contact.search import find_candidates
 from facegear.contact.summary import contact_summary
-from facegear.contact.tables import ltca_table
 from facegear.contact.teeth import elastic_tooth
 from facegear.errors import FacegearError
-from facegear.geometry.clearance import smallest_gaps
-from facegear.geometry.unloaded import PAIRS, unloaded_contact
-from facegear.stiffness.curve import load_table
+from facegear.meshing.stiffness_curve import load_table
+from facegear.teeth.clearance import smallest_gaps
+from facegear.teeth.closest import PAIRS
+from facegear.teeth.unloaded import unloaded_contact
 
 
 def test_interfering_pair_is_stiffened_by_its_fillets_and_the_switch_shows_it(model_of):

@@ -9,13 +9,12 @@ from contact_bodies import STEEL
 from oils import oil
 from references import against, agrees
 
+from facegear.contact.analysis import pressure_arrays
 from facegear.contact.hertz import contact_modulus
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pressure import flank_pressure
-from facegear.contact.tables import pressure_arrays
-from facegear.geometry.placement import mirror_design
+from facegear.lubrication.assessment import friction_ratios
 from facegear.lubrication.contact_points import contact_points, loaded_contacts, stored_lines
-from facegear.lubrication.excitation import friction_ratios
 from facegear.lubrication.friction import BenedictKelley, Constant, Doleschel, Schlenk, Xu
 from facegear.lubrication.heat import TooHot, running
 from facegear.lubrication.kinematics import slip, spins
@@ -24,6 +23,7 @@ from facegear.lubrication.machine_loss import LoadedPair, MeshLoads, machine_los
 from facegear.lubrication.reduction import Condition, ReducedPair, reduce_contacts
 from facegear.lubrication.request import STEEL as HEATED
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication
+from facegear.teeth.placement import mirror_design
 
 SPEED = 7500 * pi / 30
 MODULUS = contact_modulus((STEEL, STEEL))

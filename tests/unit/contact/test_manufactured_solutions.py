@@ -13,7 +13,7 @@ from contact_bodies import block, stiffness
 from references import against, agrees
 from scipy.sparse.linalg import spsolve
 
-from facegear.contact.bodies.body import ElasticBody
+from facegear.contact.bodies.elements import ElasticBody
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.options import Refinement

@@ -8,22 +8,22 @@ import pytest
 from contact_bodies import COARSE, STEEL, pair_design, sound
 from references import against, agrees
 
-from facegear.config.base import parse
-from facegear.config.stiffness import MeshStiffness, stiffness_request
+from facegear.build.plans import stiffness_request
+from facegear.contact.analysis import ltca_table
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.flanks import FlankPair
+from facegear.contact.gear_flank import BUILDERS, NEIGHBOURS, contact_model, gear_flank
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Sector
-from facegear.contact.pair import BUILDERS, NEIGHBOURS, contact_model, gear_flank
 from facegear.contact.pressure import PINION_TIP, flank_pressure
-from facegear.contact.tables import ltca_table
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
-from facegear.geometry.clearance import smallest_gaps
-from facegear.geometry.design import AssemblyErrors, Relief
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.stiffness.source import stiffness_from_contact
-from facegear.stiffness.tables import unloaded_error
-from facegear.stiffness.unloaded_error import unloaded_series
+from facegear.meshing.stiffness_curve import unloaded_series
+from facegear.meshing.stiffness_source import stiffness_from_contact, unloaded_error
+from facegear.schema.base import parse
+from facegear.schema.stiffness import MeshStiffness
+from facegear.teeth.clearance import smallest_gaps
+from facegear.teeth.design import AssemblyErrors, Relief
+from facegear.teeth.unloaded import unloaded_contact
 
 TORQUES = [100.0, 600.0]
 

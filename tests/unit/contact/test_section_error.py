@@ -9,13 +9,12 @@ from references import against, agrees
 
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.surface import interpolation
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.options import Refinement
-from facegear.contact.pair import BUILDERS
-from facegear.contact.root_gauges import root_gauges
-from facegear.contact.section_error import HEIGHTS, section_errors
+from facegear.contact.root_gauges import HEIGHTS, root_gauges, section_errors
 from facegear.contact.teeth import elastic_tooth
-from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
+from facegear.teeth.mesh_sizes import MeshSizes, named_sizes, thin_fillet
 from validation.contact.twin import slab_tooth
 
 DESIGN = pair_design()
@@ -30,7 +29,7 @@ def errors(body, sizes):
     "own convergence",
     "finer section",
     capability="root_stress",
-    module="facegear.contact.section_error",
+    module="facegear.contact.root_gauges",
 )
 def test_named_meshes_read_root_stress_within_one_percent_wherever_the_load_stands_on_the_flank():
     for level in ("coarse", "medium"):
@@ -61,7 +60,7 @@ def slab_tensions(sizes):
     "own convergence",
     "finer solid elements",
     capability="root_stress",
-    module="facegear.contact.section_error",
+    module="facegear.contact.root_gauges",
 )
 def test_error_of_a_coarse_fillet_is_what_solid_elements_miss_there():
     plain = named_sizes("coarse", M)

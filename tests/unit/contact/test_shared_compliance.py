@@ -7,15 +7,15 @@ import pytest
 from contact_bodies import STEEL, pair_design
 
 import facegear
-from facegear.contact.pair import BUILDERS
+from facegear.contact.gear_flank import BUILDERS
 from facegear.contact.teeth import elastic_tooth
-from facegear.geometry.design import AssemblyErrors, Relief
-from facegear.mesh.sizes import MeshSizes
 from facegear.pipeline.needs import shared_sources, stage_needs
-from facegear.results.store import Store
-from facegear.stages import compliance as compliance_stage
-from facegear.stages import contact as contact_stage
-from facegear.stages.outcome import Outcome
+from facegear.pipeline.outcome import Outcome
+from facegear.pipeline.results.store import Store
+from facegear.pipeline.stages import contact as contact_stage
+from facegear.pipeline.stages import teeth as compliance_stage
+from facegear.teeth.design import AssemblyErrors, Relief
+from facegear.teeth.mesh_sizes import MeshSizes
 
 RELIEF = {"amount_um": 10, "start_mm": 0, "length_mm": 1}
 GAPS = {

@@ -12,7 +12,7 @@ from references import against, agrees
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.nodal_loads import load_arrays
 from facegear.contact.tooth_errors import loaded_curves, located_range, orders, pair_gaps, unloaded_errors
-from facegear.transmission.tooth_errors import ToothErrors
+from facegear.machine.imperfections import ToothErrors
 
 BODIES = ("pinion", "face_gear")
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from facegear.dynamics.at_instants import add_ring_forces, press_in, split_loads
-from facegear.mesh_law.law import beyond_edges
-from facegear.transmission.flanks import NO_LOAD, significant_forces
+from facegear.machine.flanks import NO_LOAD, significant_forces
+from facegear.meshing.law import beyond_edges
+from facegear.motion.track import add_ring_forces, press_in, split_loads
 
 
 def test_loads_of_both_flanks_are_the_forces_of_either_sign_without_rounding():

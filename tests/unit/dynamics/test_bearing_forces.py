@@ -11,21 +11,19 @@ from references import against, agrees
 from scipy.interpolate import CubicSpline
 
 import facegear
-from facegear.dynamics.bearing_forces import bearing_forces, bearing_history, bearing_table
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.dynamics.track import SampledTrack, periodic_track, track
-from facegear.harmonics.series import Harmonics, stacked_values
+from facegear.harmonics import Harmonics, stacked_values
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC, KINEMATICS, PRINTED_KINEMATICS
+from facegear.machine.layout import Role
+from facegear.machine.linear_model import bearing_matrix, flank_jacobian, mass_diagonal
+from facegear.machine.machine import OpenFlanks
+from facegear.machine.statics import static_equilibrium
+from facegear.motion.bearing_forces import bearing_forces, bearing_history, bearing_table
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Motion, Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.motion.track import SampledTrack, periodic_track, track
 from facegear.report.case import bearing_reactions, case_report
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Role
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
-from facegear.transmission.statics import static_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
 
 COSINE = np.cos(np.radians(25.0))
 
@@ -73,7 +71,7 @@ def test_at_mean_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_tw
     "analytic",
     "balance of mean forces",
     capability="dynamics_response",
-    module="facegear.dynamics.bearing_forces",
+    module="facegear.motion.bearing_forces",
 )
 @settings(max_examples=12, deadline=None)
 @given(
@@ -104,7 +102,7 @@ def test_mean_forces_on_bearings_balance_torques_and_meshes(kinematics, error, b
     "analytic",
     "balance of mean forces",
     capability="dynamics_response",
-    module="facegear.dynamics.bearing_forces",
+    module="facegear.motion.bearing_forces",
 )
 @pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics):
@@ -125,7 +123,7 @@ def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics
     "analytic",
     "balance of power",
     capability="dynamics_response",
-    module="facegear.dynamics.bearing_forces",
+    module="facegear.motion.bearing_forces",
 )
 @pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (PRINTED_KINEMATICS, 0.0)])
 def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinematics, backlash):
@@ -160,7 +158,7 @@ def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinema
     "analytic",
     "static equilibrium",
     capability="dynamics_response",
-    module="facegear.dynamics.bearing_forces",
+    module="facegear.motion.bearing_forces",
 )
 @pytest.mark.parametrize("kinematics", list(KINEMATICS.values()))
 def test_without_excitation_the_response_has_the_static_forces(kinematics):
@@ -196,7 +194,7 @@ def test_a_bearing_with_clearance_carries_its_static_force_where_nothing_excites
     "own convergence",
     "512 samples a cycle",
     capability="dynamics_response",
-    module="facegear.dynamics.bearing_forces",
+    module="facegear.motion.bearing_forces",
 )
 def test_forces_on_bearings_converge_with_the_samples():
     model, _ = loaded(error=20e-6)

@@ -10,17 +10,17 @@ from random_machines import kicked
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.flanks import error_series
-from facegear.transmission.layout import Role, Tilt
-from facegear.transmission.machine import OpenFlanks, balanced_torques
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.flank_errors import error_series
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Tilt
+from facegear.machine.machine import OpenFlanks, balanced_torques
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 PLACES = (("one", Role.INPUT, 0.0), ("two", Role.INPUT, 41.5))
 SPEED, K = 6100.0, 4.1e8
@@ -60,7 +60,7 @@ def machine(open_flanks=OpenFlanks.CONTACT_ONLY, error=2e-6, torque=800.0):
     "analytic",
     "Liouville's formula; central differences of the motion",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.coupling",
+    module="facegear.motion.integrator.reduction",
 )
 def test_disturbances_of_gears_that_bend_are_differences_of_motions_and_keep_their_volume():
     """Contacts open and close; gyroscopic and circulatory terms take no part in the volume."""
@@ -116,7 +116,7 @@ def whole_matrices(bent, closed):
     "analytic",
     "eigenvalues of the whole matrices",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.orbits",
+    module="facegear.motion.steady_state.orbits",
 )
 def test_multipliers_of_gears_that_bend_are_those_of_the_whole_matrices(running):
     bent, _, response = running
@@ -136,7 +136,7 @@ def test_multipliers_of_gears_that_bend_are_those_of_the_whole_matrices(running)
     "analytic",
     "balance of power, of forces and of torques over a period",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 def test_steady_motion_of_gears_that_bend_balances_power_reactions_and_torques(running):
     """Power from the transmission error goes into flanks, bearings and steel.

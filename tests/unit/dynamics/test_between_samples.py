@@ -5,13 +5,13 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.dynamics.bearing_forces import bearing_table
-from facegear.dynamics.between_samples import finer, located_by_cycle, located_extremes
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.load_sharing.running_machine import Running
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.motion.bearing_forces import bearing_table
+from facegear.motion.between_samples import finer, located_by_cycle, located_extremes
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.sharing.running_machine import Running
 from facegear.strength.duty_loads import history_of
-from facegear.transmission.teeth import GEOMETRIC
 
 RPM, GEOMETRIC_RPM = 6500.0, 2500.0
 """Speeds at which the machine of either kinematics moves periodically."""
@@ -67,7 +67,7 @@ def test_a_contact_that_is_open_at_two_samples_is_open_between_them():
     "own convergence",
     "4096 samples a mesh period",
     capability="dynamics_response dynamics_sweep",
-    module="facegear.dynamics.between_samples",
+    module="facegear.motion.between_samples",
 )
 @pytest.mark.parametrize("geometric", [False, True])
 def test_the_largest_elastic_force_does_not_depend_on_the_samples(geometric):

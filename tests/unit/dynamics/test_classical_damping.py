@@ -9,15 +9,15 @@ from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, static_start
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.shaft_orders import loaded_machine
-from facegear.transmission.teeth import GEOMETRIC
-from facegear.transmission.turning_modes import machine_at_speeds
+from facegear.harmonics import Harmonics
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.machine import OpenFlanks, mesh_frequency
+from facegear.machine.shaft_orders import loaded_machine
+from facegear.machine.turning_modes import machine_at_speeds
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model, static_start
 
 SPEED, HALF, ERROR, DAMPER, PERIODS = 9000.0, 50e-6, 20e-6, 3000.0, 12
 PHASES = np.linspace(0.0, PERIODS * TAU, 64 * PERIODS, endpoint=False)
@@ -84,7 +84,7 @@ def published_deflection():
     "analytic",
     "the equation of Kahraman and Singh (1990), integrated by SciPy's DOP853",
     capability="dynamics_response",
-    module="facegear.transmission.flanks",
+    module="facegear.machine.flanks",
 )
 def test_one_damper_for_each_mesh_moves_a_single_pair_as_published():
     published = published_deflection()

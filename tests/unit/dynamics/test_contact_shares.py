@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_fractions
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.mesh_samples import each_deflection, mesh_fractions
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 
 @pytest.mark.parametrize("error", [10e-6, 25e-6])

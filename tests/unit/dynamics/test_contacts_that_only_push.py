@@ -8,13 +8,13 @@ from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.machine import OpenFlanks
+from facegear.machine.kinematics import KINEMATICS
+from facegear.machine.machine import OpenFlanks
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import build_model, simulate, steady_state
 
 SPEED, DAMPING, SLOW = 0.7, 0.4, 0.02
 FINE = Settings(tolerance=1e-14)
@@ -71,7 +71,7 @@ def by_pieces(start, end, push_only):
     "third-party program",
     "SciPy's DOP853 with located events",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize("start", STARTS)
 def test_a_contact_that_only_pushes_moves_as_scipy_says_through_cutting_parting_and_meeting(start):
@@ -94,7 +94,7 @@ def test_flanks_part_with_a_damper_however_weak_as_they_do_without(damping):
     "third-party program",
     "SciPy's DOP853 with located events",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_the_largest_pull_of_a_damper_is_what_scipy_meets():
     settings = Settings(tolerance=1e-10, periodic_residual=1e-9)

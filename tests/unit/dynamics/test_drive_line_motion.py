@@ -7,21 +7,17 @@ from lumped_machines import make_layout
 from references import against, agrees
 from scipy.interpolate import CubicSpline
 
-from facegear.dynamics.bearing_forces import (
-    bearing_history,
-    bearing_table,
-    shaft_bearing_history,
-)
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.dynamics.track import track
-from facegear.harmonics.series import Harmonics, stacked_values
+from facegear.harmonics import Harmonics, stacked_values
+from facegear.machine.drive_line import TurningMass
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.machine import OpenFlanks
+from facegear.motion.bearing_forces import bearing_history, bearing_table, shaft_bearing_history
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Motion, Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.motion.track import track
 from facegear.rigid_body import carry_motion
-from facegear.transmission.drive_line import TurningMass
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.teeth import GEOMETRIC
 
 PLACES = (("one", Role.INPUT, 0.0), ("two", Role.INPUT, 40.25))
 SPEED, K, ERROR = 6100.0, 4.1e8, 2e-6
@@ -69,7 +65,7 @@ def harmonic(machine):
     "analytic",
     "linear response in full matrices",
     capability="dynamics_response",
-    module="facegear.transmission.drive_line",
+    module="facegear.machine.drive_line",
 )
 def test_transmission_error_shakes_tilting_pinions_and_engines_as_the_closed_form_says(running):
     machine, model, response = running
@@ -91,7 +87,7 @@ def test_transmission_error_shakes_tilting_pinions_and_engines_as_the_closed_for
     "analytic",
     "eigenvalues of the full matrices",
     capability="dynamics_response",
-    module="facegear.transmission.drive_line",
+    module="facegear.machine.drive_line",
 )
 def test_multipliers_with_tilts_and_torsional_springs_are_those_of_the_full_matrices(running):
     machine, _, response = running
@@ -137,7 +133,7 @@ def test_the_table_of_bearing_forces_names_each_bearing_of_a_shaft(running):
     "analytic",
     "balance of power",
     capability="dynamics_response",
-    module="facegear.transmission.drive_line",
+    module="facegear.machine.drive_line",
 )
 def test_shafts_springs_masses_and_meshes_take_no_more_power_than_is_brought_in():
     machine = driven(

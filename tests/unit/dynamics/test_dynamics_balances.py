@@ -9,19 +9,18 @@ from random_machines import FINE, frequency, kicked, machines, speeds
 from recorded_motion import Trajectory, record
 from references import against, agrees
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.integrator.system import System
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import error_series, mirror_series
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Role
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.matrices import flank_jacobian, mass_diagonal
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
+from facegear.harmonics import Harmonics
+from facegear.machine.flank_errors import error_series, mirror_series
+from facegear.machine.kinematics import KINEMATICS, PRINTED_KINEMATICS
+from facegear.machine.layout import Role
+from facegear.machine.linear_model import flank_jacobian, mass_diagonal
+from facegear.machine.machine import OpenFlanks
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.integrator.system import System
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import Model, build_model, simulate
 
 
 def contacts(machine):
@@ -102,7 +101,7 @@ def weak_dampers_that_only_push():
     "analytic",
     "Liouville's formula",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=st.floats(8000, 20_000))
@@ -122,7 +121,7 @@ def test_liouville_across_contact_switches(machine, speed):
     "analytic",
     "balance of energy",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds)
@@ -183,7 +182,7 @@ def derivative(series: Harmonics, cycles: np.ndarray, omega: float) -> np.ndarra
     "analytic",
     "angular momentum of every body",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds)
@@ -236,7 +235,7 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
     "analytic",
     "balance of mean torques",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 @pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):

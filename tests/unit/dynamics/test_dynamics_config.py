@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from facegear.config.base import parse
-from facegear.config.dynamics import Dynamics, settings, sweep_plan
-from facegear.config.lumped_model import machine
-from facegear.config.machine_layout import ToothNumbers, layout
-from facegear.config.transmission import Transmission
+from facegear.build.lumped_model import machine
+from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.plans import settings, sweep_plan
 from facegear.errors import ConfigErrors
-from facegear.harmonics.series import Harmonics
+from facegear.harmonics import Harmonics
+from facegear.schema.base import parse
+from facegear.schema.motion import Dynamics
+from facegear.schema.transmission import Transmission
 
 TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)
 STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))

@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 
 from facegear._kernels import motion
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.transmission.machine import mesh_frequency
+from facegear.machine.machine import mesh_frequency
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 FINE = Settings(tolerance=1e-14, periodic_residual=1e-10)
 

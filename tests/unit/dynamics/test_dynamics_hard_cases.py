@@ -12,14 +12,14 @@ from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start, steady_state
-from facegear.dynamics.steady_state.statistics import moments
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import balanced_torques, mesh_frequency
-from facegear.transmission.matrices import bearing_diagonal, mass_diagonal
+from facegear.harmonics import Harmonics
+from facegear.machine.layout import Role, Side
+from facegear.machine.linear_model import bearing_diagonal, mass_diagonal
+from facegear.machine.machine import balanced_torques, mesh_frequency
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Motion, Settings, State
+from facegear.motion.steady_state.simulate import build_model, simulate, static_start, steady_state
+from facegear.motion.steady_state.statistics import moments
 
 FINE = Settings(tolerance=1e-13)
 TWENTY = Harmonics(np.r_[0.0, 3e7 / np.arange(1, 21) ** 1.5], np.r_[4.1e8, -2e7 / np.arange(1, 21) ** 1.5])
@@ -97,7 +97,7 @@ def full_run(machine, speed, start, end):
     "third-party program",
     "scipy.integrate.solve_ivp on the full equations",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize("name", CASES)
 def test_short_run_agrees_with_the_full_equations(name):
@@ -149,7 +149,7 @@ def test_motion_is_named_and_its_rms_holds_at_a_tighter_tolerance(name):
     "analytic",
     "linear oscillator that misses the edge by a millionth",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize("miss", [1e-6, -1e-6])
 def test_grazing_within_a_millionth_of_the_edge(miss):
@@ -179,7 +179,7 @@ def test_grazing_within_a_millionth_of_the_edge(miss):
     "analytic",
     "scaling of the equation of motion",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 def test_without_error_and_backlash_only_the_scale_depends_on_torque():
     for speed in (5000.0, 9000.0):

@@ -9,22 +9,22 @@ from lumped_machines import make_layout, make_machine
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.config.dynamics import SECOND_LOOKS
-from facegear.config.load import load_config
-from facegear.config.machines import MachineInputs
-from facegear.config.model import resolved_values
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.run_plans import alone
-from facegear.dynamics.steady_state import second_look
-from facegear.dynamics.steady_state.known_orbit import KnownOrbit, known_orbit
-from facegear.dynamics.steady_state.orbits import change
-from facegear.dynamics.steady_state.second_look import CHANCE, never_closing, other_starts
-from facegear.dynamics.steady_state.settle import settle
-from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
-from facegear.dynamics.sweeps.summary import response_summary
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.build.config import resolved_values
+from facegear.build.load import load_config
+from facegear.build.machine import MachineInputs
+from facegear.harmonics import Harmonics
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import Motion, Settings
+from facegear.motion.requests import alone
+from facegear.motion.steady_state import watch
+from facegear.motion.steady_state.orbits import change
+from facegear.motion.steady_state.periodicity import KnownOrbit, known_orbit
+from facegear.motion.steady_state.settle import settle
+from facegear.motion.steady_state.simulate import build_model, simulate, steady_state
+from facegear.motion.steady_state.watch import CHANCE, never_closing, other_starts
+from facegear.motion.sweeps.sweep_tables import response_summary
+from facegear.schema.motion import SECOND_LOOKS
 from validation.dynamics.oscillators import (
     Oscillator,
     closed_form_run,
@@ -68,7 +68,7 @@ def test_a_spiral_that_turns_by_parts_of_a_period_is_period_1_without_refinement
     "analytic",
     "oscillator with backlash in closed pieces",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_closed_form_pieces_and_taylor_steps_agree_before_chaos_parts_them():
     oscillators = list(random_oscillators(6))
@@ -221,16 +221,16 @@ def test_a_run_that_wanders_gets_as_many_looks_as_asked_for(monkeypatch, looks):
     oscillator, starts = list(random_oscillators(343))[342], []
     integrator = Integrator(oscillator.system, oscillator.speed)
     first = settle(integrator, integrator.by_phase(oscillator.start), Settings())
-    assert second_look.wandering(integrator, first, first.period) > 0
+    assert watch.wandering(integrator, first, first.period) > 0
 
     def settle_again(integrator, start, settings, known_orbit):
         starts.append(start)
         return first
         yield
 
-    monkeypatch.setattr(second_look, "settling", settle_again)
+    monkeypatch.setattr(watch, "settling", settle_again)
     settings = Settings(second_looks=looks)
-    course = second_look.disagreeing(
+    course = watch.disagreeing(
         integrator, first.state, settings, first, Motion.PERIODIC, first.ends, before=0
     )
     assert alone(course) is None

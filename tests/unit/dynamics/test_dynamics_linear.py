@@ -6,21 +6,21 @@ from random_machines import FINE, frequency, machines, speeds
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import NotConverged
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
+from facegear.harmonics import Harmonics
+from facegear.machine.kinematics import PRINTED_KINEMATICS
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 
 @against(
     "analytic",
     "Hill's equations solved by harmonic balance to rounding",
     capability="dynamics_response dynamics_sweep_chunk",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(kinematics=PRINTED_KINEMATICS, backlash=0.0, mass_damping=800.0), speed=speeds)

@@ -8,12 +8,12 @@ from references import against, agrees
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import steady_state
-from facegear.dynamics.sweeps.held_orbit import OrbitFollower
-from facegear.dynamics.sweeps.jumps import side
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import steady_state
+from facegear.motion.sweeps.held_orbit import OrbitFollower
+from facegear.motion.sweeps.jumps import side
 
 FINE = Settings(tolerance=1e-14, periodic_residual=1e-12, settle=20_000, longest_period=1)
 LOWER = (1.1624504362, 0.0080293418, 1.03663857, 1.16336143, 1.1, 0.04480330)
@@ -28,7 +28,7 @@ def state(displacement, velocity):
     "second implementation",
     "oscillator with backlash, computed twice by independent means",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 @pytest.mark.parametrize("branch", [LOWER, UPPER])
 def test_backlash_oscillator_has_both_orbits_of_oracle_a(branch):
@@ -87,7 +87,7 @@ def exact_multipliers(speed, displacement, velocity):
     "third-party program",
     "scipy.linalg.expm between the switches of contact",
     capability="dynamics_response branches",
-    module="facegear.dynamics.steady_state.orbits",
+    module="facegear.motion.steady_state.orbits",
 )
 @pytest.mark.parametrize("branch", [LOWER, UPPER])
 def test_multipliers_agree_with_matrix_exponentials_between_switches(branch):
@@ -125,7 +125,7 @@ def jump(make, approach, first, last):
     "analytic",
     "fold speeds of the oscillator with backlash in closed pieces",
     capability="dynamics_sweep",
-    module="facegear.dynamics.sweeps.jumps",
+    module="facegear.motion.sweeps.jumps",
 )
 @pytest.mark.parametrize(
     ("approach", "first", "last", "speed"),
@@ -146,7 +146,7 @@ def test_fold_speeds_of_oracle_a(approach, first, last, speed):
     "analytic",
     "jump speeds of the square-wave oscillator in closed pieces",
     capability="dynamics_sweep",
-    module="facegear.dynamics.sweeps.jumps",
+    module="facegear.motion.sweeps.jumps",
 )
 @pytest.mark.parametrize(
     ("approach", "first", "last", "speed"),
@@ -170,7 +170,7 @@ def matrix_of(system, speed, tolerance=1e-15):
     "analytic",
     "Liouville: exp(-2 z T)",
     capability="dynamics_response branches",
-    module="facegear.dynamics.steady_state.orbits",
+    module="facegear.motion.steady_state.orbits",
 )
 def test_determinant_of_the_monodromy_matrix_is_the_damping_alone():
     matrix = matrix_of(meissner(0.05), 0.8)
@@ -190,7 +190,7 @@ def radius(system, speed):
     "analytic",
     "Meissner's equation in closed pieces",
     capability="dynamics_response branches",
-    module="facegear.dynamics.steady_state.orbits",
+    module="facegear.motion.steady_state.orbits",
 )
 def test_meissner_spectral_radius():
     agrees("spectral radius", radius(meissner(0.05), 2.0), 1.043579854635, absolute=1e-11)
@@ -200,7 +200,7 @@ def test_meissner_spectral_radius():
     "analytic",
     "edges of the principal tongues of Meissner's and Mathieu's equations",
     capability="dynamics_response branches",
-    module="facegear.dynamics.steady_state.orbits",
+    module="facegear.motion.steady_state.orbits",
 )
 @pytest.mark.parametrize(
     ("make", "edges"),
@@ -230,7 +230,7 @@ def test_undamped_tongue_edges(make, edges):
     "analytic",
     "edges of Meissner's principal tongue with damping, in closed pieces",
     capability="dynamics_response branches",
-    module="facegear.dynamics.steady_state.orbits",
+    module="facegear.motion.steady_state.orbits",
 )
 def test_damped_tongue_edges():
     system = meissner(0.05)
@@ -243,7 +243,7 @@ def test_damped_tongue_edges():
     "third-party program",
     "scipy.special.mathieu_a and mathieu_b",
     capability="dynamics_response branches",
-    module="facegear.dynamics.steady_state.orbits",
+    module="facegear.motion.steady_state.orbits",
 )
 def test_mathieu_edges_agree_with_scipys_characteristic_values():
     from scipy.special import mathieu_a, mathieu_b

@@ -9,15 +9,15 @@ from recorded_motion import record
 from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.load_sharing.hunting import hunting_cycle
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.sharing.hunting import hunting_cycle
 
 ONE = (("engine", Role.INPUT, 0.0),)
 TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
@@ -52,7 +52,7 @@ def pulling_rings(system):
     "third-party program",
     "scipy.integrate.solve_ivp",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize("clearance", [3e-6, 40e-6])
 def test_a_bearing_with_clearance_moves_as_scipy_says_through_touching_and_leaving(clearance):
@@ -71,7 +71,7 @@ def test_a_bearing_with_clearance_moves_as_scipy_says_through_touching_and_leavi
     "analytic",
     "Liouville's formula",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_liouville_holds_while_bearings_touch_and_leave_their_rings():
     model = build_model(machine_with(40e-6, ONE, torque=20.0, backlash=20e-6))

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator, one_degree
 
-from facegear.dynamics import run_plans
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.exponent import smooth_mean
-from facegear.dynamics.steady_state.orbits import shoot
-from facegear.dynamics.steady_state.settle import MAX_KICKS, SettlingRun
-from facegear.dynamics.steady_state.simulate import steady_state
+from facegear.motion import requests
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import Motion, Settings, State
+from facegear.motion.steady_state.orbits import shoot
+from facegear.motion.steady_state.settle import MAX_KICKS, SettlingRun
+from facegear.motion.steady_state.simulate import steady_state
+from facegear.motion.steady_state.window import smooth_mean
 
 FOLD_UP = 0.82846394
 SPEED = 0.75
@@ -46,7 +46,7 @@ def test_a_run_that_rests_on_an_unstable_orbit_it_knows_is_moved_off_it():
     patient = Settings(tolerance=1e-12, periodic_residual=1e-5, dwell=16)
     run = SettlingRun(Integrator(system, SPEED, 1e-12, 16), orbit.state, patient, None)
     run.orbit = orbit
-    settled = run_plans.alone(run.settle())
+    settled = requests.alone(run.settle())
     assert run.kicks == 1
     assert settled.orbit is not None and abs(settled.orbit.multipliers[0]) < 1.0
 
@@ -57,19 +57,19 @@ def test_a_run_that_comes_back_to_an_unstable_orbit_is_not_called_periodic():
     patient = Settings(tolerance=1e-12, periodic_residual=1e-5, dwell=16, settle=24)
     run = SettlingRun(Integrator(system, SPEED, 1e-12, 16), orbit.state, patient, None)
     run.kicks = MAX_KICKS
-    settled = run_plans.alone(run.settle())
+    settled = requests.alone(run.settle())
     assert run.orbit is not None and abs(run.orbit.multipliers[0]) > 1.0
     assert settled.residual < 1e-5 and settled.period == 0
 
 
 def test_what_newtons_method_does_not_confirm_must_close_a_hundred_times_nearer(monkeypatch):
     """At 8041 rpm a run that crept towards an orbit (multiplier 0.98) was taken for it, RMS off by 2e-3."""
-    monkeypatch.setattr("facegear.dynamics.steady_state.settle.shoot", lambda *args: None)
+    monkeypatch.setattr("facegear.motion.steady_state.settle.shoot", lambda *args: None)
     integrator = Integrator(backlash_oscillator(SPEED, damping_ratio=0.005), SPEED, 1e-10, 14)
     state = np.array([[1.2], [0.0]])
     settings = Settings(tolerance=1e-10, periodic_residual=1e-4)
-    alone = run_plans.alone(SettlingRun(integrator, state, replace(settings, refine=False), None).settle())
-    asked = run_plans.alone(SettlingRun(integrator, state, settings, None).settle())
+    alone = requests.alone(SettlingRun(integrator, state, replace(settings, refine=False), None).settle())
+    asked = requests.alone(SettlingRun(integrator, state, settings, None).settle())
     assert (alone.period, asked.period) == (1, 1)
     assert 1e-6 < alone.residual <= 1e-4
     assert asked.residual <= 1e-6 and asked.periods_run > alone.periods_run

@@ -11,21 +11,24 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 from scipy.signal import find_peaks
 
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.run_plans import alone
-from facegear.dynamics.steady_state.simulate import build_model, simulate, start_run
-from facegear.dynamics.sweeps.assemble import SeamKind, assemble
-from facegear.dynamics.sweeps.campbell import maxima, resonance
-from facegear.dynamics.sweeps.chunk_arrays import SHAPES, from_arrays, to_arrays
-from facegear.dynamics.sweeps.jump_margin import jump_margin
-from facegear.dynamics.sweeps.maxima import local_maxima
-from facegear.dynamics.sweeps.plan import JumpRange, SweepPlan
-from facegear.dynamics.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
-from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, sweep_table
-from facegear.dynamics.sweeps.whole_sweep import whole_sweep
-from facegear.dynamics.symmetries import mesh_images
 from facegear.io import arrays
-from facegear.plots.campbell import campbell
+from facegear.motion.between_samples import local_maxima
+from facegear.motion.plan import JumpRange, Settings, SweepPlan
+from facegear.motion.requests import alone
+from facegear.motion.steady_state.simulate import build_model, simulate, start_run
+from facegear.motion.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
+from facegear.motion.sweeps.sweep_tables import jump_table, maxima, resonance, resonance_table, sweep_table
+from facegear.motion.sweeps.whole_sweep import (
+    SHAPES,
+    SeamKind,
+    assemble,
+    from_arrays,
+    jump_margin,
+    to_arrays,
+    whole_sweep,
+)
+from facegear.motion.symmetries import mesh_images
+from facegear.report.figures.motion import campbell
 from validation.dynamics.convergence import LongRuns, convergence_table, not_converged, watched_longer
 
 AS_THEY_ARE = np.arange(10)[None]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.integrator.integrator import Integrator
+from facegear.motion.integrator.integrator import Integrator
 
 
 @pytest.mark.parametrize("rate", [1.0, 100.0, 1e4])

@@ -10,25 +10,23 @@ from random_machines import FINE, frequency, kicked, machines, speeds
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import State
-from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import mirror_series as backwards
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Body, Role, Side, Tilt
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.matrices import mass_diagonal
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.flank_errors import mirror_series as backwards
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC, KINEMATICS, PRINTED_KINEMATICS
+from facegear.machine.layout import Body, Role, Side, Tilt
+from facegear.machine.linear_model import mass_diagonal
+from facegear.machine.machine import OpenFlanks
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import State
+from facegear.motion.steady_state.simulate import Model, build_model, static_start
 
 
 @against(
     "analytic",
     "scaling of the equation of motion",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds, factor=st.floats(0.01, 100))
@@ -60,7 +58,7 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
     "analytic",
     "symmetry of the equation of motion",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(kinematics=PRINTED_KINEMATICS), speed=speeds)
@@ -134,7 +132,7 @@ def mirrored_start(model: Model, mirrored: Model) -> State:
     "analytic",
     "mirror symmetry",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(kinematics=GEOMETRIC, symmetric=True), speed=speeds)

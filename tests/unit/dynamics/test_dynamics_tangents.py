@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from lumped_machines import make_machine
 from references import against, agrees
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.steady_state.simulate import build_model, static_start
-from facegear.dynamics.steady_state.state_history import StateHistory
-from facegear.transmission.machine import mesh_frequency
+from facegear.machine.machine import mesh_frequency
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.steady_state.periodicity import StateHistory
+from facegear.motion.steady_state.simulate import build_model, static_start
 
 TOLERANCE = 1e-8
 BLOCK = 12
@@ -41,7 +41,7 @@ def test_disturbances_side_by_side_move_as_each_does_alone(losing_contact, count
     "second implementation",
     "differences of two motions",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_a_disturbance_is_the_difference_of_two_motions(losing_contact):
     integrator, start = losing_contact

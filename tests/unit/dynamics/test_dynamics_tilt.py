@@ -8,14 +8,15 @@ from lumped_machines import make_layout, make_machine
 from recorded_motion import record
 from references import against, agrees
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import error_series, flank_law
-from facegear.transmission.layout import Role, Side, Tilt
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.flank_errors import error_series
+from facegear.machine.flanks import flank_law
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side, Tilt
+from facegear.machine.machine import OpenFlanks
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model, simulate, static_start
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -33,7 +34,7 @@ def tilting(layout, stiffness, inertia=INERTIA):
     "analytic",
     "linear response with the rim's lever, by hand",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 def test_a_gear_that_rocks_answers_an_error_as_a_lever():
     """One mesh kept in contact: the linear response, with the rim's lift R sin a times the tilt by hand."""
@@ -79,7 +80,7 @@ def test_a_gear_that_hardly_tilts_moves_as_one_that_cannot():
     "analytic",
     "impulse and moment of momentum of the rim",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_moments_about_both_diameters_are_balanced_in_motion():
     """I dw + (lambda I + beta k) dtilt + k integral of tilt = integral of r x F over the rim."""

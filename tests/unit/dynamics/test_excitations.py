@@ -14,17 +14,17 @@ from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
 import facegear
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.drive_line import TurningMass
-from facegear.transmission.excitation import Excitation, rigid_rotation, without_rigid_rotation
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.shaft_orders import loaded_machine
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.disturbances import Excitation, rigid_rotation, without_rigid_rotation
+from facegear.machine.drive_line import TurningMass
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.machine import OpenFlanks
+from facegear.machine.shaft_orders import loaded_machine
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Motion, Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 PLACES = (("one", Role.INPUT, 0.0), ("two", Role.INPUT, 40.25))
 SPEED, K = 6100.0, 4.1e8
@@ -53,7 +53,7 @@ def make_excited(*excitations, shaft=True, masses=CHAINS):
     "analytic",
     "harmonic response in full matrices",
     capability="dynamics_response",
-    module="facegear.transmission.excitation",
+    module="facegear.machine.disturbances",
 )
 @pytest.mark.parametrize(
     "excitation",
@@ -86,7 +86,7 @@ def test_a_periodic_torque_shakes_the_machine_as_its_linear_response_says(excita
     "third-party program",
     "SciPy's DOP853 with the torque written plainly",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 def test_a_torque_that_parts_flanks_moves_them_as_scipy_says():
     excitation = Excitation(1, 46.0, 23, 2500.0, 0.3)

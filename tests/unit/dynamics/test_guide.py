@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.guide import RETURNS, drawn_in, guide_of, settle_by_guide
-from facegear.dynamics.steady_state.orbits import ROUNDING, change
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start, steady_state
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import GEOMETRIC
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.guide import RETURNS, drawn_in, guide_of, settle_by_guide
+from facegear.motion.steady_state.orbits import ROUNDING, change
+from facegear.motion.steady_state.simulate import build_model, simulate, static_start, steady_state
 
 SPEED = 0.75
 SYSTEM = backlash_oscillator(SPEED)

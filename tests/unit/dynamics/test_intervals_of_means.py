@@ -1,11 +1,7 @@
 import numpy as np
 import pytest
 
-from facegear.dynamics.steady_state.averages import (
-    independent_interval,
-    mean_interval,
-    successive_interval,
-)
+from facegear.motion.steady_state.averages import independent_interval, mean_interval, successive_interval
 
 BATCHES, RUNS, PARTS = 16, 1000, 16
 

@@ -7,13 +7,13 @@ import pytest
 from references import against, agrees
 from symmetric_machine import build_symmetric_model, load_gearbox, make_plan
 
-from facegear.dynamics.branches.continuation import ContinuationSettings
-from facegear.dynamics.branches.family import speed_family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.switching import through
-from facegear.dynamics.sweeps.sweep import collect, join_pieces, run_chunk, run_speeds
-from facegear.dynamics.sweeps.whole_sweep import whole_sweep
+from facegear.motion.branches.continuation import ContinuationSettings
+from facegear.motion.branches.family import speed_family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
+from facegear.motion.branches.switching import through
+from facegear.motion.sweeps.sweep import collect, join_pieces, run_chunk, run_speeds
+from facegear.motion.sweeps.whole_sweep import whole_sweep
 
 GRIDS = [
     (9200.0, 9700.0, 6),
@@ -61,7 +61,7 @@ def assert_holds_the_branch_point(jump, direction):
     "second implementation",
     "branch point by continuation along the arc, which shares the integrator alone",
     capability="dynamics_sweep",
-    module="facegear.dynamics.sweeps.jumps",
+    module="facegear.motion.sweeps.jumps",
 )
 @pytest.mark.parametrize("grid", GRIDS, ids=lambda grid: "-".join(f"{number:g}" for number in grid))
 @pytest.mark.parametrize("direction", ["up", "down"])
@@ -73,7 +73,7 @@ def test_a_jump_where_symmetry_breaks_holds_the_branch_point_on_any_grid(grid, d
     "second implementation",
     "branch point by continuation along the arc, which shares the integrator alone",
     capability="dynamics_sweep",
-    module="facegear.dynamics.sweeps.whole_sweep",
+    module="facegear.motion.sweeps.whole_sweep",
 )
 @pytest.mark.parametrize("chunks", [2, 3])
 def test_chunks_and_threads_leave_a_jump_where_symmetry_breaks_where_it_is(chunks):

@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 from references import against, agrees
 
-from facegear.dynamics.sweeps.sweep_tables import PER_MESH
-from facegear.stages.law_loads import law_loads
+from facegear.motion.sweeps.sweep_tables import PER_MESH
+from facegear.pipeline.stages.motion import law_loads
 
 LEVELS = pd.DataFrame(
     [("upper", "drive", 10e3), ("upper", "drive", 30e3), ("upper", "back", 20e3), ("lower", "drive", 8e3)]
@@ -35,7 +35,7 @@ def table(meshes, summary=(("residual", "machine", 0.0),), sweep=()):
     "manufactured",
     "forces of given mean and amplitude",
     capability="law_loads",
-    module="facegear.dynamics.law_loads",
+    module="facegear.motion.response_tables",
 )
 def test_a_mesh_is_set_beside_the_last_level_of_the_flank_that_carries_it():
     found = table([("input/upper", 24e3, 2e3), ("idler/lower", -6e3, 5e2)]).content["loads"]

@@ -11,14 +11,14 @@ from references import against, agrees
 from scipy.integrate import solve_ivp
 from test_bending_gears import machine as build_bending_gears
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.steady_state.simulate import build_model, static_start
-from facegear.mesh_law.power import PowerLaw
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.machine import FlankTables, OpenFlanks
-from facegear.transmission.mesh_friction import PARTS, MeshFriction
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.disturbances import PARTS, MeshFriction
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.machine import FlankTables, OpenFlanks
+from facegear.meshing.power import PowerLaw
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.steady_state.simulate import build_model, static_start
 
 SPEED_RPM, STRETCH = 7500.0, 0.5
 LAYOUT = make_layout(kinematics=GEOMETRIC)
@@ -102,7 +102,7 @@ def assert_follows_its_accelerations(machine):
     "third-party program",
     "SciPy's DOP853 on the accelerations of the same machine",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("law", LAWS)

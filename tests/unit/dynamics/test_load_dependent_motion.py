@@ -15,20 +15,20 @@ from scipy.integrate import simpson
 from scipy.interpolate import CubicHermiteSpline
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.mesh_law.load_dependent import load_dependent_law
+from facegear.meshing.load_dependent import load_dependent_law
+from facegear.motion.branches.continuation import ContinuationSettings
+from facegear.motion.branches.family import Family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.steady_state.orbits import monodromy
 
 
 @against(
     "analytic",
     "period of an oscillator with a power law",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize(
     ("start", "period", "least"),
@@ -51,7 +51,7 @@ def test_free_motions_converge_to_the_closed_form_with_the_fourth_power_of_the_n
     "analytic",
     "period of an oscillator between two flanks",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_a_body_between_two_flanks_swings_with_the_period_of_the_closed_form():
     """Law x^1.5 on both sides of a gap of +-0.3, speed 0.8 in it."""
@@ -99,7 +99,7 @@ def off(period_map, found, place, rate):
     "second implementation",
     "power law of force: Taylor series of high order",
     capability="branches",
-    module="facegear.dynamics.branches.points",
+    module="facegear.motion.branches.points",
 )
 def test_an_unstable_orbit_on_a_table_has_place_and_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; contact is lost."""
@@ -126,7 +126,7 @@ def test_an_unstable_orbit_on_a_table_has_place_and_multipliers_of_the_power_law
     "second implementation",
     "power law of force: Taylor series of high order",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_branches_on_a_table_fold_where_the_power_law_does():
     """Damping .02, load 1 + .1 cos W t: the upper fold keeps contact, the lower one has lost it."""
@@ -170,7 +170,7 @@ def test_two_pairs_that_take_over_from_each_other_are_met_as_well_as_their_corne
     "second implementation",
     "central differences of the motion; Liouville's formula",
     capability="branches",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_tangents_of_a_table_are_differences_of_its_motions():
     """Liouville's theorem alone is blind to the slopes."""
@@ -202,7 +202,7 @@ def potential_of(table):
     "analytic",
     "conservation of energy",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_a_free_motion_keeps_its_energy_through_all_levels():
     """The force of a table at a fixed phase has a potential: its cubics, integrated."""

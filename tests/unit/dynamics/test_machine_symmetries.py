@@ -11,13 +11,13 @@ from oscillators import backlash_oscillator, one_degree
 from random_machines import FINE, frequency, machines, speeds
 from recorded_motion import record
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import State
-from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.symmetries import mesh_images, symmetries
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Role, Side
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import KINEMATICS
+from facegear.machine.layout import Role, Side
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import State
+from facegear.motion.steady_state.simulate import build_model
+from facegear.motion.symmetries import mesh_images, symmetries
 
 THREE = tuple((f"p{i}", Role.INPUT, i * 143.0 / 3.0) for i in range(3))
 LEFT_AND_RIGHT = [0, 4, 3, 2, 1]

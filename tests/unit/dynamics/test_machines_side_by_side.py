@@ -14,18 +14,16 @@ from references import against, agrees
 from test_bending_gears import machine as bending_gears
 from test_dynamics_hard_cases import CASES
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.side_by_side import WIDTH, _groups, run_many, run_stretches
-from facegear.dynamics.steady_state.simulate import build_model, static_start
-from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
-from facegear.mesh_law.load_dependent import load_dependent_law
-from facegear.mesh_law.power import PowerLaw
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.machine import FlankTables, OpenFlanks
-from facegear.transmission.mesh_friction import PARTS, MeshFriction
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.disturbances import PARTS, MeshFriction
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC, PRINTED_KINEMATICS
+from facegear.machine.machine import FlankTables, OpenFlanks
+from facegear.meshing.load_dependent import load_dependent_law
+from facegear.meshing.power import PowerLaw
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.requests import WIDTH, RunRequest, _groups, run_many, run_stretches
+from facegear.motion.steady_state.simulate import build_model, static_start
 
 SAME = 1e-9
 
@@ -109,7 +107,7 @@ def apart(found, starts, periods):
     "second implementation",
     "the integrator of a single machine, whose vectors hold its meshes",
     capability="branches_starts",
-    module="facegear.dynamics.side_by_side",
+    module="facegear.motion.requests",
 )
 @pytest.mark.parametrize("name", [*MACHINES, *OSCILLATORS])
 def test_a_machine_moves_beside_others_as_it_does_alone(name):

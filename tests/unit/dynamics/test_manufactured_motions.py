@@ -17,11 +17,11 @@ from oscillators import one_degree
 from references import against, agrees
 from scipy.linalg import block_diag
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.mesh_law.linear import LinearLaw
-from facegear.mesh_law.power import PowerLaw
+from facegear.meshing.linear import LinearLaw
+from facegear.meshing.power import PowerLaw
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.steady_state.orbits import monodromy
 
 POINTS = 256
 PHASES = TAU * np.arange(POINTS) / POINTS
@@ -103,7 +103,7 @@ def two_linear_meshes():
     "manufactured",
     "motion in contact whose disturbances solve Ermakov's equation",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize("make", [curved_mesh, two_linear_meshes])
 def test_tangents_of_a_known_motion_converge_with_the_tolerance(make):

@@ -7,10 +7,10 @@ import pytest
 from oscillators import backlash_oscillator
 from symmetric_machine import build_symmetric_model, load_gearbox, make_plan
 
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.mirror_images import symmetries_of_start, symmetry_broken
-from facegear.dynamics.steady_state.simulate import simulate, static_start, steady_state
-from facegear.dynamics.symmetries import mesh_images, symmetries
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.mirror_images import symmetries_of_start, symmetry_broken
+from facegear.motion.steady_state.simulate import simulate, static_start, steady_state
+from facegear.motion.symmetries import mesh_images, symmetries
 
 BROKEN_RPM = 9560.0
 """A speed at which only motions without left-right symmetry are stable near the symmetric one."""

@@ -10,10 +10,10 @@ from oscillators import backlash_oscillator, mathieu, meissner
 from test_bending_gears import machine as bending_gears
 
 from facegear._kernels import motion
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import make_runner, packed_system
-from facegear.dynamics.steady_state.simulate import build_model
 from facegear.errors import NotConverged
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import make_runner, packed_system
+from facegear.motion.steady_state.simulate import build_model
 
 
 def of_system(**changes):
@@ -135,7 +135,7 @@ import numpy as np
 from oscillators import backlash_oscillator
 from test_motion_kernels import of_run
 from facegear._kernels import motion
-from facegear.dynamics.integrator.integrator import Integrator
+from facegear.motion.integrator.integrator import Integrator
 
 integrator = Integrator(backlash_oscillator(0.75), 0.75)
 signal.signal(signal.SIGALRM, signal.default_int_handler)

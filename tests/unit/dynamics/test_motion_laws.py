@@ -28,7 +28,7 @@ def test_a_law_has_its_header_its_runners_its_python_file_and_an_oscillator(law)
     name = file_name(law)
     assert f"struct {law}Law" in (SOURCES / "motion" / "laws" / f"{name}.hpp").read_text()
     assert f"make_runner<motion::{law}Law>" in (SOURCES / "bindings" / f"motion_{name}.cpp").read_text()
-    made = getattr(importlib.import_module(f"facegear.mesh_law.{name}"), f"{law}Law")
+    made = getattr(importlib.import_module(f"facegear.meshing.{name}"), f"{law}Law")
     assert callable(getattr(motion, f"{name}_law"))
     own = [system.law for system, _ in OSCILLATORS.values() if isinstance(system.law, made)]
     assert own and all(type(each.kernel_law) is getattr(motion, f"{law}Law") for each in own)

@@ -7,13 +7,13 @@ import pytest
 from force_tables import power_table
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model
-from facegear.dynamics.sweeps.sweep import collect, run_speeds
-from facegear.dynamics.sweeps.sweep_tables import sweep_table
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import FlankTables
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.machine import FlankTables
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model
+from facegear.motion.sweeps.sweep import collect, run_speeds
+from facegear.motion.sweeps.sweep_tables import sweep_table
 
 
 @pytest.mark.parametrize(("torque", "share"), [(600.0, None), (6000.0, 1.0)])

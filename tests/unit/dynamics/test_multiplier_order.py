@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.dynamics.multiplier_order import by_modulus
+from facegear.motion.between_samples import by_modulus
 
 
 @given(

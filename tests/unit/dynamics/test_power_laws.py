@@ -13,19 +13,18 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import simulate
-from facegear.mesh_law.power import PowerLaw
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import mesh_frequency
-from facegear.transmission.matrices import bearing_diagonal, flank_jacobian, mass_diagonal
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
-from facegear.transmission.statics import static_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC, PRINTED_KINEMATICS
+from facegear.machine.layout import Role, Side
+from facegear.machine.linear_model import bearing_diagonal, flank_jacobian, mass_diagonal
+from facegear.machine.machine import mesh_frequency
+from facegear.machine.statics import static_equilibrium
+from facegear.meshing.power import PowerLaw
+from facegear.motion.branches.continuation import ContinuationSettings
+from facegear.motion.branches.special import Kind
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import simulate
 
 C, N = 2.4e11, 1.5
 
@@ -34,7 +33,7 @@ C, N = 2.4e11, 1.5
     "analytic",
     "period of an oscillator with a power law",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize(
     ("start", "period", "least"),
@@ -53,7 +52,7 @@ def test_a_body_on_a_power_law_swings_with_the_period_of_the_closed_form(start, 
     "analytic",
     "period of an oscillator with a power law and flight",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_a_body_that_leaves_contact_returns_on_time_the_better_the_earlier_the_power_law_begins():
     start, period, least = 2.0, 5.6280728407732, -0.26274169979695
@@ -83,7 +82,7 @@ def test_the_motion_keeps_its_order_where_it_passes_the_level_of_a_law():
     "second implementation",
     "power law of force: closed form and Taylor series of high order",
     capability="branches",
-    module="facegear.dynamics.branches.points",
+    module="facegear.motion.branches.points",
 )
 def test_an_unstable_orbit_that_loses_contact_has_the_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; the place is the reference's as well."""
@@ -117,7 +116,7 @@ def test_a_parametric_power_law_doubles_its_period_where_the_taylor_series_say()
     "second implementation",
     "power law of force: closed form and Taylor series of high order",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_a_branch_on_the_power_law_folds_while_it_keeps_contact():
     """Damping .02, load 1 + .1 cos W t: no linear law has a fold without a loss of contact."""
@@ -154,7 +153,7 @@ def one_mesh(kinematics=GEOMETRIC, torque=600.0, flanks=2):
     "analytic",
     "inverse of the power law",
     capability="load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize("torque", [60.0, 600.0, 3000.0])
 def test_statics_press_a_mesh_in_by_the_inverse_of_its_law(torque):

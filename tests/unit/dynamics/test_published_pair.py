@@ -14,13 +14,13 @@ from recorded_motion import record
 from references import against, agrees
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.simulate import build_model
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.machine import OpenFlanks
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.simulate import build_model
 
 INERTIA, MASS, RADIUS, TEETH = 0.00115, 0.23, 0.05, 16
 """Inertia of each gear, kg m2, mass of both on the line of action, kg, base radius, m, and teeth."""
@@ -105,7 +105,7 @@ def test_mass_on_the_line_of_action_is_the_published_one():
     "third-party program",
     "SciPy's DOP853, the pair with clearance of Antoniadou et al. 2015 in the numbers of Climaco et al. 2023",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_a_published_pair_with_clearance_moves_as_scipy_says():
     computed, published = computed_deflection(), published_deflection()

@@ -13,8 +13,8 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.motion.plan import Motion, Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 BY_STEPS = {
     400: (3.5033771207843175e-4, 3.523567958351671e-5, 1.858242123141256e-4),
@@ -68,7 +68,7 @@ def deflection():
     "third-party program",
     "ROSS 3.0.0, its spur pair with backlash under a periodic torque, its time step going to zero",
     capability="dynamics_response",
-    module="facegear.transmission.excitation",
+    module="facegear.machine.disturbances",
 )
 def test_a_pair_with_backlash_moves_as_in_ross_as_its_step_goes_to_zero(deflection):
     found = np.array([deflection.max(), deflection.min(), deflection.mean()])

@@ -10,17 +10,17 @@ from recorded_motion import record
 from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.harmonics.series import stacked_values
-from facegear.transmission.layout import FaceGear, Role, Side, Tilt
-from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
-from facegear.transmission.mesh_friction import PARTS, MeshFriction, flank_ratios, friction_rows
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import stacked_values
+from facegear.machine.disturbances import PARTS, MeshFriction, flank_ratios, friction_rows
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import FaceGear, Role, Side, Tilt
+from facegear.machine.linear_model import bearing_matrix, flank_jacobian, mass_diagonal
+from facegear.machine.machine import OpenFlanks, mesh_frequency
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.orbits import monodromy
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
 
@@ -95,7 +95,7 @@ def rubbed(model):
     "third-party program",
     "scipy.integrate.solve_ivp",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
     model = build_model(rubbing_machine(torque=60.0, backlash=20e-6))
@@ -112,7 +112,7 @@ def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
     "second implementation",
     "central differences of the motion; Liouville's formula",
     capability="dynamics_response branches",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 @pytest.mark.parametrize("open_flanks", [OpenFlanks.CONTACT_ONLY, OpenFlanks.PUSH_ONLY])
 def test_disturbances_of_rubbing_flanks_are_differences_and_keep_their_volume(open_flanks):
@@ -149,7 +149,7 @@ def test_disturbances_of_rubbing_flanks_are_differences_and_keep_their_volume(op
     "analytic",
     "balance of energy",
     capability="dynamics_response",
-    module="facegear.dynamics.integrator.integrator",
+    module="facegear.motion.integrator.integrator",
 )
 def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_energy():
     """The balance is that of the whole machine at even rotation, along a motion that parts and strikes back.

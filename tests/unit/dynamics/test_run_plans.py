@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.run_plans import alone, side_by_side
-from facegear.dynamics.side_by_side import FEWEST, WIDTH, _in_lanes
-from facegear.dynamics.steady_state.settle import settle, settling
-from facegear.dynamics.stretch import RunRequest
 from facegear.errors import NotConverged
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import Settings
+from facegear.motion.requests import FEWEST, WIDTH, RunRequest, _in_lanes, alone, side_by_side
+from facegear.motion.steady_state.settle import settle, settling
 
 SETTINGS = Settings(tolerance=1e-10, periodic_residual=1e-9)
 MANY = FEWEST + 2

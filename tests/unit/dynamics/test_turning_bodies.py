@@ -7,14 +7,14 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from rocking_bodies import InOtherCoordinates, Rocking
 
-from facegear.dynamics.bearing_forces import bearing_history
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.machine import OpenFlanks
+from facegear.motion.bearing_forces import bearing_history
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.plan import Motion, Settings, State
+from facegear.motion.steady_state.simulate import build_model, simulate, static_start
 
 BODY, J, STIFFNESS, POLAR = "one", 0.003, 5e4, 0.005
 PLACES = ((BODY, Role.INPUT, 0.0), ("two", Role.INPUT, 40.25))

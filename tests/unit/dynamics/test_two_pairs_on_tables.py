@@ -20,12 +20,12 @@ from oscillators import one_degree
 from scipy.optimize import brentq
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.mesh_law.load_dependent import load_dependent_law
+from facegear.meshing.load_dependent import load_dependent_law
+from facegear.motion.branches.continuation import ContinuationSettings
+from facegear.motion.branches.family import Family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
+from facegear.motion.integrator.integrator import Integrator
 
 LOAD = 0.3
 

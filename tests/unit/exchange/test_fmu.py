@@ -22,19 +22,18 @@ from lumped_machines import make_layout, make_machine
 from recorded_motion import record
 
 import facegear
-from facegear.dynamics.bearing_forces import bearing_history
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.exchange.fmu import IDENTIFIER, unique_words, write_fmu
-from facegear.mesh_law.law import beyond_edges
-from facegear.transmission.excitation import Excitation
-from facegear.transmission.flanks import mesh_contacts
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.machine import FlankTables, OpenFlanks
-from facegear.transmission.mesh_friction import PARTS, MeshFriction
-from facegear.transmission.statics import static_bearing_forces
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.disturbances import PARTS, Excitation, MeshFriction
+from facegear.machine.flanks import mesh_contacts
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.machine import FlankTables, OpenFlanks
+from facegear.machine.statics import static_bearing_forces
+from facegear.meshing.law import beyond_edges
+from facegear.motion.bearing_forces import bearing_history
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.mesh_samples import by_mesh, each_deflection
+from facegear.motion.steady_state.simulate import build_model, simulate, static_start
 
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 COMPILER = os.environ.get("CXX") or shutil.which("c++")

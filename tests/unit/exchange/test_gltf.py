@@ -8,9 +8,9 @@ import pytest
 import trimesh
 
 import facegear
-from facegear.config.tooth_pair import pair_design
+from facegear.build.tooth_pair import pair_design
 from facegear.exchange.gltf import PROFILE, WIDTH, gear_transform, pinion_transform, write_gltf
-from facegear.geometry.solids import solid, volume
+from facegear.teeth.solids import solid, volume
 
 DESIGN = pair_design(facegear.example().config.tooth_pair)
 GEARS = ("upper face gear", "lower face gear")

@@ -9,8 +9,16 @@ from hypothesis import strategies as st
 
 import facegear
 from facegear.errors import FacegearError
-from facegear.exchange.rexs import LOST_CONTENT, Shaft, Spur, Unit, read_rexs, write_rexs
-from facegear.variants.gear_unit import gear_unit, known_of_rexs
+from facegear.exchange.rexs import (
+    LOST_CONTENT,
+    Shaft,
+    Spur,
+    Unit,
+    gear_unit,
+    known_of_rexs,
+    read_rexs,
+    write_rexs,
+)
 
 CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
 KNOWN = {

@@ -6,17 +6,15 @@ import pytest
 import scipy.linalg
 from references import against, agrees
 
-from facegear.gear_body.matrices import around, body_matrices, rigid_motions
-from facegear.gear_body.mesh import body_mesh
-from facegear.gear_body.modes import held_solver, order_modes
-from facegear.geometry.design import Material
+from facegear.parts.body_mesh import body_mesh
+from facegear.parts.matrices import around, body_matrices, rigid_motions
+from facegear.parts.modes import held_solver, order_modes
+from facegear.teeth.design import Material
 
 UNIT = Material(1.0, 0.3)
 
 
-@against(
-    "analytic", "free thin ring, inextensional", capability="gear_bodies", module="facegear.gear_body.modes"
-)
+@against("analytic", "free thin ring, inextensional", capability="gear_bodies", module="facegear.parts.modes")
 def test_free_ring_bends_in_its_plane_with_the_coriolis_and_stress_factors_of_a_thin_one():
     ring = gear_bodies.rectangular(0.99, 1.01, 0.02, UNIT, held=False, across=2)
     for n in (2, 3, 4):
@@ -32,7 +30,7 @@ def test_free_ring_bends_in_its_plane_with_the_coriolis_and_stress_factors_of_a_
     "analytic",
     "Lamb and Southwell: rotating membrane",
     capability="gear_bodies",
-    module="facegear.gear_body.matrices",
+    module="facegear.parts.matrices",
 )
 def test_disc_that_only_rotation_holds_vibrates_as_a_rotating_membrane():
     """Its modes are polynomials of the radius, r^n the slowest."""
@@ -54,7 +52,7 @@ RIM = [0.02211413, 0.04601575, 0.03258650, 0.01290077, 0.00529067]
     "analytic",
     "Kirchhoff plate held at 0.3 of its radius",
     capability="gear_bodies",
-    module="facegear.gear_body.modes",
+    module="facegear.parts.modes",
 )
 def test_thin_disc_held_at_its_bore_is_a_kirchhoff_plate():
     """The error of a plate of finite thickness is proportional to it: two thicknesses, extrapolated."""
@@ -79,7 +77,7 @@ def test_thin_disc_held_at_its_bore_is_a_kirchhoff_plate():
     "analytic",
     "a rigid body that stands in space feels no rotation",
     capability="gear_bodies",
-    module="facegear.gear_body.matrices",
+    module="facegear.parts.matrices",
 )
 @pytest.mark.parametrize("order", [0, 1])
 def test_rigid_motions_of_a_free_body_strain_nothing_and_feel_no_rotation_where_they_stand_in_space(order):

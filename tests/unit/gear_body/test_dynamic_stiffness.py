@@ -6,9 +6,9 @@ import pytest
 import scipy.sparse.linalg
 from references import against, agrees
 
-from facegear.gear_body.compliance import modal_compliance
-from facegear.gear_body.matrices import around
-from facegear.gear_body.modes import held_solver, order_modes
+from facegear.parts.gear_body import modal_compliance
+from facegear.parts.matrices import around
+from facegear.parts.modes import held_solver, order_modes
 
 LAG = 1e-11
 """Damping that is left out, over the frequency: next to nothing."""
@@ -54,7 +54,7 @@ def of_modes(disc, order, up_to):
     "analytic",
     "dynamic stiffness of all degrees of freedom, without modes",
     capability="gear_bodies",
-    module="facegear.gear_body.modes",
+    module="facegear.parts.modes",
 )
 @pytest.mark.parametrize("order", [1, 4])
 def test_modes_and_the_static_rest_answer_a_load_in_space_as_the_whole_turning_body(disc, order):

@@ -10,16 +10,16 @@ from gear_bodies import PATCH, reference_body
 from references import against, agrees
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.gear_body import BodySection
-from facegear.config.load import load_config
+from facegear.build.load import load_config
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.gear_body.reduction import reduced_body
-from facegear.gear_body.tables import COUPLINGS, mode_table
-from facegear.results.gear_bodies import GearBodiesResult
-from facegear.stages import gear_bodies as stage
-from facegear.variants import varied_bodies
+from facegear.parts.body_tables import COUPLINGS, mode_table
+from facegear.parts.gear_body import reduced_body
+from facegear.parts.reduced_body import ReducedBody
+from facegear.pipeline.results.gear_bodies import GearBodiesResult
+from facegear.pipeline.stages import gear_bodies as stage
+from facegear.schema.base import parse
+from facegear.schema.gear_body import BodySection
+from facegear.studies import varied_bodies
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
@@ -54,7 +54,7 @@ def test_equal_gears_have_equal_modes_and_both_stand_in_the_tables(outcome):
     "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
-    module="facegear.gear_body.tables",
+    module="facegear.parts.body_tables",
 )
 def test_table_has_c_b_and_q_of_every_mode_as_another_program_has_them():
     table = mode_table("upper", reference_body(), 1.0, 143, 143 / 23).groupby("nodal_diameters").first()
@@ -136,10 +136,10 @@ def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names
         solved.append(shape.layer.hoop)
         return SimpleNamespace(section=shape)
 
-    monkeypatch.setattr("facegear.tooth_layer.fit.fitted_teeth", fit)
+    monkeypatch.setattr("facegear.parts.tooth_layer.fitted_teeth", fit)
     monkeypatch.setattr(stage, "solve_body", solve)
-    monkeypatch.setattr("facegear.gear_body.body.solve_body", solve)
-    monkeypatch.setattr("facegear.gear_body.reduction.reduced_body", lambda *given: None)
+    monkeypatch.setattr("facegear.parts.gear_body.solve_body", solve)
+    monkeypatch.setattr("facegear.parts.gear_body.reduced_body", lambda *given: None)
     common = parse(BodySection, DISC)
     fitted = common.model_copy(update={"teeth": "fitted"})
     bodies = {"lower": common, "upper": fitted}

@@ -12,12 +12,11 @@ import numpy as np
 import pytest
 from references import against, agrees
 
-from facegear.gear_body.body import SMOOTH, sampled_orders
-from facegear.gear_body.compliance import flank_direction, influence, mean_compliance
-from facegear.gear_body.matrices import body_matrices
-from facegear.gear_body.mesh import body_mesh
-from facegear.gear_body.modes import held_solver, order_modes, resonant_speeds, wave_frequencies
-from facegear.gear_body.section import Layer, section_properties
+from facegear.parts.body_mesh import body_mesh
+from facegear.parts.gear_body import SMOOTH, flank_direction, influence, mean_compliance, sampled_orders
+from facegear.parts.matrices import body_matrices
+from facegear.parts.modes import held_solver, order_modes, resonant_speeds, wave_frequencies
+from facegear.parts.section import Layer, section_properties
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 
@@ -66,7 +65,7 @@ def each(table):
     "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
-    module="facegear.gear_body.body",
+    module="facegear.parts.gear_body",
 )
 def test_mass_and_inertia_of_the_section_are_those_of_its_polygon():
     *found, _ = section_properties(gear_bodies.section())
@@ -77,7 +76,7 @@ def test_mass_and_inertia_of_the_section_are_those_of_its_polygon():
     "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
-    module="facegear.gear_body.body",
+    module="facegear.parts.gear_body",
 )
 def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
     orders = gear_bodies.reference_body().orders[:7]
@@ -93,7 +92,7 @@ def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
     "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
-    module="facegear.gear_body.body",
+    module="facegear.parts.gear_body",
 )
 def test_forward_and_backward_waves_meet_the_mesh_frequency_where_another_program_has_them():
     orders = gear_bodies.reference_body().orders[:7]
@@ -115,7 +114,7 @@ def test_forward_and_backward_waves_meet_the_mesh_frequency_where_another_progra
     "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_bodies",
-    module="facegear.gear_body.body",
+    module="facegear.parts.gear_body",
 )
 def test_compliance_below_a_mesh_and_between_meshes_is_that_of_another_program():
     static = gear_bodies.reference_body().static(gear_bodies.PATCH)
@@ -148,7 +147,7 @@ def test_compliance_below_a_mesh_and_between_meshes_is_that_of_another_program()
     "second implementation",
     "masses of the modes, Fourier elements extrapolated",
     capability="gear_bodies",
-    module="facegear.gear_body.body",
+    module="facegear.parts.gear_body",
 )
 def test_hub_that_moves_drags_the_modes_of_none_and_one_nodal_diameter():
     zero, one = gear_bodies.reference_body().orders[:2]
@@ -163,7 +162,7 @@ def test_hub_that_moves_drags_the_modes_of_none_and_one_nodal_diameter():
     "second implementation",
     "cyclic sector of a gear with its 143 teeth",
     capability="gear_bodies",
-    module="facegear.gear_body.body",
+    module="facegear.parts.gear_body",
 )
 def test_layer_of_teeth_lowers_the_frequencies_as_real_teeth_do():
     layer = Layer(0.250, 0.275, 0.012, 0.012 + 2.25 * 3.75e-3)

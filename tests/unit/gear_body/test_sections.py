@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from gear_bodies import STEEL
 
-from facegear.config.base import parse
-from facegear.config.elastic_bodies import body_shape, crosses_rectangle
-from facegear.config.gear_body import BodySection
-from facegear.config.load import load_config
-from facegear.config.machine_layout import ToothNumbers, layout
-from facegear.config.model import Config
+from facegear.build.config import Config
+from facegear.build.elastic_bodies import body_shape, crosses_rectangle
+from facegear.build.load import load_config
+from facegear.build.machine_layout import ToothNumbers, layout
 from facegear.errors import ConfigErrors
-from facegear.gear_body.mesh import body_mesh, reentrant
-from facegear.gear_body.section import Layer, Section, inertia_about, rectangle, section_properties, thinnest
-from facegear.transmission.layout import Tilt
+from facegear.machine.layout import Tilt
+from facegear.parts.body_mesh import body_mesh, reentrant
+from facegear.parts.section import Layer, Section, inertia_about, rectangle, section_properties, thinnest
+from facegear.schema.base import parse
+from facegear.schema.gear_body import BodySection
 
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 PAIR = FLEXIBLE.tooth_pair

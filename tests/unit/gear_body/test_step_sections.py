@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 import yaml
 
-from facegear.config.base import parse
-from facegear.config.elastic_bodies import body_shape
-from facegear.config.gear_body import BodySection
-from facegear.config.load import load_config
+from facegear.build.elastic_bodies import body_shape
+from facegear.build.load import load_config
 from facegear.errors import ConfigErrors
-from facegear.gear_body.mesh import body_mesh, reentrant
-from facegear.gear_body.section import section_properties
-from facegear.gear_body.step_file import CHORD, read_section
+from facegear.io.step_section import CHORD, read_section
+from facegear.parts.body_mesh import body_mesh, reentrant
+from facegear.parts.section import section_properties
+from facegear.schema.base import parse
+from facegear.schema.gear_body import BodySection
 
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 PAIR = FLEXIBLE.tooth_pair

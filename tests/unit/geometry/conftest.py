@@ -5,14 +5,7 @@ from math import radians
 
 import pytest
 
-from facegear.geometry.design import (
-    AssemblyErrors,
-    FaceGearGeometry,
-    PairDesign,
-    PinionGeometry,
-    Relief,
-    Shaper,
-)
+from facegear.teeth.design import AssemblyErrors, FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
 
 
 def paper_pair(

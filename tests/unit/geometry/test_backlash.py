@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from facegear.geometry import unloaded
-from facegear.geometry.analysis import analyse
-from facegear.geometry.backlash import normal_backlash
-from facegear.geometry.design import AssemblyErrors, GearModifications, Relief
-from facegear.geometry.document import pair_record
-from facegear.geometry.placement import pinion_angle
-from facegear.geometry.ray_blank import gear_rays
-from facegear.geometry.validate import check
-from facegear.plots.tooth_pair import path_text
+from facegear.report.figures.teeth import path_text
+from facegear.teeth import unloaded
+from facegear.teeth.analysis import analyse
+from facegear.teeth.backlash import normal_backlash
+from facegear.teeth.design import AssemblyErrors, GearModifications, Relief
+from facegear.teeth.document import pair_record
+from facegear.teeth.placement import pinion_angle
+from facegear.teeth.rays import gear_rays
+from facegear.teeth.validate import check
 
 
 def test_backlash_before_meshing_is_that_of_the_full_analysis_and_the_path_reported_is_the_real_one(pair):

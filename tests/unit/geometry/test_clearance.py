@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from references import against, agrees
 
-from facegear.geometry.analysis import analyse
-from facegear.geometry.clearance import smallest_gaps
-from facegear.geometry.design import Relief
+from facegear.teeth.analysis import analyse
+from facegear.teeth.clearance import smallest_gaps
+from facegear.teeth.design import Relief
 
 
 @pytest.mark.parametrize(("teeth", "depth_um"), [(26, 24.0), (24, 51.0)])
@@ -31,7 +31,7 @@ def test_default_pair_clears_by_eight_micrometres(pair):
     "own convergence",
     "finer sampling",
     capability="geometry",
-    module="facegear.geometry.clearance",
+    module="facegear.teeth.clearance",
 )
 def test_gaps_do_not_depend_on_sampling(pair):
     design = pair(26, rack_tip_radius=0.25)
@@ -46,7 +46,7 @@ def test_gaps_do_not_depend_on_sampling(pair):
     "analytic",
     "backlash of a thinned pinion",
     capability="geometry",
-    module="facegear.geometry.analysis",
+    module="facegear.teeth.analysis",
 )
 def test_backlash_is_the_thinning(pair):
     for thinning in (0.0, 1e-4):
@@ -58,7 +58,7 @@ def test_backlash_is_the_thinning(pair):
     "analytic",
     "twice the normal part of a displacement",
     capability="geometry",
-    module="facegear.geometry.analysis",
+    module="facegear.teeth.analysis",
 )
 def test_pulling_the_gear_back_opens_both_flanks(pair):
     result = analyse(pair(26, axial_shift=1e-6, thinning=1e-4), positions=8)

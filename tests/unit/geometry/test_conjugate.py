@@ -8,11 +8,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.geometry.backlash import normal_backlash
-from facegear.geometry.conjugate import conjugate_contact, exact_contact
-from facegear.geometry.design import Relief
-from facegear.geometry.placement import mirror_design
-from facegear.geometry.unloaded import searched_contact, unloaded_contact
+from facegear.teeth.backlash import normal_backlash
+from facegear.teeth.conjugate import conjugate_contact, exact_contact
+from facegear.teeth.design import Relief
+from facegear.teeth.placement import mirror_design
+from facegear.teeth.unloaded import searched_contact, unloaded_contact
 
 POSES = {
     (120, 0, 0.03): ((58.763527287, 264.388284, 23.213899), (159.915598075, 269.136890, 25.468187)),
@@ -37,7 +37,7 @@ def posed(pair):
     "second implementation",
     "a pair displaced rigidly and searched at 1e-13 m",
     capability="geometry",
-    module="facegear.geometry.conjugate",
+    module="facegear.teeth.conjugate",
 )
 @pytest.mark.parametrize("pose", POSES)
 def test_a_displaced_pair_touches_where_the_published_numbers_have_it(posed, pose):

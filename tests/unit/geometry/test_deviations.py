@@ -7,16 +7,16 @@ import pytest
 from measured_flanks import MM, UM, constant, place_on_pinion, sampled, seen_from, with_grid
 from references import against, agrees
 
-from facegear.geometry import face_gear, gear_modifications
-from facegear.geometry.analysis import path_curvatures
-from facegear.geometry.curvature import opposite_curvatures
-from facegear.geometry.design import GearModifications, Relief
-from facegear.geometry.deviations import derivative, deviation
-from facegear.geometry.nominal import flank_face
-from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import conjugate_angle, mirror_design, to_left_flank
-from facegear.geometry.separation import FLANK, separation
-from facegear.geometry.unloaded import unloaded_contact
+from facegear.teeth import face_gear, modifications
+from facegear.teeth.analysis import path_curvatures
+from facegear.teeth.curvature import opposite_curvatures
+from facegear.teeth.design import GearModifications, Relief
+from facegear.teeth.modifications import derivative, deviation
+from facegear.teeth.placement import conjugate_angle, mirror_design, to_left_flank
+from facegear.teeth.rays import FLANK
+from facegear.teeth.separation import separation
+from facegear.teeth.surfaces import flank_face, flank_points
+from facegear.teeth.unloaded import unloaded_contact
 
 MIDDLE = 262.5 * MM
 
@@ -51,7 +51,7 @@ def test_a_grid_of_zeros_changes_no_bit(pair, body):
     "analytic",
     "crowning as a modification",
     capability="geometry",
-    module="facegear.geometry.deviations",
+    module="facegear.teeth.modifications",
 )
 @pytest.mark.parametrize("places", [(4, 4), (13, 9), (3, 2)])
 def test_a_parabola_given_as_a_grid_is_the_modification_itself(pair, places):
@@ -61,7 +61,7 @@ def test_a_parabola_given_as_a_grid_is_the_modification_itself(pair, places):
     given = with_grid(design, "face_gear", sampled(design, "face_gear", crowning, places))
     agrees("gap, m", gaps(given), gaps(modified), absolute=1e-15)
     radius = np.linspace(0.250, 0.275, 6)
-    edges = [gear_modifications.tip_edge_as_made(one, radius) for one in (given, modified)]
+    edges = [modifications.tip_edge_as_made(one, radius) for one in (given, modified)]
     agrees("tip edge, m", edges[0], edges[1], absolute=1e-15)
 
 
@@ -87,7 +87,7 @@ def test_beyond_a_grid_its_edge_stands_and_is_flat(pair):
     "analytic",
     "points of the flank displaced along its normal",
     capability="geometry",
-    module="facegear.geometry.gear_modifications",
+    module="facegear.teeth.modifications",
 )
 @pytest.mark.parametrize("field", [lambda r, d: 10 * wave(r, d), constant(-50 * UM)])
 def test_rays_end_at_the_measured_flank_to_a_tenth_of_a_micrometre_at_50(pair, field):
@@ -98,7 +98,7 @@ def test_rays_end_at_the_measured_flank_to_a_tenth_of_a_micrometre_at_50(pair, f
         part.ravel() for part in np.meshgrid(np.linspace(252, 273, 9) * MM, np.linspace(1, 5, 7) * MM)
     )
     places = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane - depth)
-    displaced = gear_modifications.flank_as_made(measured, *places)
+    displaced = modifications.flank_as_made(measured, *places)
     found = seen_from(measured, displaced, face_gear.flank_normal(design, *places), 10 * UM)
     assert (found.part == FLANK).all()
     agrees("gap at 50 um, m", found.gap[0], 10 * UM, absolute=0.1 * UM)
@@ -108,7 +108,7 @@ def test_rays_end_at_the_measured_flank_to_a_tenth_of_a_micrometre_at_50(pair, f
     "second implementation",
     "the same deviations on the other gear, by conjugate action",
     capability="geometry",
-    module="facegear.geometry.deviations",
+    module="facegear.teeth.modifications",
 )
 @pytest.mark.parametrize(("amount", "stated"), [(20 * UM, 5e-10), (50 * UM, 3e-9)])
 def test_the_same_deviations_on_either_gear_move_it_alike(pair, amount, stated):
@@ -158,7 +158,7 @@ def test_material_on_a_flank_sets_its_own_side_ahead_and_leaves_the_other(pair):
     "second implementation",
     "second differences of the gap",
     capability="geometry contact",
-    module="facegear.geometry.curvature",
+    module="facegear.teeth.curvature",
 )
 @pytest.mark.parametrize("body", ["pinion", "face_gear"])
 def test_deviations_bend_the_gap_as_their_curvatures_say(pair, body):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from references import against, agrees
 
-from facegear.geometry import closed_forms, face_gear
-from facegear.geometry.design import involute
-from facegear.geometry.limits import sharpest_fillet_radius
+from facegear.teeth import closed_forms, face_gear, face_gear_fillet
+from facegear.teeth.design import involute
+from facegear.teeth.limits import sharpest_fillet_radius
 
 
 def flank_grid(design):
@@ -20,7 +20,7 @@ def flank_grid(design):
     "analytic",
     "law of gearing: flanks slide in their tangent plane",
     capability="geometry",
-    module="facegear.geometry.face_gear",
+    module="facegear.teeth.face_gear",
 )
 @pytest.mark.parametrize("teeth", [23, 24, 26])
 def test_relative_velocity_at_generation_lies_in_the_tangent_plane(pair, teeth):
@@ -82,7 +82,7 @@ def test_tip_edge_by_radius_is_that_of_the_surface(pair, teeth):
     "analytic",
     "cos a_L = m N2 cos a0 / (2 L)",
     capability="geometry",
-    module="facegear.geometry.face_gear",
+    module="facegear.teeth.face_gear",
 )
 def test_local_pressure_angle_is_the_flank_slope_on_the_pitch_plane(pair):
     """Where the flank crosses the pitch plane its normal leans by a_L, cos a_L = m N2 cos a0 / (2 L)."""
@@ -103,7 +103,7 @@ def test_local_pressure_angle_is_the_flank_slope_on_the_pitch_plane(pair):
     "analytic",
     "rack of the pitch plane: half a pitch",
     capability="geometry",
-    module="facegear.geometry.face_gear",
+    module="facegear.teeth.face_gear",
 )
 @pytest.mark.parametrize("shift", [-0.1, 0.0, 0.3])
 def test_tooth_thickness_on_the_pitch_plane_at_the_pitch_radius(pair, shift):
@@ -122,12 +122,12 @@ ROUNDINGS = [0.0, 0.1, 0.14]
 def test_flank_and_fillet_share_position_and_normal_where_they_meet(pair, rounding):
     design = pair(tip_rounding=rounding)
     radius = np.linspace(0.250, 0.275, 7)
-    psi = face_gear.fillet_start(design, radius)
+    psi = face_gear_fillet.fillet_start(design, radius)
     on_flank = face_gear.flank_point(design, design.shaper_tip_roll, psi)
-    on_fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
+    on_fillet = face_gear.cylindrical(radius, *face_gear_fillet.fillet_section(design, radius, psi))
     np.testing.assert_allclose(on_fillet, on_flank, atol=1e-15)
     np.testing.assert_allclose(
-        face_gear.fillet_normal(design, radius, psi),
+        face_gear_fillet.fillet_normal(design, radius, psi),
         face_gear.flank_normal(design, design.shaper_tip_roll, psi),
         atol=1e-12,
     )
@@ -136,19 +136,19 @@ def test_flank_and_fillet_share_position_and_normal_where_they_meet(pair, roundi
 @pytest.mark.parametrize("rounding", ROUNDINGS)
 def test_fillet_ends_tangent_to_the_root_plane(pair, rounding):
     design = pair(tip_rounding=rounding)
-    normal = face_gear.fillet_normal(design, 0.26, np.pi / 2)
+    normal = face_gear_fillet.fillet_normal(design, 0.26, np.pi / 2)
     np.testing.assert_allclose(normal, [0, 0, 1], atol=1e-15)
-    angle, z = face_gear.fillet_section(design, 0.26, np.pi / 2)
+    angle, z = face_gear_fillet.fillet_section(design, 0.26, np.pi / 2)
     assert z == pytest.approx(design.gear_root_plane, abs=1e-16)
-    assert np.pi / 143 - angle == pytest.approx(face_gear.root_half_angle(design), abs=1e-15)
-    assert face_gear.root_half_angle(design) > 0
+    assert np.pi / 143 - angle == pytest.approx(face_gear_fillet.root_half_angle(design), abs=1e-15)
+    assert face_gear_fillet.root_half_angle(design) > 0
 
 
 @against(
     "analytic",
     "envelope: no velocity along the normal, distance of the tip's centre",
     capability="geometry",
-    module="facegear.geometry.face_gear",
+    module="facegear.teeth.face_gear",
 )
 @pytest.mark.parametrize("rounding", ROUNDINGS)
 def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
@@ -159,9 +159,9 @@ def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
     design = pair(tip_rounding=rounding)
     sharpest = sharpest_fillet_radius(design)
     radius = np.array([0.92, 0.98, 0.995, 1.004, 1.01, 1.02])[:, None] * sharpest
-    psi = face_gear.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 15))
-    point = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
-    normal = face_gear.fillet_normal(design, radius, psi)
+    psi = face_gear_fillet.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 15))
+    point = face_gear.cylindrical(radius, *face_gear_fillet.fillet_section(design, radius, psi))
+    normal = face_gear_fillet.fillet_normal(design, radius, psi)
     # the gear has turned by phi_s m2s when the normal has no part along the shaper's axis
     turn = np.where(psi < np.pi / 2 - 1e-9, np.arctan2(normal[..., 1], normal[..., 0]), 0.0)
     turn[:, -1] = -design.shaper_ratio * face_gear.edge_start(design)
@@ -198,9 +198,9 @@ def test_the_shapers_rounded_tip_passes_every_point_of_the_fillet_and_cuts_none_
     design = pair(tip_rounding=rounding)
     sharpest = sharpest_fillet_radius(design)
     radius = np.array([0.92, 0.98, 1.0, 1.01, 1.03])[:, None] * sharpest
-    psi = face_gear.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 9))
+    psi = face_gear_fillet.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 9))
     x, y, z = np.moveaxis(
-        face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi)), -1, 0
+        face_gear.cylindrical(radius, *face_gear_fillet.fillet_section(design, radius, psi)), -1, 0
     )
     chi = np.linspace(-1.2, 1.2, 4001)[:, None, None]
     turn = design.shaper_ratio * (chi - face_gear.edge_start(design))
@@ -216,12 +216,12 @@ def test_the_shapers_rounded_tip_passes_every_point_of_the_fillet_and_cuts_none_
 def test_normal_of_the_fillet_is_orthogonal_to_its_tangents(pair, rounding):
     design = pair(tip_rounding=rounding)
     radius, step = np.linspace(0.251, 0.274, 6)[:, None], 1e-6
-    psi = face_gear.fillet_slopes(design, radius, np.linspace(0.05, 0.95, 9))
+    psi = face_gear_fillet.fillet_slopes(design, radius, np.linspace(0.05, 0.95, 9))
 
     def point(radius, psi):
-        return face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
+        return face_gear.cylindrical(radius, *face_gear_fillet.fillet_section(design, radius, psi))
 
-    normal = face_gear.fillet_normal(design, radius, psi)
+    normal = face_gear_fillet.fillet_normal(design, radius, psi)
     for d_radius, d_psi in ((step * 0.26, 0.0), (0.0, step)):
         tangent = point(radius + d_radius, psi + d_psi) - point(radius - d_radius, psi - d_psi)
         along = np.linalg.norm(tangent, axis=-1)
@@ -234,8 +234,8 @@ def test_a_rounding_of_nearly_nothing_gives_the_sharp_edges_fillet(pair):
     points = []
     for rounding in (0.0, 1e-6):
         design = pair(tip_rounding=rounding)
-        psi = face_gear.fillet_slopes(design, radius, share)
-        points.append(face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi)))
+        psi = face_gear_fillet.fillet_slopes(design, radius, share)
+        points.append(face_gear.cylindrical(radius, *face_gear_fillet.fillet_section(design, radius, psi)))
     assert np.max(np.abs(points[1] - points[0])) < 2e-6 * design.module
 
 
@@ -243,7 +243,7 @@ def test_a_rounding_of_nearly_nothing_gives_the_sharp_edges_fillet(pair):
     "analytic",
     "thickness of a shifted involute tooth on its pitch circle",
     capability="geometry",
-    module="facegear.geometry.design",
+    module="facegear.teeth.design",
 )
 def test_space_width_of_the_shaper_follows_from_its_tooth_thickness(pair):
     design = pair(shift=0.2)
@@ -266,7 +266,7 @@ def differences(function, at, step):
 
 
 def test_slopes_of_the_fillet_frame_are_differences_of_its_points(pair):
-    numbers = face_gear.tip_numbers(pair(tip_rounding=0.1))
+    numbers = face_gear_fillet.tip_numbers(pair(tip_rounding=0.1))
     psi, q = np.radians([40.0, 60.0, 80.0]), 0.2 * np.array([1.0, 1.1, 1.3])
     found = closed_forms.fillet_frame(*numbers, psi, q)
     by_psi = differences(lambda at: closed_forms.fillet_frame(*numbers, at, q)[:3], psi, 1e-6)
@@ -286,5 +286,5 @@ def test_slopes_that_newtons_method_takes_are_differences_of_its_residual(pair, 
 
 def test_the_fraction_of_the_fillets_turn_leads_back_to_its_slope(pair):
     design, fractions = pair(tip_rounding=0.1), np.linspace(0.0, 1.0, 5)
-    psi = face_gear.fillet_slopes(design, 0.26, fractions)
-    np.testing.assert_allclose(face_gear.fillet_fraction(design, 0.26, psi), fractions, atol=1e-13)
+    psi = face_gear_fillet.fillet_slopes(design, 0.26, fractions)
+    np.testing.assert_allclose(face_gear_fillet.fillet_fraction(design, 0.26, psi), fractions, atol=1e-13)

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout
 from references import against, agrees
 
-from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.flank_errors import FLANKS, GEARS, distinct_pairs, errors_at
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.transmission.layout import Side
-from facegear.transmission.matrices import flank_jacobian
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Side
+from facegear.machine.linear_model import flank_jacobian
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.placement import FLANKS, GEARS, distinct_pairs, errors_at
+from facegear.teeth.unloaded import unloaded_contact
 
 PATHS = [
     ((120e-6, 0.0, radians(0.03)), 264.388284, 269.136890),
@@ -35,7 +35,7 @@ def moved(design, errors):
     "analytic",
     "place of the contact of a displaced pair in closed form",
     capability="contact",
-    module="facegear.geometry.flank_errors",
+    module="facegear.teeth.placement",
 )
 @pytest.mark.parametrize(("errors", "drive", "back"), PATHS)
 def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, errors, drive, back):
@@ -51,7 +51,7 @@ def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, error
     "analytic",
     "normal part of a displacement",
     capability="geometry",
-    module="facegear.geometry.unloaded",
+    module="facegear.teeth.unloaded",
 )
 @pytest.mark.parametrize("gear", GEARS)
 @pytest.mark.parametrize("flank", FLANKS)

@@ -7,10 +7,11 @@ Forces of single basis functions move by up to 1e9 N/m with a gap, so that the l
 import numpy as np
 import pytest
 
-from facegear.geometry import face_gear
-from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import AXIS, conjugate_angle, pinion_to_gear
-from facegear.geometry.separation import FLANK, separation
+from facegear.teeth import face_gear
+from facegear.teeth.placement import AXIS, conjugate_angle, pinion_to_gear
+from facegear.teeth.rays import FLANK
+from facegear.teeth.separation import separation
+from facegear.teeth.surfaces import flank_points
 
 LONG = np.longdouble
 PI = 2 * np.arcsin(LONG(1))

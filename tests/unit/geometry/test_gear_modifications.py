@@ -7,13 +7,14 @@ import pytest
 from measured_flanks import MM, UM, seen_from
 from references import against, agrees
 
-from facegear.geometry import face_gear, gear_modifications
-from facegear.geometry.curvature import opposite_curvatures
-from facegear.geometry.design import GearModifications, Relief
-from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import mirror_design, to_left_flank
-from facegear.geometry.separation import FLANK, separation
-from facegear.geometry.unloaded import unloaded_contact
+from facegear.teeth import face_gear, modifications
+from facegear.teeth.curvature import opposite_curvatures
+from facegear.teeth.design import GearModifications, Relief
+from facegear.teeth.placement import mirror_design, to_left_flank
+from facegear.teeth.rays import FLANK
+from facegear.teeth.separation import separation
+from facegear.teeth.surfaces import flank_points
+from facegear.teeth.unloaded import unloaded_contact
 
 KINDS = {
     "tip relief": GearModifications(tip_relief=Relief(50 * UM, 0.5 * MM, 1.5 * MM)),
@@ -36,7 +37,7 @@ def flank_grid(design, inset=0.1):
     gear = design.face_gear
     part = np.linspace(inset, 1 - inset, 9)
     radius = gear.inner_radius + part * (gear.outer_radius - gear.inner_radius)
-    depth = part[:, None] * gear_modifications.flank_depth(design)(radius)
+    depth = part[:, None] * modifications.flank_depth(design)(radius)
     return face_gear.roll_and_psi_at_height(design, radius[None, :], design.gear_tip_plane - depth)
 
 
@@ -44,7 +45,7 @@ def flank_grid(design, inset=0.1):
     "analytic",
     "points of the flank displaced along its normal",
     capability="geometry",
-    module="facegear.geometry.gear_modifications",
+    module="facegear.teeth.modifications",
 )
 @pytest.mark.parametrize("kind", KINDS)
 def test_rays_end_at_the_flank_that_is_displaced_along_its_normal(pair, kind):
@@ -52,7 +53,7 @@ def test_rays_end_at_the_flank_that_is_displaced_along_its_normal(pair, kind):
     roll, psi = (angle.ravel() for angle in flank_grid(design))
     nominal, normal = face_gear.flank_point(design, roll, psi), face_gear.flank_normal(design, roll, psi)
     radius = np.hypot(nominal[:, 0], nominal[:, 1])
-    taken = gear_modifications.removed_depth(design, radius, design.gear_tip_plane - nominal[:, 2])
+    taken = modifications.removed_depth(design, radius, design.gear_tip_plane - nominal[:, 2])
     found = seen_from(design, nominal - taken[:, None] * normal, normal, 10 * UM)
     assert (found.part == FLANK).all()
     agrees("gap at 50 um, m", found.gap[0], 10 * UM, absolute=0.1 * UM)
@@ -62,7 +63,7 @@ def test_rays_end_at_the_flank_that_is_displaced_along_its_normal(pair, kind):
     "second implementation",
     "the same lead crowning on the pinion",
     capability="geometry",
-    module="facegear.geometry.gear_modifications",
+    module="facegear.teeth.modifications",
 )
 def test_a_lead_crowning_does_the_same_on_either_gear_where_flanks_touch_in_lines(pair):
     """But for the gear radius, which is not quite the place along the pinion's axis."""
@@ -103,6 +104,6 @@ def test_crowned_flanks_are_curved_more_by_the_second_derivative_of_what_is_take
 def test_the_tip_edge_stands_back_from_the_pinion_by_what_is_taken_off_there(pair):
     design = modified(pair(25), KINDS["tip relief"])
     radius = np.linspace(0.251, 0.274, 7)
-    moved = face_gear.tip_edge(design, radius) - gear_modifications.tip_edge_as_made(design, radius)
+    moved = face_gear.tip_edge(design, radius) - modifications.tip_edge_as_made(design, radius)
     np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 50 * UM, rtol=1e-9)
     assert (moved[:, 0] > 0).all()

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from facegear.errors import FacegearError
-from facegear.geometry.analysis import analyse
-from facegear.geometry.jam import jam
-from facegear.stages.geometry import geometry
+from facegear.pipeline.stages.teeth import geometry
+from facegear.teeth.analysis import analyse, jam
 
 DEEP = {"shaper_teeth": 24, "rack_tip_radius": 0.25}
 """The gear's tip edge stands 51 um deep in the pinion's fillet on either side (numerics.md)."""
@@ -37,7 +36,7 @@ def test_a_tip_in_the_root_land_jams_at_every_turn(pair):
 def test_a_jam_is_refused_with_its_amount(pair, monkeypatch):
     """It was a remark in the report, and contact left it out."""
     design = pair(**DEEP)
-    monkeypatch.setattr("facegear.stages.geometry.pair", lambda _: type("Pair", (), {"design": design}))
+    monkeypatch.setattr("facegear.pipeline.stages.teeth.pair", lambda _: type("Pair", (), {"design": design}))
     with pytest.raises(FacegearError) as caught:
         geometry(None)
     assert str(caught.value).startswith("tooth_pair: the bodies jam by 101.2 um along the line of action: ")

@@ -3,7 +3,7 @@
 import pytest
 from references import against, agrees
 
-from facegear.geometry.limits import radius_limits
+from facegear.teeth.limits import radius_limits
 
 TABLE = {
     23: (245.149, 245.429, 302.907, 302.994),
@@ -17,7 +17,7 @@ TABLE = {
     "analytic",
     "undercut and pointing limits of the generated flank, computed twice by independent means",
     capability="geometry",
-    module="facegear.geometry.limits",
+    module="facegear.teeth.limits",
 )
 @pytest.mark.parametrize("teeth", TABLE)
 def test_undercut_and_pointing_radii_match_the_table(pair, teeth):

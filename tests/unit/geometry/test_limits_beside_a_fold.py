@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from facegear.geometry import face_gear
-from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.geometry.limits import THINNEST_LAND, face_range, radius_limits
-from facegear.geometry.placement import rotation
+from facegear.teeth import face_gear
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.limits import THINNEST_LAND, face_range, radius_limits
+from facegear.teeth.placement import rotation
 
 
 def test_rotations_are_scipys():

@@ -4,15 +4,15 @@ import numpy as np
 from references import against, agrees
 
 import facegear
-from facegear.config.tooth_pair import pair_design
-from facegear.geometry import face_gear, pinion
+from facegear.build.tooth_pair import pair_design
+from facegear.teeth import face_gear, pinion
 
 
 @against(
     "analytic",
     "points, which close the equations of involute and generated flank",
     capability="topography export",
-    module="facegear.geometry.nominal",
+    module="facegear.teeth.surfaces",
 )
 def test_nominal_points_lie_on_the_flanks_with_normals_across_them():
     machine = facegear.example()
@@ -56,7 +56,7 @@ def test_the_file_for_a_measuring_machine_is_read_back_as_flanks_without_deviati
 
 
 def test_a_factor_on_deviations_may_vary_in_tolerances_and_search(tmp_path):
-    from facegear.config.changes import WITHOUT_MESHING, add_changes, movable
+    from facegear.schema.changes import WITHOUT_MESHING, add_changes, movable
 
     machine = facegear.example()
     path = str(machine.export(tmp_path / "nominal_points.csv"))

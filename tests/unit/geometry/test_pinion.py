@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from references import against, agrees
 
-from facegear.geometry import pinion
-from facegear.geometry.design import Relief
-from facegear.geometry.pinion_surface import fillet_points
+from facegear.teeth import pinion
+from facegear.teeth.design import Relief
+from facegear.teeth.surfaces import fillet_points
 
 
 @pytest.mark.parametrize(("shift", "thinning"), [(0.0, 0.0), (0.3, 0.0), (-0.1, 1e-4)])
@@ -52,7 +52,7 @@ def test_trochoid_ends_on_the_root_circle_where_the_root_land_begins(pair):
     "analytic",
     "thickness of a shifted and thinned involute tooth on its pitch circle",
     capability="geometry",
-    module="facegear.geometry.pinion",
+    module="facegear.teeth.pinion",
 )
 def test_thickness_on_the_pitch_circle(pair):
     design = pair(shift=0.2, thinning=1e-4)

@@ -7,17 +7,18 @@ import pytest
 from references import against, agrees
 from scipy.optimize import root
 
-from facegear.geometry import face_gear, pinion
-from facegear.geometry.analysis import path_curvatures, section_contact_ratio
-from facegear.geometry.curvature import relative_curvatures
-from facegear.geometry.design import Relief
-from facegear.geometry.easeoff import ease_off
-from facegear.geometry.limits import sharpest_fillet_radius
-from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
-from facegear.geometry.placement import conjugate_angle, mirror_design, to_left_flank
-from facegear.geometry.separation import FILLET, FLANK, ROOT_LAND, TIP_LAND, separation
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.geometry.validate import check
+from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth.analysis import path_curvatures, section_contact_ratio
+from facegear.teeth.curvature import relative_curvatures
+from facegear.teeth.design import Relief
+from facegear.teeth.document import ease_off
+from facegear.teeth.limits import sharpest_fillet_radius
+from facegear.teeth.placement import conjugate_angle, mirror_design, to_left_flank
+from facegear.teeth.rays import FILLET, FLANK, ROOT_LAND, TIP_LAND
+from facegear.teeth.separation import separation
+from facegear.teeth.surfaces import SurfacePoints, fillet_points, flank_points
+from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.validate import check
 
 
 def pitch(design, count):
@@ -28,7 +29,7 @@ def pitch(design, count):
     "analytic",
     "conjugate flanks: line contact without transmission error",
     capability="geometry",
-    module="facegear.geometry.unloaded",
+    module="facegear.teeth.unloaded",
 )
 def test_equal_tooth_numbers_touch_in_a_line_without_transmission_error(pair):
     design = pair(23)
@@ -46,7 +47,7 @@ def test_equal_tooth_numbers_touch_in_a_line_without_transmission_error(pair):
     "analytic",
     "localised contact lies at the pitch radius",
     capability="geometry",
-    module="facegear.geometry.unloaded",
+    module="facegear.teeth.unloaded",
 )
 @pytest.mark.parametrize("teeth", [24, 25, 26])
 def test_localised_contact_path_lies_at_the_pitch_radius(pair, teeth):
@@ -75,7 +76,7 @@ def test_localised_contact_path_lies_at_the_pitch_radius(pair, teeth):
     "analytic",
     "separation of the generating planes in closed form",
     capability="geometry",
-    module="facegear.geometry.separation",
+    module="facegear.teeth.separation",
 )
 @pytest.mark.parametrize("teeth", [24, 26])
 def test_separation_of_the_generating_planes_has_the_closed_form(pair, teeth):
@@ -117,7 +118,7 @@ def closed_form(design, y):
     "analytic",
     "separation of the generating planes in closed form",
     capability="geometry contact",
-    module="facegear.geometry.separation",
+    module="facegear.teeth.separation",
 )
 @pytest.mark.parametrize("teeth", [24, 26])
 @pytest.mark.parametrize("position", [0.0, 0.1, 0.2])
@@ -140,7 +141,7 @@ def test_smallest_separation_in_a_section_follows_the_closed_form(pair, teeth, p
     "analytic",
     "separation of the generating planes in closed form",
     capability="geometry",
-    module="facegear.geometry.separation",
+    module="facegear.teeth.separation",
 )
 def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
     """The contours' own error: the parabola over the sampled mesh positions."""
@@ -156,7 +157,7 @@ def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
     "second implementation",
     "nearest point of a dense cloud of the gear",
     capability="geometry contact",
-    module="facegear.geometry.separation",
+    module="facegear.teeth.separation",
 )
 def test_separation_agrees_with_a_dense_cloud_of_the_gear(pair):
     """Brute force: distance along the ray to the nearest of half a million gear points."""
@@ -213,7 +214,7 @@ def test_assembly_errors_shift_the_path_but_leave_the_motion_conjugate(pair):
     "analytic",
     "normal part of a displacement",
     capability="geometry",
-    module="facegear.geometry.unloaded",
+    module="facegear.teeth.unloaded",
 )
 def test_axial_shift_opens_each_flank_by_its_normal_part(pair):
     shift = 1e-7
@@ -227,7 +228,7 @@ def test_axial_shift_opens_each_flank_by_its_normal_part(pair):
     "analytic",
     "thinning of a flank",
     capability="geometry",
-    module="facegear.geometry.unloaded",
+    module="facegear.teeth.unloaded",
 )
 def test_thinning_turns_the_gear_back_by_half_of_it(pair):
     contact = unloaded_contact(pair(26, thinning=8e-5), pitch(pair(), 4))
@@ -238,7 +239,7 @@ def test_thinning_turns_the_gear_back_by_half_of_it(pair):
     "analytic",
     "mirror symmetry",
     capability="geometry",
-    module="facegear.geometry.unloaded",
+    module="facegear.teeth.unloaded",
 )
 def test_mirrored_pair_has_the_mirrored_contact(pair):
     design = pair(26, offset=8e-5)
@@ -262,7 +263,7 @@ def test_second_relative_curvature_vanishes_in_line_contact(pair):
     "second implementation",
     "second differences of the gap",
     capability="geometry contact",
-    module="facegear.geometry.curvature",
+    module="facegear.teeth.curvature",
 )
 def test_relative_curvatures_are_the_second_derivatives_of_the_gap(pair):
     design = pair(26)
@@ -353,7 +354,7 @@ def test_every_ray_ends_on_the_part_it_names(pair, rounding, inner, outer):
     end = start + found.gap[..., None] * along
     surfaces = {
         FLANK: lambda u, v: face_gear.flank_point(design, u, v),
-        FILLET: lambda u, v: face_gear.cylindrical(v, *face_gear.fillet_section(design, v, u)),
+        FILLET: lambda u, v: face_gear.cylindrical(v, *face_gear_fillet.fillet_section(design, v, u)),
         TIP_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_tip_plane)),
         ROOT_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_root_plane)),
     }

@@ -7,13 +7,13 @@ import pytest
 from references import against, agrees
 
 import facegear
+from facegear.bodies import BODIES
 from facegear.errors import NotConverged
-from facegear.geometry import face_gear
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.design import Relief
-from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.solids import solid, triangles, volume
 from facegear.io.cad import write_step, write_stl
+from facegear.teeth import face_gear
+from facegear.teeth.design import Relief
+from facegear.teeth.solids import solid, triangles, volume
+from facegear.teeth.surfaces import flank_points
 
 TEETH = 2
 

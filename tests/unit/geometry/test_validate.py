@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from facegear.errors import GeometryError
-from facegear.geometry.design import (
+from facegear.teeth.clearance import pinion_outline
+from facegear.teeth.design import (
     FaceGearGeometry,
     GearModifications,
     PairDesign,
@@ -17,14 +18,13 @@ from facegear.geometry.design import (
     Relief,
     Shaper,
 )
-from facegear.geometry.limits import face_range, radius_limits
-from facegear.geometry.outline import pinion_outline
-from facegear.geometry.pinion import removed_depth
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.geometry.validate import MAX_RELIEF, check
-from facegear.mesh.quality import scaled_jacobians
-from facegear.mesh.sizes import named_sizes
-from facegear.mesh.tooth import gear_tooth, pinion_tooth
+from facegear.teeth.limits import face_range, radius_limits
+from facegear.teeth.mesh_quality import scaled_jacobians
+from facegear.teeth.mesh_sizes import named_sizes
+from facegear.teeth.pinion import removed_depth
+from facegear.teeth.tooth_mesh import gear_tooth, pinion_tooth
+from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.validate import MAX_RELIEF, check
 
 GEAR, MADE = "face_gear__modifications", "face_gear.modifications"
 

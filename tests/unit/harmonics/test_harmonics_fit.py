@@ -4,8 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.harmonics.fit import fit_harmonics
-from facegear.harmonics.series import Harmonics
+from facegear.harmonics import Harmonics, fit_harmonics
 
 GIVEN = Harmonics(np.array([0.0, 3.0, -1.0, 0.5]), np.array([40.0, 2.0, 0.7, -0.2]))
 
@@ -14,7 +13,7 @@ GIVEN = Harmonics(np.array([0.0, 3.0, -1.0, 0.5]), np.array([40.0, 2.0, 0.7, -0.
     "manufactured",
     "a series of three harmonics",
     capability="stiffness",
-    module="facegear.harmonics.fit",
+    module="facegear.harmonics",
 )
 @given(count=st.integers(8, 90))
 def test_a_series_sampled_often_enough_comes_back(count):

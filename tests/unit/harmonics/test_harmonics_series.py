@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from facegear.harmonics.series import Harmonics
+from facegear.harmonics import Harmonics
 
 SERIES = Harmonics(np.array([0.0, 2.0, -1.0]), np.array([10.0, 0.5, 3.0]))
 

@@ -14,10 +14,10 @@ from facegear.errors import CorruptFile, FacegearError
 from facegear.io import documents, tables
 from facegear.io.atomic import atomic_path, require_writable, require_writable_file
 from facegear.io.pictures import read_svg
-from facegear.plots.modal import mode_shapes
-from facegear.plots.save import save
+from facegear.pipeline.results.store import Store
+from facegear.report.figures.machine import mode_shapes
+from facegear.report.figures.save import save
 from facegear.report.page import Picture
-from facegear.results.store import Store
 
 CONFIG = str(Path(__file__).parents[3] / "config" / "harmonics_only.yaml")
 TEETH = ("--pinion-teeth", "25", "--face-gear-teeth", "160", "--module-mm", "4", "--torque-n-m", "100")

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from facegear.config.load import load_config
+from facegear.build.load import load_config
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io import arrays as array_files
 from facegear.io import columnar, documents, tables
@@ -80,7 +80,7 @@ def test_table_without_a_column_or_with_a_hole_is_named(tmp_path):
 def test_altered_file_is_found_by_its_manifest(tmp_path):
     path = tmp_path / "tvms.csv"
     tables.write(path, pd.DataFrame({"k_n_per_m": [4.1e8]}))
-    from facegear.provenance.manifest import write_manifest
+    from facegear.pipeline.provenance.manifest import write_manifest
 
     write_manifest(
         tmp_path / "tvms.provenance.json", [path], [], {"code": "x"}, "tvms", 0.1, "", "snakemake --force"

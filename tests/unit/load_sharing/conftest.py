@@ -3,9 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from facegear.config.load import load_config
-from facegear.config.machines import MachineInputs
-from facegear.harmonics.series import Harmonics
+from facegear.build.load import load_config
+from facegear.build.machine import MachineInputs
+from facegear.harmonics import Harmonics
 
 CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
 MEAN = 4.1e8

@@ -8,30 +8,31 @@ import pytest
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
-from facegear.config.base import parse
-from facegear.config.cases import expand_cases
-from facegear.config.dynamics import Dynamics
-from facegear.config.dynamics import settings as accuracy
-from facegear.config.load import load_config
-from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.machines import MachineInputs
-from facegear.config.model import Config
-from facegear.config.stiffness import MeshStiffness, given_series
-from facegear.dynamics.response_tables import response_table
-from facegear.load_sharing import reference
-from facegear.load_sharing.collect import NOMINAL, collect_tables
-from facegear.load_sharing.groups import split_groups
-from facegear.load_sharing.reference import (
-    REFERENCE_COLUMNS,
-    SPEED_COLUMNS,
-    reference_table,
-    speed_range_table,
+from facegear.build.cases import expand_cases
+from facegear.build.config import Config
+from facegear.build.load import load_config
+from facegear.build.machine import MachineInputs
+from facegear.build.plans import settings as accuracy
+from facegear.build.plans import sharing_options
+from facegear.machine.loaded_modes import frequency_table, shape_table, vibrating_machine
+from facegear.machine.modes import name_modes
+from facegear.motion.response_tables import response_table
+from facegear.schema.base import parse
+from facegear.schema.motion import Dynamics
+from facegear.schema.sharing import LoadSharing
+from facegear.schema.stiffness import MeshStiffness, given_series
+from facegear.sharing import reference
+from facegear.sharing.groups import split_groups
+from facegear.sharing.reference import REFERENCE_COLUMNS, SPEED_COLUMNS, reference_table, speed_range_table
+from facegear.sharing.run import load_sharing
+from facegear.sharing.tables import (
+    CURVE_COLUMNS,
+    NOMINAL,
+    SUMMARY_COLUMNS,
+    collect_tables,
+    curve_table,
+    summary_table,
 )
-from facegear.load_sharing.run import load_sharing
-from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
-from facegear.transmission.loaded_modes import vibrating_machine
-from facegear.transmission.modal_tables import frequency_table, shape_table
-from facegear.transmission.mode_classes import name_modes
 
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 SHORT = {"dwell_periods": 16, "settle_periods": 16, "window_periods": 16, "extensions": 0}

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import facegear
-from facegear.load_sharing.closed_form import SplitMachine
+from facegear.sharing.closed_form import SplitMachine
 
 STIFFNESS, ANGLE = 4.1e8, np.radians(25.0)
 

@@ -5,16 +5,16 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.dynamics.following import follow, slow_polynomials
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.load_sharing.hunting import hunting_cycle
-from facegear.load_sharing.running_machine import running, running_table
-from facegear.transmission.flanks import slow_errors
-from facegear.transmission.imperfections import Imperfections, Runout, perfect
-from facegear.transmission.layout import Role
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.flank_errors import slow_errors
+from facegear.machine.imperfections import Imperfections, Runout, perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role
+from facegear.motion.following import follow, slow_polynomials
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.sharing.hunting import hunting_cycle
+from facegear.sharing.running_machine import running, running_table
 
 LAYOUT = make_layout((("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=GEOMETRIC)
 TURNING = {
@@ -32,7 +32,7 @@ def machine_with(**errors):
     "analytic",
     "runouts as sines of the angles of turn",
     capability="following",
-    module="facegear.dynamics.following",
+    module="facegear.motion.following",
 )
 def test_the_slow_part_of_the_error_is_that_of_the_statics_and_has_no_jumps():
     model = build_model(machine_with(**TURNING))
@@ -68,7 +68,7 @@ def test_running_slowly_is_the_quasi_static_hunting_cycle():
     "analytic",
     "without anything that turns the motion is the periodic one",
     capability="following",
-    module="facegear.dynamics.following",
+    module="facegear.motion.following",
 )
 def test_with_nothing_that_turns_the_followed_motion_is_the_steady_state():
     machine = machine_with()
@@ -86,7 +86,7 @@ def test_with_nothing_that_turns_the_followed_motion_is_the_steady_state():
     "own convergence",
     "tolerance 1e-11, and the same cycles a turn later",
     capability="following",
-    module="facegear.dynamics.following",
+    module="facegear.motion.following",
 )
 def test_the_followed_motion_does_not_depend_on_the_step_and_repeats_after_the_turns():
     machine = machine_with(pinion_runout=TURNING["pinion_runout"])

@@ -7,16 +7,22 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import simulate
-from facegear.load_sharing import sensitivity
-from facegear.load_sharing.hunting import hunting_cycle, hunting_length
-from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
-from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
-from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import Role
-from facegear.transmission.machine import balanced_torques
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.imperfections import Runout, perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role
+from facegear.machine.machine import balanced_torques
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import simulate
+from facegear.sharing import sensitivity
+from facegear.sharing.hunting import (
+    bearing_table,
+    cycle_table,
+    group_table,
+    hunting_cycle,
+    hunting_length,
+    mesh_table,
+)
+from facegear.sharing.sensitivity import bearing_scan, sensitivities
 
 LAYOUT = make_layout(kinematics=GEOMETRIC)
 
@@ -37,7 +43,7 @@ CONSTANT = {
     "analytic",
     "least common multiple of the tooth numbers",
     capability="hunting",
-    module="facegear.load_sharing.hunting",
+    module="facegear.sharing.hunting",
 )
 def test_the_pattern_repeats_after_the_teeth_in_common():
     agrees("mesh cycles without runout", hunting_length(machine_with(**CONSTANT)), 1)
@@ -82,7 +88,7 @@ def test_meshes_without_an_even_share_have_no_mesh_load_factor_in_tables(monkeyp
     "analytic",
     "balance of torques",
     capability="hunting",
-    module="facegear.load_sharing.hunting",
+    module="facegear.sharing.hunting",
 )
 def test_the_hunting_cycle_balances_every_torque_to_rounding():
     run = hunting_cycle(machine_with(bearing_clearance=np.full(5, 20e-6), **RUNOUTS, **CONSTANT), 16, 100)
@@ -127,7 +133,7 @@ def test_free_idlers_between_stiff_bearings_come_to_rest_to_rounding_in_every_po
     "analytic",
     "a sine of pitch deviations is an eccentric gear",
     capability="hunting",
-    module="facegear.load_sharing.hunting",
+    module="facegear.sharing.hunting",
 )
 def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
     """A gear's teeth displaced by e sin(angle) along the pitch circle are an eccentric gear."""
@@ -149,10 +155,10 @@ def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
     "analytic",
     "periodicity of the hunting cycle",
     capability="hunting",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_the_same_pattern_returns_after_the_hunting_cycle():
-    from facegear.transmission.statics import equilibria
+    from facegear.machine.statics import equilibria
 
     machine = machine_with(**RUNOUTS)
     first = equilibria(machine, np.array([0.3, 11.7])).flank_forces
@@ -177,7 +183,7 @@ def test_statics_is_the_slow_limit_of_the_dynamics():
     "analytic",
     "balance of axial and tangential forces",
     capability="hunting",
-    module="facegear.load_sharing.hunting_tables",
+    module="facegear.sharing.hunting",
 )
 def test_tables_tell_loads_factors_and_bearings_of_every_part():
     run = hunting_cycle(machine_with(**CONSTANT), 8)
@@ -213,7 +219,7 @@ def test_sharing_falls_with_torque_and_floats_only_with_true_signs():
     "analytic",
     "a pinion out of place closes a mesh by twice its normal part",
     capability="hunting",
-    module="facegear.load_sharing.sensitivity",
+    module="facegear.sharing.sensitivity",
 )
 def test_a_sensitivity_is_the_closed_forms_slope():
     """Between held gears K = 1 + |F_u - F_l| / (F_u + F_l) and d(F_u - F_l)/dm = k / (1 + 2 k / k_in)."""

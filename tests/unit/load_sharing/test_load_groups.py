@@ -1,7 +1,7 @@
 from dataclasses import replace
 
-from facegear.load_sharing.groups import GroupKind, load_groups, split_groups
-from facegear.transmission.layout import Role
+from facegear.machine.layout import Role
+from facegear.sharing.groups import GroupKind, load_groups, split_groups
 
 
 def test_paper_layout_has_two_inputs_and_the_lower_meshes_of_three_idlers(paper_machine):

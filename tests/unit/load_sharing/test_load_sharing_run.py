@@ -7,19 +7,18 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.dynamics.track import SampledTrack, periodic_track
-from facegear.harmonics.series import Harmonics
-from facegear.load_sharing.coefficients import sharing_coefficient
-from facegear.load_sharing.options import SharingOptions, SpeedRange
-from facegear.load_sharing.reference import reference_table, slow_forces, speed_range_table
-from facegear.load_sharing.run import load_sharing, load_sharing_of_many, measured_motion
-from facegear.load_sharing.sampling import densely_sampled, same_orbit
-from facegear.load_sharing.statics import static_forces
-from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
-from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.imperfections import Runout, perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.motion.track import SampledTrack, periodic_track
+from facegear.sharing.even_shares import sharing_coefficient
+from facegear.sharing.options import SharingOptions, SpeedRange
+from facegear.sharing.reference import reference_table, slow_forces, speed_range_table, static_forces
+from facegear.sharing.run import load_sharing, load_sharing_of_many, measured_motion
+from facegear.sharing.statistics import densely_sampled, same_orbit
+from facegear.sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
 
 OPTIONS = SharingOptions(64, 24, 2, 2e-5, 0, 0.95, 60.0, SpeedRange(2000.0, 9000.0, 3))
 SETTINGS = Settings(tolerance=1e-4, settle=128)
@@ -47,7 +46,7 @@ def test_quasi_static_coefficient_tends_to_the_static_one_as_speed_falls(tight):
     "analytic",
     "runouts and backlash of single meshes are in no standing coefficient",
     capability="load_sharing_reference",
-    module="facegear.load_sharing.reference",
+    module="facegear.sharing.reference",
 )
 def test_what_a_run_is_held_against_leaves_out_what_it_says_of_every_mesh():
     """Runouts are in neither static nor slow motion; own e(t) and backlash go with the common ones."""
@@ -93,7 +92,7 @@ def test_without_errors_no_constant_error_and_no_pinion_out_of_place_is_left():
     "analytic",
     "mirror symmetry",
     capability="load_sharing",
-    module="facegear.load_sharing.run",
+    module="facegear.sharing.run",
 )
 def test_left_and_right_inputs_share_alike_where_the_machine_is_symmetric(tight):
     sharing = load_sharing(tight, 3000.0, SETTINGS, OPTIONS)
@@ -147,7 +146,7 @@ def test_lost_contact_shows_where_a_coefficient_reaches_its_bound(paper_machine)
     "analytic",
     "143 teeth at 7500 rpm of 23",
     capability="load_sharing",
-    module="facegear.load_sharing.tables",
+    module="facegear.sharing.tables",
 )
 def test_tables_hold_one_cycle_of_each_group_inside_its_envelope(paper_machine):
     sharing = load_sharing(paper_machine, 7500.0, SETTINGS, OPTIONS)
@@ -165,7 +164,7 @@ def test_tables_hold_one_cycle_of_each_group_inside_its_envelope(paper_machine):
     "analytic",
     "limit of no speed: static equilibrium",
     capability="load_sharing_reference",
-    module="facegear.load_sharing.reference",
+    module="facegear.sharing.reference",
 )
 def test_without_backlash_and_error_dynamics_vanish_at_low_speed_in_every_group(tight):
     table = reference_table(tight, SETTINGS, OPTIONS).set_index(["quantity", "group"])["mean"]
@@ -212,7 +211,7 @@ def test_a_slow_approach_to_an_orbit_is_not_called_a_torus(paper_machine):
     "own convergence",
     "4096 samples a cycle",
     capability="load_sharing",
-    module="facegear.dynamics.track",
+    module="facegear.motion.track",
 )
 @pytest.mark.parametrize("speed", [5000.0, 10_000.0])
 def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_samples(paper_machine, speed):
@@ -230,7 +229,7 @@ def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_s
     "manufactured",
     "a sum of sines and cosines",
     capability="load_sharing",
-    module="facegear.dynamics.track",
+    module="facegear.motion.track",
 )
 @given(
     waves=st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=7),

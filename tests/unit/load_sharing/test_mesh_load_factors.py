@@ -9,13 +9,12 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.load_sharing.even_shares import even_shares
-from facegear.load_sharing.hunting import hunting_cycle
-from facegear.load_sharing.hunting_tables import group_table, mesh_table
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import balanced_torques
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.machine import balanced_torques
+from facegear.sharing.even_shares import even_shares
+from facegear.sharing.hunting import group_table, hunting_cycle, mesh_table
 
 LAYOUT = make_layout(kinematics=GEOMETRIC)
 ARM = LAYOUT.pinion_arm
@@ -26,7 +25,7 @@ torques = st.floats(50.0, 5000.0)
     "analytic",
     "an engine alone on its mesh carries its own torque",
     capability="hunting",
-    module="facegear.load_sharing.hunting_tables",
+    module="facegear.sharing.hunting",
 )
 def test_three_engines_of_unequal_torque_that_share_nothing_have_a_mesh_load_factor_of_one():
     places = tuple((name, Role.INPUT, 30.0 * i) for i, name in enumerate("abc"))
@@ -43,7 +42,7 @@ def test_three_engines_of_unequal_torque_that_share_nothing_have_a_mesh_load_fac
     "analytic",
     "balance of torques with even shares, by hand",
     capability="hunting duty_loads",
-    module="facegear.load_sharing.even_shares",
+    module="facegear.sharing.even_shares",
 )
 @given(per_input=torques, tail_share=st.floats(0.0, 0.3), lower=st.floats(-500.0, 0.0))
 def test_even_shares_hold_every_body_in_balance(per_input, tail_share, lower):

@@ -13,7 +13,10 @@ from idler_machines import ANGLE, ARM, BEARING, FLOATING, HELD, STIFFNESS, TORQU
 from lumped_machines import make_layout
 from references import against, agrees
 
-from facegear.load_sharing.closed_form import (
+from facegear.machine.assembly import assembly
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role
+from facegear.sharing.closed_form import (
     SplitMachine,
     k_gamma_samples,
     parting_number,
@@ -21,9 +24,6 @@ from facegear.load_sharing.closed_form import (
     plane_freedom,
     share_deviation,
 )
-from facegear.transmission.assembly import assembly
-from facegear.transmission.layout import Role
-from facegear.transmission.teeth import GEOMETRIC
 
 TOTAL = TORQUE / ARM
 LATE_UM = 30.0
@@ -51,7 +51,7 @@ def path_stiffness():
     "external source",
     "Singh 2010, formula and public numbers for idlers",
     capability="sharing_map",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize(("idlers", "upper"), list(SHARES))
 def test_shares_of_idlers_are_the_printed_ones(idlers, upper):
@@ -75,7 +75,7 @@ def test_shares_of_idlers_are_the_printed_ones(idlers, upper):
     "external source",
     "Singh 2010, thresholds 1 / (N - 3) and 1 / (N - 1)",
     capability="sharing_map",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize(("idlers", "upper"), [(3, HELD), (5, HELD), (5, FLOATING), (6, FLOATING)])
 def test_a_late_path_parts_at_the_number_of_the_closed_form(idlers, upper):
@@ -104,7 +104,7 @@ PLANETS = {
     "external source",
     "Singh 2010, four to six planets around a floating sun, one of them out of place",
     capability="sharing_map",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize("planets", list(PLANETS))
 def test_shares_of_idlers_are_those_of_planets_around_a_floating_sun(planets):
@@ -120,7 +120,7 @@ def test_shares_of_idlers_are_those_of_planets_around_a_floating_sun(planets):
     "second implementation",
     "formula of Singh 2010, enumeration of all contact sets at X_e = 0.8",
     capability="sharing_map",
-    module="facegear.transmission.block_statics",
+    module="facegear.machine.block_statics",
 )
 @pytest.mark.parametrize("upper", list(PARTED))
 def test_shares_past_the_loss_of_contact_are_the_enumerated_ones(upper):
@@ -133,7 +133,7 @@ def test_shares_past_the_loss_of_contact_are_the_enumerated_ones(upper):
     "second implementation",
     "formula of Singh 2010, percentiles of 4e6 samples drawn for this project",
     capability="sharing_map",
-    module="facegear.load_sharing.closed_form",
+    module="facegear.sharing.closed_form",
 )
 @pytest.mark.parametrize(("paths", "freedom"), list(PERCENTILES))
 def test_percentiles_of_samples_hold_the_printed_ones_in_their_intervals(paths, freedom):
@@ -151,7 +151,7 @@ def test_percentiles_of_samples_hold_the_printed_ones_in_their_intervals(paths, 
     "external source",
     "Singh 2010, X sqrt(N (N - 3)) and X sqrt(N (N - 1))",
     capability="sharing_map",
-    module="facegear.load_sharing.closed_form",
+    module="facegear.sharing.closed_form",
 )
 @pytest.mark.parametrize(("paths", "freedom"), [(3, 0.0), (3, 1.0), (5, 0.0), (5, 1.0), (6, 0.4)])
 def test_deviation_of_a_share_is_that_of_the_samples(paths, freedom):
@@ -177,7 +177,7 @@ def fits_at(place, teeth):
     "external source",
     "Zhao and Li 2018, whole pitches between the pinions of a concentric face gear",
     capability="sharing_map",
-    module="facegear.transmission.assembly",
+    module="facegear.machine.assembly",
 )
 @pytest.mark.parametrize("teeth", [120, 143])
 def test_every_layout_of_whole_pitches_can_be_assembled(teeth):

@@ -7,11 +7,11 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.load_sharing.hunting import at_cycles, hunting_cycle, largest
-from facegear.load_sharing.sensitivity import sensitivities
-from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import Role
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.imperfections import Runout, perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role
+from facegear.sharing.hunting import at_cycles, hunting_cycle, largest
+from facegear.sharing.sensitivity import sensitivities
 
 LAYOUT = make_layout((("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=GEOMETRIC)
 STEP = 0.02e-6
@@ -25,7 +25,7 @@ def machine_with(**errors):
     "second implementation",
     "differences over all positions of the whole hunting cycle",
     capability="hunting",
-    module="facegear.load_sharing.sensitivity",
+    module="facegear.sharing.sensitivity",
 )
 @pytest.mark.parametrize(
     "runouts",
@@ -59,7 +59,7 @@ def test_the_sensitivity_to_a_runout_is_that_of_all_positions_of_the_hunting_cyc
     "analytic",
     "a pinion alone on a gear carries its torque",
     capability="hunting",
-    module="facegear.load_sharing.sensitivity",
+    module="facegear.sharing.sensitivity",
 )
 def test_a_runout_that_no_mesh_feels_changes_nothing():
     """One pinion on one gear: its load is its torque's, whatever its teeth do; -0.188 per um was written."""

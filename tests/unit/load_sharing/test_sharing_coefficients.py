@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 from references import against, agrees
 
-from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
+from facegear.sharing.even_shares import lost_contact, sharing_coefficient
 
 FORCE = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda x: 0.0 if abs(x) < 1e-3 else x)
 LOADS = array_shapes(min_dims=2, max_dims=2, min_side=2, max_side=6).flatmap(
@@ -43,7 +43,7 @@ def test_coefficient_ignores_flank_and_scale_of_the_load(forces, factor):
     "analytic",
     "definition of the coefficient at its limits",
     capability="load_sharing",
-    module="facegear.load_sharing.coefficients",
+    module="facegear.sharing.even_shares",
 )
 @pytest.mark.parametrize("paths", [2, 3, 7])
 @given(force=st.floats(1e-2, 1e6))
@@ -58,7 +58,7 @@ def test_equal_loads_give_one_and_a_single_carrier_gives_the_number_of_paths(pat
     "external source",
     "the paper, equations 25 and 26",
     capability="load_sharing",
-    module="facegear.load_sharing.coefficients",
+    module="facegear.sharing.even_shares",
 )
 def test_equations_25_and_26_by_hand():
     agrees("coefficient of two paths", sharing_coefficient(np.array([300.0, -100.0])), 1.5, relative=1e-6)

@@ -11,14 +11,13 @@ from test_closed_form import config_of
 
 import facegear
 from facegear.errors import ConfigErrors
-from facegear.harmonics.series import Harmonics
-from facegear.load_sharing.drawn_paths import LEVELS, draws
-from facegear.load_sharing.groups import GroupKind
-from facegear.load_sharing.mapped_machine import MappedMachine, groups_of_kind
-from facegear.load_sharing.options import MapOptions
-from facegear.load_sharing.path_changes import floated, with_half_backlash, with_scaled_bearings
+from facegear.harmonics import Harmonics
+from facegear.machine.layout import Role, Side
 from facegear.report.sharing_map import sharing_map_tables, sharing_map_text
-from facegear.transmission.layout import Role, Side
+from facegear.sharing.groups import GroupKind
+from facegear.sharing.mapped_machine import MappedMachine, groups_of_kind
+from facegear.sharing.options import MapOptions
+from facegear.sharing.path_changes import LEVELS, draws, floated, with_half_backlash, with_scaled_bearings
 
 SPLIT = config_of(3, 1e8, 1e9, 30.0)
 MAP = {"mesh_deviation_um": 5.0, "position_deviation_um": 5.0, "samples": 200, "points": 4}
@@ -33,7 +32,7 @@ def make_split(**changes):
     "analytic",
     "closed form of equal paths, while all carry",
     capability="sharing_map",
-    module="facegear.load_sharing.sharing_map",
+    module="facegear.sharing.sharing_map",
 )
 @pytest.mark.parametrize("upper", [HELD, 3e8, FLOATING])
 def test_curves_of_equal_idlers_are_the_closed_form(upper):
@@ -50,7 +49,7 @@ def test_curves_of_equal_idlers_are_the_closed_form(upper):
     "analytic",
     "loop formula of docs/explanation/theory.md",
     capability="sharing_map",
-    module="facegear.load_sharing.sharing_map",
+    module="facegear.sharing.sharing_map",
 )
 def test_curves_of_inputs_are_the_loop_formula():
     inputs = make_split().sharing_map().inputs()
@@ -62,7 +61,7 @@ def test_curves_of_inputs_are_the_loop_formula():
     "external source",
     "Singh 2010: X_e alone decides",
     capability="sharing_map",
-    module="facegear.load_sharing.sharing_map",
+    module="facegear.sharing.sharing_map",
 )
 @pytest.mark.parametrize("sides", [(), (Side.UPPER,)])
 def test_curves_of_a_hundred_random_machines_collapse_where_paths_part_too(sides):
@@ -112,7 +111,7 @@ CHANGED = {
     "second implementation",
     "the changed config, put at rest",
     capability="sharing_map",
-    module="facegear.load_sharing.sharing_advice",
+    module="facegear.sharing.sharing_advice",
 )
 @pytest.mark.parametrize("words", list(CHANGED))
 def test_each_advice_is_what_statics_of_the_changed_config_find(words):

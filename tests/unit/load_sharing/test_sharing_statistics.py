@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from facegear.load_sharing.coefficients import sharing_coefficient
-from facegear.load_sharing.statistics import average, held_over_starts
+from facegear.sharing.even_shares import sharing_coefficient
+from facegear.sharing.statistics import average, held_over_starts
 
 
 def averaged(values, periodic=False):

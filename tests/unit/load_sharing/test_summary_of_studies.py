@@ -5,16 +5,15 @@ import numpy as np
 import pandas as pd
 from references import against, agrees
 
-from facegear.config.base import parse
-from facegear.config.load import load_config
-from facegear.config.machine_layout import ToothNumbers, layout
-from facegear.config.transmission import Transmission
+from facegear.build.load import load_config
+from facegear.build.machine_layout import ToothNumbers, layout
 from facegear.io.files import write_part
-from facegear.load_sharing.study_forces import force_table
+from facegear.pipeline.stages.sharing import load_sharing_summary, study_forces
 from facegear.pipeline.table import STAGES
-from facegear.plots.study_forces import figures
-from facegear.stages.load_sharing_summary import load_sharing_summary
-from facegear.stages.study_forces import study_forces
+from facegear.report.figures.sharing import study_forces_figures
+from facegear.schema.base import parse
+from facegear.schema.transmission import Transmission
+from facegear.sharing.tables import force_table
 
 POINTS = [("backlash", "0", "80 um"), ("backlash", "1", "120 um"), ("bearing", "0", "soft")]
 
@@ -23,7 +22,7 @@ POINTS = [("backlash", "0", "80 um"), ("backlash", "1", "120 um"), ("bearing", "
     "manufactured",
     "tables of four cases",
     capability="load_sharing_summary",
-    module="facegear.load_sharing.collect",
+    module="facegear.sharing.tables",
 )
 def test_each_case_stands_in_the_summary_with_its_own_numbers_and_in_its_own_study():
     means = [1.1, 1.2, 1.3, 1.4]
@@ -50,7 +49,7 @@ MEAN = (3000.0, 1000.0, 2000.0, 500.0, 700.0, 600.0)
     "manufactured",
     "forces of two cases",
     capability="load_sharing",
-    module="facegear.load_sharing.study_forces",
+    module="facegear.sharing.tables",
 )
 def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_force_beside_the_number():
     positions = [("right input", "input", 0.0), ("idler", "idler", 90.0), ("tail", "tail", 200.0)]
@@ -80,7 +79,7 @@ def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_f
     "manufactured",
     "forces of two cases",
     capability="study_forces",
-    module="facegear.stages.study_forces",
+    module="facegear.pipeline.stages.sharing",
 )
 def test_the_forces_of_every_case_stand_beside_the_number_that_is_its_own():
     cases = [("web", name, "web (mm)", "", "key", value) for name, value in (("a", 8.0), ("b", 10.0))]
@@ -119,7 +118,7 @@ def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
     )
     write_part(str(tmp_path / "forces.csv"), table)
     stored = STAGES["study_forces"].files["forces"].read(tmp_path / "forces.csv")
-    (figure,) = figures(stored, {"web": "Web"})
+    (figure,) = study_forces_figures(stored, {"web": "Web"})
     split, largest = ({mark.name: mark for mark in panel.marks if not mark.hollow} for panel in figure.panels)
     assert points(split["b/lower"]) == [(8.0, 50.0), (12.0, 40.0)]
     assert "a/lower" not in split
@@ -127,7 +126,9 @@ def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
     (hollow,) = [mark for mark in figure.panels[1].marks if mark.hollow]
     assert points(hollow) == [(8.0, 5.0)]
     assert figure.panels[1].x.label == "web (mm)"
-    (stiff,) = figures(stored.assign(axis="bearings (N/m)", number=1e6 * stored["number"]), {"web": "Web"})
+    (stiff,) = study_forces_figures(
+        stored.assign(axis="bearings (N/m)", number=1e6 * stored["number"]), {"web": "Web"}
+    )
     assert stiff.panels[1].x.label == "bearings (N/µm)", "7,000,000,000 N/m stood below the axis"
     assert points(stiff.panels[0].marks[0]) == [(8.0, 50.0), (12.0, 40.0)]
 

@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout
 
-from facegear.load_sharing.coefficients import sharing_coefficient
-from facegear.load_sharing.groups import load_groups
-from facegear.load_sharing.statistics import defined_mean
-from facegear.load_sharing.tally import tally
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.sharing.even_shares import sharing_coefficient
+from facegear.sharing.groups import load_groups
+from facegear.sharing.quantities import tally
+from facegear.sharing.statistics import defined_mean
 
 LAYOUT = make_layout(kinematics=GEOMETRIC)
 GROUPS = load_groups(LAYOUT)

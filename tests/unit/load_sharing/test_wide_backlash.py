@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from idler_machines import make_idlers
 
-from facegear.harmonics.series import Harmonics
-from facegear.load_sharing.groups import GroupKind
-from facegear.load_sharing.mapped_machine import MappedMachine, groups_of_kind
-from facegear.load_sharing.path_changes import with_half_backlash, with_scaled_bearings
-from facegear.transmission.layout import Role
+from facegear.harmonics import Harmonics
+from facegear.machine.layout import Role
+from facegear.sharing.groups import GroupKind
+from facegear.sharing.mapped_machine import MappedMachine, groups_of_kind
+from facegear.sharing.path_changes import with_half_backlash, with_scaled_bearings
 
 MESHES, TORQUE, BEARINGS = 7.9, 0.42, 0.7
 """Factors on stiffness of the meshes, torque and stiffness of the bearings, of a machine drawn at random."""

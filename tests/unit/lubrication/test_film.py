@@ -9,10 +9,9 @@ from references import against, agrees
 from spur_path import c40
 
 from facegear.contact.hertz import contact_modulus, strip_pressure
-from facegear.lubrication.film import elliptic_film, line_film, shear_heating
+from facegear.lubrication.film import elliptic_film, line_film, local_film, shear_heating, sliding_factor
 from facegear.lubrication.flash import flash
 from facegear.lubrication.kinematics import slip
-from facegear.lubrication.micropitting import local_film, sliding_factor
 from facegear.lubrication.request import STEEL as HEATED
 
 MODULUS = contact_modulus((STEEL, STEEL))
@@ -77,7 +76,7 @@ def test_worked_point_has_the_film_of_dowson_and_higginson_and_gupta_s_factor():
     "external source",
     "worked point of C40 gears by the formulas of its sources",
     capability="lubrication",
-    module="facegear.lubrication.micropitting",
+    module="facegear.lubrication.film",
 )
 def test_worked_point_has_the_specific_film_of_the_micropitting_standard():
     load, radius, u1, u2, pressure, half, sliding = worked_point()

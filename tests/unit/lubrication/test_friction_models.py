@@ -15,9 +15,11 @@ from facegear.lubrication.friction import (
     Doleschel,
     Iso633620,
     Iso633622,
-    Rubbing,
     Schlenk,
     Xu,
+)
+from facegear.lubrication.friction_formulas import (
+    Rubbing,
     benedict_kelley,
     iso_6336_20,
     iso_6336_22,

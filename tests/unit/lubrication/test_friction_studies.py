@@ -6,14 +6,14 @@ import pandas as pd
 import pytest
 from references import against, agrees
 
-from facegear.config.base import parse
-from facegear.config.cases import expand_cases
-from facegear.config.load import load_config
-from facegear.config.model import Config, resolved_values
+from facegear.build.cases import expand_cases
+from facegear.build.config import Config, resolved_values
+from facegear.build.load import load_config
+from facegear.pipeline.contact_studies import friction_cases, friction_points, friction_studied
 from facegear.pipeline.needs import shared_sources
 from facegear.pipeline.stage import Case
-from facegear.pipeline.studies import friction_cases, friction_points, friction_studied
-from facegear.stages.friction_studies import friction_studies
+from facegear.pipeline.stages.friction import friction_studies
+from facegear.schema.base import parse
 
 CONFIG = Path(__file__).parents[3] / "config" / "friction.yaml"
 STUDIED = {
@@ -54,7 +54,7 @@ def test_a_study_of_oil_temperature_roughness_speed_or_torque_is_set_beside_the_
     "manufactured",
     "tables of two cases",
     capability="friction_studies",
-    module="facegear.stages.friction_studies",
+    module="facegear.pipeline.stages.friction",
 )
 def test_each_case_tells_the_machine_s_loss_and_its_hottest_mesh_at_the_nominal_load():
     meshes = pd.DataFrame(

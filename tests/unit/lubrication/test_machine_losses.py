@@ -51,7 +51,7 @@ def test_the_concentric_machine_loses_what_the_power_of_its_meshes_loses():
     "analytic",
     "balance of heat",
     capability="machine_loss",
-    module="facegear.stages.machine_loss",
+    module="facegear.pipeline.stages.friction",
 )
 def test_mesh_losses_machine_loss_and_heat_of_the_bodies_are_one_sum(gearbox):
     found = gearbox.losses()

@@ -3,7 +3,7 @@
 import numpy as np
 from references import against, agrees
 
-from facegear.lubrication.scuffing import (
+from facegear.lubrication.film import (
     allowed_flash_temperature,
     allowed_integral_temperature,
     integral_temperature,
@@ -15,7 +15,7 @@ from facegear.lubrication.scuffing import (
     "external source",
     "worked pair of ISO/TS 6336-20 and -21",
     capability="lubrication",
-    module="facegear.lubrication.scuffing",
+    module="facegear.lubrication.film",
 )
 def test_allowed_temperatures_are_those_of_the_worked_pair():
     agrees(
@@ -36,7 +36,7 @@ def test_allowed_temperatures_are_those_of_the_worked_pair():
     "external source",
     "worked pair of ISO/TS 6336-21",
     capability="lubrication",
-    module="facegear.lubrication.scuffing",
+    module="facegear.lubrication.film",
 )
 def test_integral_temperature_of_the_worked_pair():
     """Flash at the tip times X_eps along the path; the pair's bulk is the oil's 80 C and 0.7 X_S of it."""

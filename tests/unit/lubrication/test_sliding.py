@@ -12,17 +12,11 @@ from references import against, agrees
 from spur_path import c40
 
 from facegear.contact.lines import contact_lines
-from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.pinion_surface import fillet_points, flank_points
-from facegear.geometry.placement import body_rotation, pinion_to_gear
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.lubrication.kinematics import (
-    line_kinematics,
-    pinion_pose,
-    slip,
-    spins,
-    surface_normals,
-)
+from facegear.lubrication.kinematics import line_kinematics, pinion_pose, slip, spins, surface_normals
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.placement import body_rotation, pinion_to_gear
+from facegear.teeth.surfaces import fillet_points, flank_points
+from facegear.teeth.unloaded import unloaded_contact
 
 PAIR = pair_design()
 RATIO = 23 / 143

@@ -4,9 +4,9 @@ from math import radians
 
 import pytest
 
-from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.mesh.sizes import named_sizes
-from facegear.mesh.tooth import gear_tooth, pinion_tooth
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.mesh_sizes import named_sizes
+from facegear.teeth.tooth_mesh import gear_tooth, pinion_tooth
 
 
 @pytest.fixture(scope="session")

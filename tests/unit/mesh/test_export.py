@@ -13,10 +13,9 @@ from mesh_files import read_msh
 from references import against, agrees
 
 from facegear.io.gmsh_session import gmsh_session
-from facegear.mesh.export import write_files
-from facegear.mesh.orderings import SERENDIPITY20, VTK27
-from facegear.mesh.quality import volume
-from facegear.mesh.sector import sector
+from facegear.teeth.mesh_files import SERENDIPITY20, VTK27, write_files
+from facegear.teeth.mesh_quality import volume
+from facegear.teeth.tooth_mesh import sector
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +42,7 @@ def test_msh_keeps_volume_and_named_groups(written):
     "third-party program",
     "gmsh: volume of all elements of the file",
     capability="mesh",
-    module="facegear.mesh.export",
+    module="facegear.teeth.mesh_files",
 )
 def test_gmsh_measures_the_same_volume_and_no_inverted_element(written):
     merged, (msh, _, _), table = written
@@ -62,7 +61,7 @@ def test_gmsh_measures_the_same_volume_and_no_inverted_element(written):
     "third-party program",
     "meshio reads the file",
     capability="mesh",
-    module="facegear.mesh.export",
+    module="facegear.teeth.mesh_files",
 )
 def test_vtu_holds_the_same_cells(written):
     merged, (_, vtu, _), _ = written

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from facegear.errors import GeometryError
-from facegear.mesh.quality import scaled_jacobians, volume
-from facegear.mesh.sector import sector
+from facegear.teeth.mesh_quality import scaled_jacobians, volume
+from facegear.teeth.tooth_mesh import sector
 
 
 def test_three_teeth_share_two_cuts(tooth):

@@ -9,12 +9,11 @@ from references import against, agrees
 from skfem import ElementHex2, FacetBasis
 
 from facegear.errors import InvalidInput
-from facegear.geometry import face_gear, pinion
-from facegear.geometry.fillets import smallest_radius
-from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.quality import require_right_side_out, scaled_jacobians, volume
-from facegear.mesh.sizes import RESOLUTIONS, named_sizes, thin_fillet
-from facegear.mesh.tooth import CORNERS, gear_tooth, pinion_tooth
+from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth.curvature import smallest_radius
+from facegear.teeth.mesh_quality import hex_mesh, require_right_side_out, scaled_jacobians, volume
+from facegear.teeth.mesh_sizes import RESOLUTIONS, named_sizes, thin_fillet
+from facegear.teeth.tooth_mesh import CORNERS, gear_tooth, pinion_tooth
 
 
 def surface_points(design, body, name, grid):
@@ -23,14 +22,14 @@ def surface_points(design, body, name, grid):
         return pinion.cartesian(*section(design, grid.u), grid.v)
     if name == "flank":
         return face_gear.flank_point(design, grid.u, grid.v)
-    return face_gear.cylindrical(grid.v, *face_gear.fillet_section(design, grid.v, grid.u))
+    return face_gear.cylindrical(grid.v, *face_gear_fillet.fillet_section(design, grid.v, grid.u))
 
 
 @against(
     "analytic",
     "equations of flank and fillet",
     capability="mesh",
-    module="facegear.mesh.tooth",
+    module="facegear.teeth.tooth_mesh",
 )
 @pytest.mark.parametrize("level", RESOLUTIONS)
 @pytest.mark.parametrize("build", [pinion_tooth, gear_tooth])
@@ -94,7 +93,7 @@ def test_one_cut_face_turned_by_a_pitch_is_the_other(tooth):
     "analytic",
     "Gauss' theorem: closed surface and volume",
     capability="mesh",
-    module="facegear.mesh.tooth",
+    module="facegear.teeth.tooth_mesh",
 )
 def test_boundary_groups_close_the_tooth(tooth):
     """Every boundary face belongs to exactly one group, and the outward area vectors of all cancel."""
@@ -139,7 +138,7 @@ def test_elements_are_conforming(tooth):
     "own convergence",
     "volume of the next finer level",
     capability="mesh",
-    module="facegear.mesh.tooth",
+    module="facegear.teeth.tooth_mesh",
 )
 def test_volume_error_falls_eightfold_or_more_from_level_to_rung(design):
     """Only the profile size halves, width and thickness fall less: short of the O(h^4) of the geometry."""
@@ -166,7 +165,7 @@ def test_straight_corner_view_is_right_handed(tooth):
     "analytic",
     "area between involute and chamfer times the width",
     capability="mesh",
-    module="facegear.mesh.tooth",
+    module="facegear.teeth.tooth_mesh",
 )
 def test_tip_chamfer_is_part_of_the_outline(design):
     chamfered = replace(design, pinion=replace(design.pinion, tip_chamfer=0.3e-3))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.system import System
-from facegear.harmonics.series import Harmonics
-from facegear.mesh_law.linear import LinearLaw, Piecewise, linear_law
+from facegear.harmonics import Harmonics
+from facegear.meshing.linear import LinearLaw, Piecewise, linear_law
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.system import System
 
 PHASES = np.array([0.0, 0.28, 0.7])
 SERIES = [

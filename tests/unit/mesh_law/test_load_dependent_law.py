@@ -8,9 +8,9 @@ from force_tables import power_table, two_pairs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.mesh_law.force_table import ForceTable, shift_tables
-from facegear.mesh_law.load_dependent import load_dependent_law
-from facegear.transmission.block_statics import Springs, settle_all
+from facegear.machine.block_statics import Springs, settle_all
+from facegear.meshing.force_table import ForceTable, shift_tables
+from facegear.meshing.load_dependent import load_dependent_law
 
 AMOUNTS = np.append(np.linspace(0.0, 5.0, 83), [1e-6, 3e-5])
 LAW = load_dependent_law(shift_tables(2 * [power_table(12, 0.3)], [0.0, 0.2]))

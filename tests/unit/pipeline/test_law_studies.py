@@ -1,9 +1,9 @@
 """Studies of the mesh law: its other laws are laid over the machine's own."""
 
-from facegear.config.cases import expand_cases
-from facegear.config.load import load_config
+from facegear.build.cases import expand_cases
+from facegear.build.load import load_config
+from facegear.pipeline.contact_studies import law_figures, law_labels, other_laws
 from facegear.pipeline.stage import Case
-from facegear.pipeline.studies import law_figures, law_labels, other_laws
 
 
 def case_of(name):

@@ -5,11 +5,11 @@ import scipy.linalg  # noqa: F401 - its BLAS is loaded before threads are set
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import facegear
-from facegear.contact import pair
+from facegear.contact import gear_flank
 from facegear.errors import FacegearError
 from facegear.pipeline.run import call
+from facegear.pipeline.stages import machine
 from facegear.pipeline.table import STAGES
-from facegear.stages import modal
 
 pytestmark = pytest.mark.xdist_group("notebooks")
 
@@ -55,8 +55,8 @@ def _pinion_flank(gearbox):
 @pytest.mark.parametrize(
     ("module", "name", "answer"),
     [
-        (pair, "flank_compliance", _pinion_flank),
-        (modal, "frequency_table", lambda gearbox: gearbox.modes()),
+        (gear_flank, "flank_compliance", _pinion_flank),
+        (machine, "frequency_table", lambda gearbox: gearbox.modes()),
     ],
 )
 def test_the_door_computes_on_one_blas_thread(two_threads, monkeypatch, module, name, answer):

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from facegear.plots.description import Axis, Curve, Figure, Panel
-from facegear.plots.draw_matplotlib import STYLE
-from facegear.plots.save import save
+from facegear.report.figures.description import Axis, Figure, Panel
+from facegear.report.figures.draw_matplotlib import STYLE
+from facegear.report.figures.marks import Curve
+from facegear.report.figures.save import save
 
 
 def figure():

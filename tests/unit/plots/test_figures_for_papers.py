@@ -8,8 +8,8 @@ from matplotlib.text import Text
 
 import facegear
 from facegear.errors import FacegearError
-from facegear.report.units import value_in_words
-from facegear.results.load_sharing import LoadSharingResult
+from facegear.pipeline.results.sharing import LoadSharingResult
+from facegear.report.table import value_in_words
 
 
 def texts(figure):

@@ -7,17 +7,15 @@ import pytest
 from contact_patterns import line_arrays
 from matplotlib.text import Text
 
-from facegear.contact.columns import LTCA_COLUMNS, SHARES
-from facegear.plots.campbell import campbell
-from facegear.plots.compare import curves_compared
-from facegear.plots.contact import close_pitch, contact_pattern
-from facegear.plots.draw_matplotlib import draw
-from facegear.plots.dynamics import drawn_machine
-from facegear.plots.load_sharing import sharing_figure
-from facegear.plots.modal import amplitudes, mode_shapes, typical_modes
-from facegear.plots.response import deflections
-from facegear.plots.save import save
-from facegear.plots.tooth_pair import separation
+from facegear.contact.pattern import LTCA_COLUMNS, SHARES
+from facegear.report.figures.comparison import curves_compared
+from facegear.report.figures.contact import close_pitch, contact_pattern
+from facegear.report.figures.draw_matplotlib import draw
+from facegear.report.figures.machine import amplitudes, mode_shapes, typical_modes
+from facegear.report.figures.motion import campbell, deflections, drawn_machine
+from facegear.report.figures.save import save
+from facegear.report.figures.sharing import sharing_figure
+from facegear.report.figures.teeth import separation
 
 
 @pytest.fixture

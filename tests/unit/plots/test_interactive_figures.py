@@ -5,26 +5,24 @@ import json
 import numpy as np
 import pytest
 
-from facegear.plots.description import (
+from facegear.report.figures.description import Axis, Figure, Panel
+from facegear.report.figures.draw_matplotlib import draw
+from facegear.report.figures.draw_plotly import interactive
+from facegear.report.figures.marks import (
     Area,
     Arrow,
-    Axis,
     Band,
     Bars,
     ColourScale,
     Curve,
-    Figure,
     Levels,
     Line,
     Map,
-    Panel,
     Scatter,
     Span,
     Text,
 )
-from facegear.plots.draw_matplotlib import draw
-from facegear.plots.draw_plotly import interactive
-from facegear.plots.save import save
+from facegear.report.figures.save import save
 
 SPEED, FORCE = Axis("Pinion speed", "rpm"), Axis("RMS of d", "µm", "without its mean")
 

@@ -6,10 +6,10 @@ import pandas as pd
 import pytest
 
 import facegear
-from facegear.config.changes import TEETH
-from facegear.config.machine_layout import wired_layout
-from facegear.plots.draw_matplotlib import draw
-from facegear.plots.gearbox_layout import HALF_FACE, layout_figure
+from facegear.build.machine_layout import wired_layout
+from facegear.report.figures.draw_matplotlib import draw
+from facegear.report.figures.machine import HALF_FACE, layout_figure
+from facegear.schema.changes import TEETH
 
 
 def drawn(gears, names):

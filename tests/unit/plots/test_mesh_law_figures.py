@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 from force_tables import power_table
 
-from facegear.plots.description import Text
-from facegear.plots.mesh_law import figures, load_figures
-from facegear.stiffness.load_dependent import law_arrays
+from facegear.meshing.fitted_law import law_arrays
+from facegear.report.figures.marks import Text
+from facegear.report.figures.stiffness import law_load_figures, mesh_law_figures
 
 LOADS = pd.DataFrame(
     {
@@ -34,7 +34,7 @@ def sweep(size):
 
 def test_lines_over_a_pitch_are_the_forces_of_the_table_at_the_deflections_beside_them():
     table = power_table(20, 0.2, 1e-6, 6e-5, 5e10)
-    lines, surface = figures(law_arrays([table], np.zeros((2, 2), dtype=int)))
+    lines, surface = mesh_law_figures(law_arrays([table], np.zeros((2, 2), dtype=int)))
     (panel,) = lines.panels
     assert panel.marks[-1].text == panel.marks[-2].name == "60 µm"
     phases, forces = panel.marks[-2].x, panel.marks[-2].y
@@ -44,14 +44,14 @@ def test_lines_over_a_pitch_are_the_forces_of_the_table_at_the_deflections_besid
 
 
 def test_a_mesh_that_goes_past_its_table_says_for_how_much_of_the_time():
-    (figure,) = load_figures(LOADS, sweep(1.0), [], ["load-dependent"])
+    (figure,) = law_load_figures(LOADS, sweep(1.0), [], ["load-dependent"])
     texts = [mark.text for mark in figure.panels[0].marks if isinstance(mark, Text)]
     assert texts == ["12 % of the time past it"]
 
 
 def test_sweeps_of_both_laws_lie_over_each_other_in_a_panel_for_each_mesh_of_one_gear():
     laws = ["load-dependent", "constant stiffness"]
-    _, figure = load_figures(LOADS, sweep(1.0), [sweep(2.0)], laws)
+    _, figure = law_load_figures(LOADS, sweep(1.0), [sweep(2.0)], laws)
     assert [panel.title for panel in figure.panels] == ["input/upper", "idler/upper"]
     shown = {curve.name: curve.y.iloc[0] for curve in figure.panels[0].marks}
     assert shown == {

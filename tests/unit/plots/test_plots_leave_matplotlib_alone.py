@@ -6,10 +6,12 @@ import sys
 
 import pytest
 
-CODE = "from facegear.plots import {module}; import matplotlib.pyplot as plt; print(plt.get_backend())"
+CODE = (
+    "from facegear.report.figures import {module}; import matplotlib.pyplot as plt; print(plt.get_backend())"
+)
 
 
-@pytest.mark.parametrize("module", ["contact", "load_sharing"])
+@pytest.mark.parametrize("module", ["contact", "sharing"])
 def test_a_backend_that_shows_figures_stays(module):
     environment = {**os.environ, "MPLBACKEND": "svg"}
     done = subprocess.run(

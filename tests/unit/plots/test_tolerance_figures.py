@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.plots.description import Bars, Curve, entries
-from facegear.plots.tolerances import importance_figure, in_words, load_map_figure, worst_first
+from facegear.report.figures.description import entries
+from facegear.report.figures.marks import Bars, Curve
+from facegear.report.figures.tolerances import importance_figure, in_words, load_map_figure, worst_first
 
 WORST, OTHER_MODES = "k_gamma right input/upper", "k_gamma left input/upper"
 

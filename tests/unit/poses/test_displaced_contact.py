@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 import facegear
-from facegear.config.machine_layout import ToothNumbers, layout
-from facegear.config.tooth_pair import pair_design
+from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.build.tooth_pair import pair_design
 from facegear.errors import FacegearError, NotConverged
-from facegear.transmission.lumped_bodies import lumped_model
+from facegear.machine.linear_model import lumped_model
 
 CENTRE = {"inertia_kg_m2": 0.3, "stiffness_n_m_per_rad": 1e7, "centre_below_pitch_plane_mm": 1.875}
 """The gears tilt 45 mm above the pinions' axes."""
@@ -41,7 +41,7 @@ def seen_at_zero(x, y):
     "second implementation",
     "both bodies displaced rigidly, contact searched at 1e-13 m",
     capability="displaced_contact",
-    module="facegear.poses.displaced_flanks",
+    module="facegear.machine.poses.displaced_pair",
 )
 @pytest.mark.parametrize("side", ["upper", "lower"])
 def test_two_displaced_bodies_meet_and_close_as_rigid_displacement_has_it(side):
@@ -64,7 +64,7 @@ def test_two_displaced_bodies_meet_and_close_as_rigid_displacement_has_it(side):
     "second implementation",
     "unloaded contact of published poses, searched on displaced bodies",
     capability="displaced_contact",
-    module="facegear.poses.displaced_flanks",
+    module="facegear.machine.poses.displaced_pair",
 )
 def test_an_offset_with_a_leaning_pinion_has_the_published_contact_on_both_flanks():
     """The outer end of a pinion that leans about x comes away from the upper gear."""
@@ -132,7 +132,7 @@ def test_turned_bodies_close_by_the_arc_of_their_base_circles():
     "second implementation",
     "contact of the pair assembled with these errors, through the config",
     capability="displaced_contact",
-    module="facegear.stages.displaced_contact",
+    module="facegear.pipeline.displaced_contact",
 )
 def test_loaded_contact_is_that_of_the_pair_assembled_so_and_a_mirror_exchanges_flanks():
     coarse = facegear.example().with_values({"contact.positions_per_pitch": 4})

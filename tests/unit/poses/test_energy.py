@@ -12,22 +12,22 @@ from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.geometry.conjugate import contact_at
-from facegear.geometry.conjugate_slopes import conjugate_slopes
-from facegear.geometry.design import AssemblyErrors
-from facegear.mesh_law.force_table import ForceTable
-from facegear.poses.energy import mesh_energy
-from facegear.poses.fixed_point import operating_pose, pose_at, with_ideal_directions
-from facegear.poses.surface import STIFFNESS, Nodes, PoseSurface
-from facegear.poses.tables import scaled_load
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.flanks import constant_errors, flank_gaps
-from facegear.transmission.layout import Role, Side, Tilt
-from facegear.transmission.machine import FlankTables
-from facegear.transmission.static_gears import at_rest as static
-from facegear.transmission.statics import Equilibria, mean_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_gaps
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side, Tilt
+from facegear.machine.machine import FlankTables
+from facegear.machine.poses.fixed_point import operating_pose, pose_at, with_ideal_directions
+from facegear.machine.poses.posed_flanks import mesh_energy
+from facegear.machine.poses.surface import STIFFNESS, Nodes, PoseSurface
+from facegear.machine.poses.tables import scaled_load
+from facegear.machine.static_gears import at_rest as static
+from facegear.machine.statics import Equilibria, mean_equilibrium
+from facegear.meshing.force_table import ForceTable
+from facegear.parts.reduced_body import ReducedBody
+from facegear.teeth.conjugate import conjugate_slopes, contact_at
+from facegear.teeth.design import AssemblyErrors
 from validation.poses.measure import ASSEMBLIES, FROZEN_REACTIONS, SURFACE, TILTING, TOUCHING_REACTIONS
 
 ANGLE = float(np.radians(0.05))
@@ -214,7 +214,7 @@ def work_and_energy(machine, surface, first, last):
     "analytic",
     "work of the loads on a machine that is at rest in a potential",
     capability="operating_pose",
-    module="facegear.poses.fixed_point",
+    module="facegear.machine.poses.fixed_point",
 )
 @pytest.mark.parametrize("gears", ["that rock", "that bend"])
 def test_loads_do_the_work_that_springs_and_meshes_store(surface, gears):
@@ -293,7 +293,7 @@ def reactions(surface, torque, errors):
     "analytic",
     "derivative of the discrete contact's energy with its loads held, the teeth moved",
     capability="pose_surface",
-    module="facegear.poses.surface",
+    module="facegear.machine.poses.surface",
 )
 @pytest.mark.parametrize("torque", [420.0, 930.0])
 def test_reactions_of_the_surface_are_those_of_contact_that_is_moved(tilting_surface, torque):

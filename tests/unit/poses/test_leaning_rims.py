@@ -11,18 +11,17 @@ from gear_bodies import ANGLE, PATCH
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.gear_body.compliance import flank_direction, mean_compliance, slope_compliance
-from facegear.gear_body.matrices import body_matrices
-from facegear.gear_body.mesh import body_mesh
-from facegear.gear_body.modes import held_solver, order_modes
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.gear_body.reduction import reduced_body
-from facegear.poses.fixed_point import operating_pose
-from facegear.poses.surface import PoseSurface
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.layout import Tilt
-from facegear.transmission.static_gears import at_rest, posed_rows, static_rows
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Tilt
+from facegear.machine.poses.fixed_point import operating_pose
+from facegear.machine.poses.surface import PoseSurface
+from facegear.machine.static_gears import at_rest, posed_rows, static_rows
+from facegear.parts.body_mesh import body_mesh
+from facegear.parts.gear_body import flank_direction, mean_compliance, reduced_body, slope_compliance
+from facegear.parts.matrices import body_matrices
+from facegear.parts.modes import held_solver, order_modes
+from facegear.parts.reduced_body import ReducedBody
 from validation.poses.measure import TILTING
 
 ORDERS = 4
@@ -73,7 +72,7 @@ def heights(nodes, order, direction):
     "analytic",
     "straight lines fitted to the heights of nodes below the teeth, orders summed",
     capability="operating_pose",
-    module="facegear.transmission.static_gears",
+    module="facegear.machine.static_gears",
 )
 @pytest.mark.parametrize("side", [0, 1])
 def test_slope_of_the_rim_below_a_mesh_is_that_of_the_nodes_when_another_mesh_is_loaded(side):
@@ -143,7 +142,7 @@ def stiff_rims_on_springs(radius):
     "analytic",
     "a rigid gear that tilts as much",
     capability="operating_pose",
-    module="facegear.poses.mesh_poses",
+    module="facegear.machine.poses.mesh_poses",
 )
 def test_a_rim_whose_only_wave_is_a_tilt_has_the_poses_of_a_rigid_gear_that_tilts(surface):
     """Offset, axial shift and shaft angle with their signs, on both gears; forces and energies as well."""

@@ -9,17 +9,16 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout
 from references import against, agrees
 
-from facegear.config.load import load_config
-from facegear.config.tooth_pair import pair_design
-from facegear.geometry.conjugate import conjugate_contact
-from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.placement import body_rotation, mirror_design, pinion_to_gear
-from facegear.poses.exact_pose import body_motion, in_mesh_frame, pose_of
-from facegear.poses.mesh_poses import mesh_poses, pose_rows
-from facegear.transmission.layout import Role, Tilt
-from facegear.transmission.linear_model import LinearModel
-from facegear.transmission.lumped_bodies import lumped_model
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.build.load import load_config
+from facegear.build.tooth_pair import pair_design
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Tilt
+from facegear.machine.linear_model import LinearModel, lumped_model
+from facegear.machine.poses.displaced_pair import body_motion, in_mesh_frame, pose_of
+from facegear.machine.poses.mesh_poses import mesh_poses, pose_rows
+from facegear.teeth.conjugate import conjugate_contact
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.placement import body_rotation, mirror_design, pinion_to_gear
 
 PITCHES = 143 * 30.0 / 360.0
 SIDES = {"lower": -1.0, "upper": 1.0}
@@ -91,7 +90,7 @@ def moved_by(model: LinearModel, size=1.0):
     "second implementation",
     "both bodies displaced rigidly, contact searched at 1e-13 m",
     capability="geometry",
-    module="facegear.geometry.conjugate",
+    module="facegear.teeth.conjugate",
 )
 @pytest.mark.parametrize("side", SIDES)
 def test_a_pose_of_two_moved_bodies_is_the_published_one(design, side):

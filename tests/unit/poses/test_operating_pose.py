@@ -12,18 +12,18 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 import facegear
-from facegear.config.machines import MachineInputs
+from facegear.build.machine import MachineInputs
 from facegear.errors import ConfigErrors, InvalidInput
-from facegear.geometry.conjugate import contact_at
-from facegear.geometry.design import AssemblyErrors
-from facegear.harmonics.series import Harmonics
-from facegear.poses.fixed_point import TOLERANCE, operating_pose
-from facegear.poses.surface import QUANTITIES, RADIUS, STIFFNESS, PoseSurface, surface_nodes
-from facegear.poses.tables import leaving_text, load_tables, mesh_table
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.statics import mean_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.poses.fixed_point import TOLERANCE, operating_pose
+from facegear.machine.poses.surface import QUANTITIES, RADIUS, STIFFNESS, PoseSurface, surface_nodes
+from facegear.machine.poses.tables import leaving_text, load_tables, mesh_table
+from facegear.machine.statics import mean_equilibrium
+from facegear.teeth.conjugate import contact_at
+from facegear.teeth.design import AssemblyErrors
 from validation.poses.measure import ASSEMBLIES, LOADED_CONTACT, SURFACE, TORQUE
 
 MESHES = [
@@ -69,7 +69,7 @@ def plain_machine(bearing=6.5e7, torque=1328.0, **more):
     "second implementation",
     "contact of every mesh solved anew in every step of the iteration",
     capability="operating_pose",
-    module="facegear.poses.fixed_point",
+    module="facegear.machine.poses.fixed_point",
 )
 def test_forces_with_teeth_where_they_stand_are_the_published_ones(concentric, surface):
     """To less than the 0.1 % by which the published contact is known."""
@@ -85,7 +85,7 @@ def test_forces_with_teeth_where_they_stand_are_the_published_ones(concentric, s
     "second implementation",
     "contact of a pair in given assemblies",
     capability="pose_surface",
-    module="facegear.contact.posed",
+    module="facegear.contact.analysis",
 )
 @pytest.mark.parametrize("assembly", PUBLISHED)
 def test_loaded_contact_in_given_assemblies_is_the_published_one(assembly):
@@ -99,7 +99,7 @@ def test_loaded_contact_in_given_assemblies_is_the_published_one(assembly):
     "second implementation",
     "contact of a pair in given assemblies",
     capability="pose_surface",
-    module="facegear.poses.surface",
+    module="facegear.machine.poses.surface",
 )
 @pytest.mark.parametrize("assembly", ["nominal", "offset -120 um"])
 def test_between_its_nodes_the_surface_is_the_contact_there(surface, assembly):

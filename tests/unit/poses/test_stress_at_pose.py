@@ -7,16 +7,16 @@ from references import against, agrees
 from test_operating_pose import MESHES, POSE_AND_LOAD
 
 import facegear
-from facegear.config.machines import MachineInputs
-from facegear.config.strength import Strength
-from facegear.config.tooth_pair import pair_design
-from facegear.geometry.conjugate import contact_at
-from facegear.poses.surface import PoseSurface
-from facegear.poses.tables import MARGINS, margin_text
-from facegear.stages.duty_poses import duty_poses
-from facegear.stages.rating import rating
+from facegear.build.machine import MachineInputs
+from facegear.build.tooth_pair import pair_design
+from facegear.machine.poses.surface import PoseSurface
+from facegear.machine.poses.tables import MARGINS, margin_text
+from facegear.pipeline.stages.duty import duty_poses
+from facegear.pipeline.stages.strength import rating
+from facegear.schema.strength import Strength
 from facegear.strength.flank_contacts import flank_contacts
 from facegear.strength.posed_contacts import ROOTS, ContactPose, solved_contacts, stress_ratio
+from facegear.teeth.conjugate import contact_at
 from validation.poses.measure import SURFACE
 
 FEW = {
@@ -51,7 +51,7 @@ def surface(gearbox):
     "second implementation",
     "contact of every mesh solved anew in every step of the iteration",
     capability="duty_poses",
-    module="facegear.poses.fixed_point",
+    module="facegear.machine.poses.fixed_point",
 )
 def test_in_a_bin_with_the_machine_s_own_load_its_meshes_carry_the_published_forces():
     """Published without the second order of the closing, and along the ideal normal."""

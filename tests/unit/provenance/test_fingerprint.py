@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from facegear.provenance import sources
-from facegear.provenance.fingerprint import fingerprint, reached_functions, stage_fingerprint
-from facegear.provenance.sources import recall, remember
+from facegear.pipeline.provenance import sources
+from facegear.pipeline.provenance.fingerprint import fingerprint, reached_functions, stage_fingerprint
+from facegear.pipeline.provenance.sources import recall, remember
 
 ROOT = Path(__file__).parents[3]
 
@@ -19,15 +19,15 @@ ROOT = Path(__file__).parents[3]
 def package(tmp_path):
     files = {
         "facegear/__init__.py": "",
-        "facegear/geometry/__init__.py": "",
-        "facegear/geometry/flank.py": (
+        "facegear/teeth/__init__.py": "",
+        "facegear/teeth/flank.py": (
             "from facegear.io import tables\n\ndef flank():\n    '''Doc.'''\n    return tables.x\n"
         ),
         "facegear/io/__init__.py": "",
         "facegear/io/tables.py": "x = 1\n",
-        "facegear/plots/__init__.py": "",
-        "facegear/plots/flank.py": "import facegear.geometry.flank\n",
-        "script.py": "from facegear.geometry.flank import flank\n",
+        "facegear/report/figures/__init__.py": "",
+        "facegear/report/figures/flank.py": "import facegear.teeth.flank\n",
+        "script.py": "from facegear.teeth.flank import flank\n",
     }
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -42,8 +42,8 @@ def edit(path, text):
 
 
 def test_functions_are_found_through_the_names_that_they_use(package):
-    assert reached_functions(["facegear.geometry.flank:flank"], package) == {
-        "facegear.geometry.flank:flank",
+    assert reached_functions(["facegear.teeth.flank:flank"], package) == {
+        "facegear.teeth.flank:flank",
         "facegear.io.tables:x",
     }
 
@@ -54,9 +54,9 @@ def test_functions_are_found_through_the_names_that_they_use(package):
         ("facegear/io/tables.py", "x = 2\n", True),
         ("facegear/io/tables.py", "# only a comment\nx  =  1\n", False),
         ("facegear/io/tables.py", "x = 1\n\ndef unused():\n    return x\n", False),
-        ("facegear/geometry/__init__.py", '"""Only a docstring."""\n', False),
-        ("facegear/plots/flank.py", "import facegear.geometry.flank\ny = 2\n", False),
-        ("script.py", "from facegear.geometry.flank import flank\nflank()\n", True),
+        ("facegear/teeth/__init__.py", '"""Only a docstring."""\n', False),
+        ("facegear/report/figures/flank.py", "import facegear.teeth.flank\ny = 2\n", False),
+        ("script.py", "from facegear.teeth.flank import flank\nflank()\n", True),
     ],
 )
 def test_only_reached_code_counts(package, file, text, changes):
@@ -348,8 +348,8 @@ def test_reading_configs_leaves_solvers_and_tables_unloaded():
     """They took most of the five seconds in which a start with nothing to do ended."""
     code = (
         "import sys, paper.reproduction\n"
-        "from facegear.config.cases import expand_cases\n"
-        "from facegear.config.load import load_config\n"
+        "from facegear.build.cases import expand_cases\n"
+        "from facegear.build.load import load_config\n"
         "expand_cases(load_config('config/paper.yaml'))\n"
         "print(*{'pandas', 'skfem', 'xarray', 'matplotlib', 'scipy.interpolate'} & {*sys.modules})"
     )

@@ -13,9 +13,9 @@ import pytest
 
 import facegear
 from facegear.pipeline import run
+from facegear.pipeline.provenance.fingerprint import loaded_modules, reached_functions, stage_fingerprint
 from facegear.pipeline.stage import load
 from facegear.pipeline.table import STAGES
-from facegear.provenance.fingerprint import loaded_modules, reached_functions, stage_fingerprint
 
 pytestmark = pytest.mark.xdist_group("functions_of_stages")  # one trace for all
 ROOT = Path(__file__).parents[3]
@@ -80,7 +80,8 @@ def is_counted(code):
     if not path.is_relative_to(ROOT / "facegear") or code.co_qualname.startswith("<"):
         return False
     return (
-        not path.is_relative_to(ROOT / "facegear/pipeline") and path != ROOT / "facegear/config/arguments.py"
+        not path.is_relative_to(ROOT / "facegear/pipeline")
+        and path != ROOT / "facegear/pipeline/arguments.py"
     )
 
 
@@ -213,13 +214,13 @@ def test_changed_comments_and_docstrings_leave_every_stage_fresh(copied):
         (r"import pickle|allow_pickle=True|__reduce__|\bjoblib\b|\bdill\b", set()),
         (
             r"get_type_hints|get_annotations|inspect\.signature|__annotations__",
-            {"facegear/config/arguments.py"},
+            {"facegear/pipeline/arguments.py"},
         ),
     ],
 )
 def test_conditions_under_which_fingerprints_are_complete_hold(what, places):
-    """`facegear.provenance.fingerprint` names them."""
-    own = ROOT / "facegear/provenance"
+    """`facegear.pipeline.provenance.fingerprint` names them."""
+    own = ROOT / "facegear/pipeline/provenance"
     found = {
         path.relative_to(ROOT).as_posix()
         for path in (ROOT / "facegear").rglob("*.py")

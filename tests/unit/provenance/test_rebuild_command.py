@@ -4,7 +4,7 @@ import shlex
 
 import pytest
 
-from facegear.provenance.rebuild import rebuild_command
+from facegear.pipeline.provenance.manifest import rebuild_command
 
 
 @pytest.fixture

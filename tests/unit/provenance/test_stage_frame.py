@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import pytest
 
 from facegear.errors import NotConverged
-from facegear.io.checksums import sha256
-from facegear.provenance.stage import stage
+from facegear.io.atomic import sha256
+from facegear.pipeline.provenance.stage import stage
 
 
 @pytest.fixture

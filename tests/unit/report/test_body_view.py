@@ -11,11 +11,11 @@ import pandas as pd
 import pytest
 from playwright.sync_api import sync_playwright
 
-from facegear.config.load import load_config
-from facegear.config.model import resolved_values
-from facegear.report.body_view import body_view, boundary
+from facegear.build.config import resolved_values
+from facegear.build.load import load_config
 from facegear.report.case import case_report
 from facegear.report.page import Chapter, render
+from facegear.report.viewers import body_view, boundary
 
 CHROMIUM = shutil.which("chromium")
 RINGS, LEVELS = 13, 3

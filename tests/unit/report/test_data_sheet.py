@@ -8,9 +8,9 @@ import pytest
 from contact_bodies import pair_design
 
 import facegear
-from facegear.geometry.analysis import analyse
-from facegear.geometry.document import pair_record
 from facegear.report.data_sheet import data_sheet_table, pinion_span, pinion_tooth_thickness
+from facegear.teeth.analysis import analyse
+from facegear.teeth.document import pair_record
 
 
 @pytest.fixture(scope="module", params=[0.0, 0.4e-3])

@@ -10,11 +10,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.config.load import load_config
-from facegear.config.tooth_pair import pair
-from facegear.contact.columns import SHARES
+from facegear.build.load import load_config
+from facegear.build.tooth_pair import pair
+from facegear.contact.pattern import SHARES
 from facegear.report.page import Chapter, render
-from facegear.report.pair_view import line_load, pair_view
+from facegear.report.viewers import line_load, pair_view
 
 ROWS, COLUMNS = 5, 4
 CONFIG = Path(__file__).parents[3] / "config" / "quick.yaml"

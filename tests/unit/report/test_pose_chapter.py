@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.config.load import load_config
-from facegear.config.model import resolved_values
+from facegear.build.config import resolved_values
+from facegear.build.load import load_config
 from facegear.report.case import case_report
 from facegear.report.poses import pose_tables, pose_text
 

@@ -11,14 +11,14 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import sync_playwright
 
-from facegear.plots.colours import colour_of
-from facegear.plots.description import Axis, Band, ColourScale, Curve, Figure, Map, Panel
-from facegear.plots.save import save
-from facegear.plots.sweep import mesh_sweeps, translations
 from facegear.report.compact import sweep_picture
+from facegear.report.figures.colours import colour_of
+from facegear.report.figures.description import Axis, Figure, Panel
+from facegear.report.figures.marks import Band, ColourScale, Curve, Map
+from facegear.report.figures.motion import mesh_sweeps, translations
+from facegear.report.figures.save import save
 from facegear.report.first_screen import FirstScreen, Key
-from facegear.report.page import Chapter, Picture, render
-from facegear.report.stills import data_uri
+from facegear.report.page import Chapter, Picture, data_uri, render
 from facegear.report.table import Table
 from facegear.report.verdicts import Verdict
 

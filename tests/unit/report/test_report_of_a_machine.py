@@ -15,9 +15,9 @@ import pandas as pd
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-from facegear.config.load import base_path, load_config
-from facegear.config.model import resolved_values
-from facegear.config.notes import notes
+from facegear.build.config import resolved_values
+from facegear.build.load import base_path, load_config
+from facegear.build.notes import notes
 from facegear.io import tables
 from facegear.report.case import case_report
 from facegear.report.machine import Base

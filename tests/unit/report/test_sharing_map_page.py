@@ -7,9 +7,9 @@ from axe_playwright_python.sync_playwright import Axe
 from idler_machines import make_idlers
 from playwright.sync_api import sync_playwright
 
-from facegear.plots.save import save
-from facegear.plots.sharing_map import sharing_map_figure
 from facegear.report.case import case_report
+from facegear.report.figures.save import save
+from facegear.report.figures.sharing import sharing_map_figure
 
 pytestmark = [
     pytest.mark.xdist_group("browser"),

@@ -9,8 +9,8 @@ import pytest
 
 from facegear.errors import FacegearError
 from facegear.io import journal
-from facegear.scenarios import chunks
-from facegear.scenarios.chunks import run_chunk
+from facegear.studies import summary
+from facegear.studies.summary import run_chunk
 
 COLUMNS = ("a", "b")
 
@@ -119,7 +119,7 @@ class Ring:
 
 
 def test_what_finished_samples_leave_behind_does_not_pile_up(tmp_path, monkeypatch):
-    monkeypatch.setattr(chunks, "SAMPLES_PER_COLLECTION", 50)
+    monkeypatch.setattr(summary, "SAMPLES_PER_COLLECTION", 50)
     alive = weakref.WeakSet()
     most = [0]
 

@@ -9,18 +9,17 @@ import numpy as np
 import pytest
 
 import facegear
-from facegear.config.load import config_of
-from facegear.config.model import resolved_values
-from facegear.config.tooth_pair import pair
-from facegear.config.yaml_file import read_yaml
+from facegear.build.config import resolved_values
+from facegear.build.load import config_of
+from facegear.build.tooth_pair import pair
 from facegear.errors import ConfigError, FacegearError
-from facegear.geometry.analysis import analyse, path_curvatures
-from facegear.strength.rating import pinion_form
-from facegear.variants.first_estimates import load_concentration
-from facegear.variants.first_machine import first_machine
-from facegear.variants.starting_draft import STIFFNESS
-from facegear.variants.starting_teeth import choose_teeth
-from facegear.variants.starting_wishes import MachineWishes, ToothWishes
+from facegear.new_machine.draft import STIFFNESS
+from facegear.new_machine.first_machine import first_machine, load_concentration
+from facegear.new_machine.teeth import choose_teeth
+from facegear.new_machine.wishes import MachineWishes, ToothWishes
+from facegear.schema.yaml_file import read_yaml
+from facegear.strength.safety import pinion_form
+from facegear.teeth.analysis import analyse, path_curvatures
 
 
 def make_known(case, pinion_teeth, face_gear_teeth, module_mm, torque_n_m, speed_rpm, pinions=1, **others):

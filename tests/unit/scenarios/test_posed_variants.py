@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import MachineInputs
-from facegear.config.transmission import Transmission
+from facegear.build.machine import MachineInputs
+from facegear.build.machine_layout import ToothNumbers
 from facegear.errors import ConfigErrors
-from facegear.harmonics.series import Harmonics
-from facegear.load_sharing.quantities import quasi_static_quantities
-from facegear.poses.surface import PoseSurface
-from facegear.transmission.static_gears import at_rest
-from facegear.variants.machines import Question, judge
-from facegear.variants.teeth import PairExcitation
+from facegear.harmonics import Harmonics
+from facegear.machine.poses.surface import PoseSurface
+from facegear.machine.static_gears import at_rest
+from facegear.schema.base import parse
+from facegear.schema.transmission import Transmission
+from facegear.sharing.quantities import quasi_static_quantities
+from facegear.studies.machines import Question, judge
+from facegear.studies.tooth_contact import PairExcitation
 from validation.poses.measure import SURFACE
 
 K, NONE = Harmonics(np.zeros(1), np.array([4.1e8])), Harmonics(np.zeros(1), np.zeros(1))

@@ -7,8 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.scenarios.distributions import Distribution, Shape
-from facegear.scenarios.sampling import Cause, Population, changes, index_samples, samples
+from facegear.studies.sampling import Cause, Distribution, Population, Shape, changes, index_samples, samples
 
 SHAPES = {
     "normal": Distribution(Shape.NORMAL, centre=2.0, spread=3.0),
@@ -46,7 +45,7 @@ def test_correlated_samples_are_the_same_to_the_bit_in_any_chunk():
     "third-party program",
     "scipy.stats",
     capability="tolerances_chunk tolerances",
-    module="facegear.scenarios.sampling",
+    module="facegear.studies.sampling",
 )
 def test_samples_have_the_quantiles_of_their_distributions():
     found = samples(population(), 0, 4096)
@@ -66,7 +65,7 @@ def test_samples_have_the_quantiles_of_their_distributions():
     "third-party program",
     "scipy.stats.truncnorm",
     capability="tolerances_chunk tolerances",
-    module="facegear.scenarios.distributions",
+    module="facegear.studies.sampling",
 )
 def test_normal_tolerance_cut_at_its_limits_keeps_them_and_its_shape():
     cut = Distribution(Shape.NORMAL, centre=0.0, spread=1.0, limits=(-1.0, 2.0))
@@ -79,7 +78,7 @@ def test_normal_tolerance_cut_at_its_limits_keeps_them_and_its_shape():
     "analytic",
     "Spearman's rank correlation of a Gaussian copula",
     capability="tolerances_chunk tolerances",
-    module="facegear.scenarios.sampling",
+    module="facegear.studies.sampling",
 )
 def test_rank_correlation_of_the_samples_is_the_one_asked_for():
     correlation = np.eye(4)

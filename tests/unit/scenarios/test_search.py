@@ -9,7 +9,7 @@ from references import against, agrees
 
 import facegear
 from facegear.errors import ConfigErrors, FacegearError
-from facegear.scenarios.evolution import ERROR, Effort, Task, Variable, evolve, front, hypervolumes
+from facegear.studies.evolution import ERROR, Effort, Task, Variable, evolve, front, hypervolumes
 
 INPUTS, IDLERS = ("right input", "left input"), ("tail idler", "right idler", "left idler")
 STIFF = "bearing_stiffness_n_per_m"
@@ -79,7 +79,7 @@ def test_a_search_moves_the_operating_speed_away_from_the_jump():
 
 def test_jumps_are_looked_for_only_where_a_goal_asks_for_them(monkeypatch):
     asked = []
-    monkeypatch.setattr("facegear.variants.machines.jump_margin", lambda *given: asked.append(given) or 7.0)
+    monkeypatch.setattr("facegear.studies.machines.jump_margin", lambda *given: asked.append(given) or 7.0)
     sizes = {"generations": 1, "samples": 2, "winner_samples": 2}
     table = near_a_jump(objectives=[SHARING], **sizes).search().winners()
     assert not asked and "jump_margin_rpm" not in table
@@ -112,7 +112,7 @@ def difference(inputs, idlers, clocking):
     "analytic",
     "load sharing of a floating input in closed form, on the whole grid of designs",
     capability="search",
-    module="facegear.stages.search",
+    module="facegear.pipeline.stages.search",
 )
 def test_the_optimum_of_the_closed_form_is_found():
     grid = [np.geomspace(4e7, 2e8, 9), np.geomspace(2e7, 1e9, 9), np.linspace(-0.05, 0.05, 11)]
@@ -146,7 +146,7 @@ def islands(folder, seeds, generations=30):
     "analytic",
     "front and hypervolume of two spheres in closed form",
     capability="search_island search",
-    module="facegear.scenarios.evolution",
+    module="facegear.studies.evolution",
 )
 def test_the_front_of_two_spheres_is_the_line_between_and_seeds_differ_by_little(tmp_path):
     found = islands(tmp_path, (1, 2, 3))

@@ -5,10 +5,8 @@ import pytest
 import scipy.stats
 from references import against, agrees
 
-from facegear.scenarios.distributions import Distribution, Shape
-from facegear.scenarios.inverse import HALVINGS, loosest
-from facegear.scenarios.sampling import Cause, Population, index_samples, samples
-from facegear.scenarios.statistics import fraction_of, percentile, sobol_indices
+from facegear.studies.sampling import Cause, Distribution, Population, Shape, index_samples, samples
+from facegear.studies.statistics import HALVINGS, fraction_of, loosest, percentile, sobol_indices
 from validation.scenarios.errors import statistics_errors
 
 SPREADS = np.array([3.0, 2.0, 1.0])
@@ -27,7 +25,7 @@ def linear(seed=1):
     "analytic",
     "normal distribution of a sum",
     capability="tolerances tolerances_map",
-    module="facegear.scenarios.statistics",
+    module="facegear.studies.statistics",
 )
 def test_p95_of_a_linear_machine_with_normal_errors_is_that_of_the_closed_form():
     exact = scipy.stats.norm.ppf(0.95) * np.sqrt((SPREADS**2).sum())
@@ -46,7 +44,7 @@ def test_p95_of_a_linear_machine_with_normal_errors_is_that_of_the_closed_form()
     "analytic",
     "variance of a sum",
     capability="tolerances",
-    module="facegear.scenarios.statistics",
+    module="facegear.studies.statistics",
 )
 def test_sobol_indices_of_a_linear_machine_are_shares_of_variance():
     values = index_samples(linear(), 0, 5 * 2048).sum(axis=1)
@@ -59,7 +57,7 @@ def test_sobol_indices_of_a_linear_machine_are_shares_of_variance():
     "analytic",
     "Ishigami and Homma's function",
     capability="tolerances",
-    module="facegear.scenarios.statistics",
+    module="facegear.studies.statistics",
 )
 def test_sobol_indices_of_ishigamis_function_are_the_known_ones():
     population = causes([Distribution(Shape.UNIFORM, limits=(-np.pi, np.pi))] * 3)
@@ -111,7 +109,7 @@ def test_errors_of_percentiles_and_indices_fall_as_docs_cluster_tells():
     "manufactured",
     "a quantity linear in the scale",
     capability="loosest_tolerances",
-    module="facegear.scenarios.inverse",
+    module="facegear.studies.statistics",
 )
 def test_the_interval_of_the_loosest_scale_is_that_of_the_percentile_turned_round():
     deviations = np.random.default_rng(5).standard_normal(400)

@@ -10,15 +10,14 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.config.machines import MachineInputs
-from facegear.config.tolerances import Tolerances, chunks
+from facegear.build.machine import MachineInputs
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.io import tables
-from facegear.load_sharing import quantities
-from facegear.load_sharing.hunting import hunting_cycle
-from facegear.stages.tolerances import tolerances
-from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants.sampled_machine import SampledMachine
+from facegear.pipeline.stages.studies import chunk_of, tolerances
+from facegear.schema.tolerances import Tolerances, chunks
+from facegear.sharing import quantities
+from facegear.sharing.hunting import hunting_cycle
+from facegear.studies.sampled_machine import SampledMachine
 
 MEAN = "transmission.single_meshes"
 LINEAR = {
@@ -141,7 +140,7 @@ TURNING = {
     "second implementation",
     "all 3289 mesh cycles",
     capability="tolerances_chunk",
-    module="facegear.load_sharing.quantities",
+    module="facegear.sharing.quantities",
 )
 def test_a_few_mesh_cycles_hold_the_largest_factor_of_the_whole_hunting_cycle():
     """Every 411th mesh cycle alone read K_gamma up to 5 % low."""
@@ -190,7 +189,7 @@ def test_a_load_map_measures_at_every_load_what_the_cycles_taken_miss():
     "analytic",
     "a linear machine with normal errors, from its gradient",
     capability="tolerances",
-    module="facegear.stages.tolerances",
+    module="facegear.pipeline.stages.studies",
 )
 def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
     gearbox = machine(samples=512, chunk_samples=512, index_blocks=128)
@@ -222,7 +221,7 @@ def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
     "analytic",
     "a linear machine: the scale is the ratio of the deviations",
     capability="loosest_tolerances",
-    module="facegear.scenarios.inverse",
+    module="facegear.studies.statistics",
 )
 def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form():
     gearbox = machine([RIGHT], samples=16, chunk_samples=16)
@@ -243,7 +242,7 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
     "analytic",
     "a linear machine: what lengths add falls with one over torque",
     capability="tolerances_map",
-    module="facegear.stages.tolerances_map",
+    module="facegear.pipeline.stages.studies",
 )
 def test_a_map_of_loads_holds_the_machine_of_each_torque_and_the_closed_form():
     gearbox = machine([RIGHT], hunting_cycles=1)

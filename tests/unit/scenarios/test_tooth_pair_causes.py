@@ -8,18 +8,17 @@ import pytest
 from contact_bodies import STEEL, pair_design
 
 import facegear
-from facegear.contact.gear_flank import from_arrays, to_arrays
+from facegear.contact.gear_flank import from_arrays, gear_flank, to_arrays
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import gear_flank
 from facegear.errors import ConfigErrors
-from facegear.mesh.sizes import MeshSizes
-from facegear.pipeline.asked import sampled_contact
+from facegear.pipeline.arguments import sampled_contact
 from facegear.pipeline.needs import stage_needs
 from facegear.pipeline.stage import Case
-from facegear.stages.tolerances_chunk import chunk_of
-from facegear.variants import contact as in_contact
-from facegear.variants.machines import stored_flanks
-from facegear.variants.sampled_machine import SampledMachine
+from facegear.pipeline.stages.studies import chunk_of
+from facegear.studies import tooth_contact as in_contact
+from facegear.studies.machines import stored_flanks
+from facegear.studies.sampled_machine import SampledMachine
+from facegear.teeth.mesh_sizes import MeshSizes
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's compliance is computed once a process
 CROWNING = "tooth_pair.pinion.lead_crowning.amount_um"

@@ -8,23 +8,23 @@ import numpy as np
 import pytest
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.load import load_config
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import MachineInputs
-from facegear.config.model import resolved_values
-from facegear.config.tooth_pair import ToothPair
-from facegear.config.transmission import Transmission
+from facegear.build.config import resolved_values
+from facegear.build.load import load_config
+from facegear.build.machine import MachineInputs
+from facegear.build.machine_layout import ToothNumbers
+from facegear.build.tooth_pair import ToothPair
 from facegear.errors import ConfigError
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.harmonics.series import Harmonics
-from facegear.load_sharing.quantities import quasi_static_quantities
-from facegear.results.chain import Chain
-from facegear.transmission.static_gears import at_rest
-from facegear.variants import varied_bodies
-from facegear.variants.machines import Question, judge
-from facegear.variants.teeth import PairExcitation
-from facegear.variants.varied_bodies import VariedBodies
+from facegear.harmonics import Harmonics
+from facegear.machine.static_gears import at_rest
+from facegear.parts.reduced_body import ReducedBody
+from facegear.pipeline.results.chain import Chain
+from facegear.schema.base import parse
+from facegear.schema.transmission import Transmission
+from facegear.sharing.quantities import quasi_static_quantities
+from facegear.studies import varied_bodies
+from facegear.studies.machines import Question, judge
+from facegear.studies.tooth_contact import PairExcitation
+from facegear.studies.varied_bodies import VariedBodies
 
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 K = Harmonics(np.zeros(1), np.array([4.1e8]))

@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 from facegear.errors import InvalidInput
+from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft, deflections
 from facegear.rigid_body import carry_motion
-from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed_shaft import Bearing, Shaft, condense_shaft, deflections
 
 STEEL = Elasticity(206e9, 0.3)
 THRUST = 1e8
@@ -33,7 +32,7 @@ def overhung():
     "analytic",
     "notes of the project, bodies.md 6: two bearings, pinion between them and overhung",
     capability="shafts",
-    module="facegear.shafts.condensed_shaft",
+    module="facegear.parts.shafts",
 )
 def test_compliance_of_a_pinion_between_two_bearings_and_overhung_has_its_known_numbers():
     inside, outside = condense_shaft(between()), condense_shaft(overhung())
@@ -89,7 +88,7 @@ def closed_form(length, reach, diameter, bore, first, second):
     "analytic",
     "a beam on two springs, bodies.md 6",
     capability="shafts",
-    module="facegear.shafts.condensed_shaft",
+    module="facegear.parts.shafts",
 )
 @given(
     st.floats(0.05, 0.4),
@@ -216,7 +215,7 @@ def test_a_deflected_shaft_rests_on_its_springs_and_carries_its_pinion_where_tha
     "analytic",
     "rigid line beyond the last load",
     capability="shafts",
-    module="facegear.shafts.condensed_shaft",
+    module="facegear.parts.shafts",
 )
 def test_beyond_its_last_load_a_shaft_is_straight():
     at = np.array([0.12, 0.13, 0.15])

@@ -6,8 +6,7 @@ from references import against, agrees
 
 from facegear.arrays import Array
 from facegear.errors import FacegearError
-from facegear.mesh_law.load_dependent import load_dependent_law
-from facegear.stiffness.load_dependent import (
+from facegear.meshing.fitted_law import (
     CROWDING,
     PIECES,
     FlankContacts,
@@ -19,6 +18,7 @@ from facegear.stiffness.load_dependent import (
     level_table,
     table_error,
 )
+from facegear.meshing.load_dependent import load_dependent_law
 
 PHASES = np.arange(32) / 32
 C, N = 2.4e11, 1.5
@@ -47,7 +47,7 @@ def test_torques_begin_with_a_light_touch_and_end_beyond_what_the_law_is_to_reac
     "manufactured",
     "contacts solved from a formula of the force",
     capability="mesh_law",
-    module="facegear.stiffness.load_dependent",
+    module="facegear.meshing.fitted_law",
 )
 def test_a_table_meets_the_law_that_its_contacts_come_from_and_reaches_the_torque_at_every_phase():
     (table,), (error,) = fitted_tables([contacts()], 8)
@@ -69,7 +69,7 @@ def test_a_table_meets_the_law_that_its_contacts_come_from_and_reaches_the_torqu
     "manufactured",
     "contacts solved from a formula of the force",
     capability="mesh_law",
-    module="facegear.stiffness.load_dependent",
+    module="facegear.meshing.fitted_law",
 )
 def test_below_the_first_solution_the_force_falls_with_the_exponent_that_it_has_there():
     (table,), _ = fitted_tables([contacts()], 8)

@@ -5,14 +5,15 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel_system import TAU
-from facegear.dynamics.steady_state.simulate import build_model, static_start
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_gaps
+from facegear.machine.linear_model import flank_jacobian
+from facegear.machine.machine import mesh_frequency
+from facegear.machine.statics import equilibria
+from facegear.motion.integrator.integrator import Integrator
+from facegear.motion.integrator.kernel_system import TAU
+from facegear.motion.steady_state.simulate import build_model, static_start
 from facegear.pipeline.run import machine_inputs
-from facegear.transmission.flanks import constant_errors, flank_gaps
-from facegear.transmission.machine import mesh_frequency
-from facegear.transmission.matrices import flank_jacobian
-from facegear.transmission.statics import equilibria
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -56,7 +57,7 @@ def at_rest(machine):
     "second implementation",
     "loaded contact of the pair at this torque",
     capability="mesh_law",
-    module="facegear.stiffness.load_dependent",
+    module="facegear.meshing.fitted_law",
 )
 @pytest.mark.parametrize("torque", [300.0, 600.0, 1000.0])
 def test_at_ten_turns_a_minute_the_motion_follows_the_transmission_error_of_contact(gearbox, torque):

@@ -5,17 +5,22 @@ import pandas as pd
 import pytest
 from references import against, agrees
 
-from facegear.config.base import parse
-from facegear.config.load import load_config
-from facegear.config.modal import modes_need_contact
-from facegear.config.stiffness import MeshStiffness, stiffness_request
+from facegear.build.load import load_config
+from facegear.build.plans import stiffness_request
 from facegear.errors import ConfigErrors, InvalidInput
+from facegear.meshing.stiffness_curve import load_table
+from facegear.meshing.stiffness_source import (
+    load_dependence,
+    series_of,
+    stiffness_from_contact,
+    stiffness_given,
+)
 from facegear.pipeline.needs import stage_needs
 from facegear.pipeline.run import call
 from facegear.pipeline.table import STAGES
-from facegear.stiffness.curve import load_table
-from facegear.stiffness.source import stiffness_from_contact, stiffness_given
-from facegear.stiffness.tables import load_dependence, series_of
+from facegear.schema.base import parse
+from facegear.schema.contact import modes_need_contact
+from facegear.schema.stiffness import MeshStiffness
 
 ROOT = Path(__file__).parents[3]
 TORQUES = np.array([100.0, 200.0, 400.0, 800.0])
@@ -43,7 +48,7 @@ def request(**changes):
     "manufactured",
     "a stiffness that grows with the fourth root of the torque",
     capability="stiffness",
-    module="facegear.stiffness.curve",
+    module="facegear.meshing.stiffness_curve",
 )
 def test_curve_between_solved_loads_follows_the_load_dependence():
     curve = load_table(contact_table()).at(300.0, "average")
@@ -60,7 +65,7 @@ def test_curve_is_never_extrapolated_in_load(torque):
     "manufactured",
     "a stiffness that grows with the fourth root of the torque",
     capability="stiffness",
-    module="facegear.stiffness.curve",
+    module="facegear.meshing.stiffness_curve",
 )
 def test_solved_load_is_taken_as_it_is():
     curve = load_table(contact_table()).at(400.0, "local")
@@ -71,7 +76,7 @@ def test_solved_load_is_taken_as_it_is():
     "manufactured",
     "a mean that is asked for",
     capability="stiffness",
-    module="facegear.stiffness.source",
+    module="facegear.meshing.stiffness_source",
 )
 def test_scaled_source_has_the_mean_asked_for_and_the_shape_computed():
     plain = series_of(stiffness_from_contact(contact_table(), request()).harmonics)
@@ -90,7 +95,7 @@ def test_scaled_source_has_the_mean_asked_for_and_the_shape_computed():
     "manufactured",
     "a stiffness whose slope is 1.3 times its average",
     capability="stiffness",
-    module="facegear.stiffness.source",
+    module="facegear.meshing.stiffness_source",
 )
 @pytest.mark.parametrize(("source", "scale"), [("fem", 1.0), ("fem_scaled", None)])
 def test_both_means_stand_beside_the_harmonics_and_modes_take_the_local_one(source, scale):
@@ -133,7 +138,7 @@ def test_modes_ask_for_the_contact_where_the_config_does_not_give_their_stiffnes
     "external source",
     "the paper, Table 2",
     capability="modal",
-    module="facegear.transmission.modes",
+    module="facegear.machine.modes",
 )
 def test_the_papers_modes_are_those_of_the_mean_that_its_config_gives():
     values = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
@@ -181,7 +186,7 @@ def test_harmonics_given_in_the_config_need_no_contact():
     "manufactured",
     "a stiffness with a first harmonic of a tenth at every load",
     capability="load_dependence",
-    module="facegear.stiffness.tables",
+    module="facegear.meshing.stiffness_source",
 )
 def test_load_dependence_lists_both_stiffnesses_at_every_load():
     table = load_dependence(load_table(contact_table()))

@@ -6,14 +6,14 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.machines import MachineInputs
-from facegear.config.stiffness import MeshStiffness, stiffness_request
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import simulate
+from facegear.build.machine import MachineInputs
+from facegear.build.plans import stiffness_request
+from facegear.meshing.stiffness_source import stiffness_from_contact, stiffness_given, unloaded_error
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import simulate
 from facegear.report.machine import machine_chapter
-from facegear.stiffness.source import stiffness_from_contact, stiffness_given
-from facegear.stiffness.tables import unloaded_error
+from facegear.schema.base import parse
+from facegear.schema.stiffness import MeshStiffness
 
 POSITIONS = np.arange(32) / 32
 VALUES = facegear.example().with_values({"transmission.transmission_error": "from_contact"}).values
@@ -39,7 +39,7 @@ def curve(positions):
     "manufactured",
     "an unloaded error of two harmonics",
     capability="stiffness",
-    module="facegear.stiffness.source",
+    module="facegear.meshing.stiffness_source",
 )
 def test_the_series_is_the_unloaded_error_without_its_mean():
     series = unloaded_error(found_for(curve(POSITIONS) - 44.8).harmonics)

@@ -11,11 +11,7 @@ from references import against, agrees
 from root_stresses import power_law
 
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
-from facegear.strength.root_stress import (
-    RootStress,
-    down_the_fillet,
-    largest_tension,
-)
+from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 
 
 @against(

@@ -8,17 +8,16 @@ from hypothesis import strategies as st
 from references import against, agrees
 
 import facegear
-from facegear.config.loads import at_mesh_torque
-from facegear.config.machines import MachineInputs
-from facegear.config.transmission import Transmission
+from facegear.build.machine import MachineInputs, at_mesh_torque
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.load_sharing.even_shares import even_shares
+from facegear.machine.ratings import mesh_table
 from facegear.pipeline.needs import stage_needs, stages_before
 from facegear.pipeline.run import call
 from facegear.pipeline.table import STAGES
+from facegear.schema.transmission import Transmission
+from facegear.sharing.even_shares import even_shares
 from facegear.strength.duty import DutyBin, machine_duty
-from facegear.strength.passage_loads import classes, hardest_tooth
-from facegear.transmission.ratings import mesh_table
+from facegear.strength.duty_loads import classes, hardest_tooth
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -40,7 +39,7 @@ def found_by(gearbox, harmonics):
     "analytic",
     "a mesh of constant stiffness without errors runs at its static force",
     capability="duty_loads",
-    module="facegear.stages.duty_loads",
+    module="facegear.pipeline.stages.duty",
 )
 def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
     gearbox = facegear.example().with_values(SMOOTH)
@@ -128,7 +127,7 @@ def test_classes_of_passages_never_do_less_harm_than_the_passages(forces, slope)
     "manufactured",
     "passages of which one tooth's are the largest",
     capability="duty_loads",
-    module="facegear.strength.passage_loads",
+    module="facegear.strength.duty_loads",
 )
 def test_the_hardest_tooth_is_the_one_whose_passages_do_most_harm():
     met = np.stack([np.arange(12) % 3, (np.arange(12) + 1) % 3], axis=1)
@@ -143,7 +142,7 @@ def test_the_hardest_tooth_is_the_one_whose_passages_do_most_harm():
     "analytic",
     "proportion",
     capability="duty_loads",
-    module="facegear.config.lumped_model",
+    module="facegear.build.lumped_model",
 )
 def test_all_torques_follow_the_one_in_an_inputs_mesh():
     values = facegear.example().values["transmission"]

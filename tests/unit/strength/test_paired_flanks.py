@@ -6,12 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.geometry.flank_errors import GEARS
 from facegear.strength.duty import FlankDuty
-from facegear.strength.flank_contacts import contacts_of, flank_contacts
-from facegear.strength.paired_flanks import met_by, worst_pressure, worst_root
+from facegear.strength.flank_contacts import contacts_of, flank_contacts, met_by, worst_pressure, worst_root
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays
+from facegear.teeth.placement import GEARS
 
 ONE = np.ones(1)
 DUTY = FlankDuty("pinion", "pinion", "drive", np.zeros(1, int), 500.0 * ONE, 1e6 * ONE, 0 * ONE)

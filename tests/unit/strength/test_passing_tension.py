@@ -7,7 +7,7 @@ import pytest
 
 from facegear.contact.nodal_loads import loads_by_tooth
 from facegear.errors import InvalidInput
-from facegear.strength.passing_tension import PassingTension
+from facegear.strength.passage import PassingTension
 from facegear.strength.root_stress import RootStress, down_the_fillet, root_stress
 
 TORQUES, POSITIONS, ROWS, COLUMNS = np.array([200.0, 500.0, 1000.0]), np.arange(4) / 4, 5, 6

@@ -9,9 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from references import against, agrees
 
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.conjugate import contact_at
-from facegear.poses.surface import PoseSurface
+from facegear.bodies import BODIES
+from facegear.machine.poses.surface import PoseSurface
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import FlankDuty
 from facegear.strength.flank_contacts import FlankContact
@@ -28,6 +27,7 @@ from facegear.strength.posed_contacts import (
     stress_ratio,
 )
 from facegear.strength.root_stress import RootStress
+from facegear.teeth.conjugate import contact_at
 from validation.poses.measure import ASSEMBLIES, LOADED_CONTACT, SURFACE, TORQUE
 
 TORQUES = np.array([300.0, 600.0, 1000.0])

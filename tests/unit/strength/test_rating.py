@@ -13,31 +13,31 @@ from hypothesis import strategies as st
 from references import against, agrees
 from root_stresses import power_law, root
 
-from facegear.config.base import parse
-from facegear.config.material_card import CARDS, material_card
-from facegear.config.model import Config, resolved_values
-from facegear.config.strength import Strength, duty_bins
-from facegear.config.yaml_file import read_yaml
+from facegear.build.config import Config, resolved_values
+from facegear.build.strength import duty_bins, material_card
 from facegear.errors import ConfigErrors, FacegearError
-from facegear.geometry.analysis import section_contact_ratio
-from facegear.plots.description import entries
-from facegear.plots.strength import damage_by_bin, life
+from facegear.report.figures.description import entries
+from facegear.report.figures.strength import damage_by_bin, life
+from facegear.schema.base import parse
+from facegear.schema.cards import CARDS
+from facegear.schema.strength import Strength
+from facegear.schema.yaml_file import read_yaml
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import DutyBin, given_duty
-from facegear.strength.fatigue import reliability
-from facegear.strength.materials import Life
-from facegear.strength.rating import (
+from facegear.strength.materials import Life, reliability
+from facegear.strength.rating import rate
+from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
+from facegear.strength.safety import (
     RatedBody,
     RatingRequest,
     hertz_stress,
     permissible_bending,
     pinion_form,
-    rate,
     reversal,
     safety,
     standard_bending,
 )
-from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
+from facegear.teeth.analysis import section_contact_ratio
 
 CARD = material_card(CARDS / "case_carburised_din3990_11.yaml")
 BODY = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
@@ -211,7 +211,7 @@ def test_a_duty_cycle_from_a_csv_is_that_of_the_config(tmp_path):
     "analytic",
     "Weibull distribution through 99 percent",
     capability="rating",
-    module="facegear.strength.fatigue",
+    module="facegear.strength.materials",
 )
 @given(total=st.floats(1e-2, 3.0), shape=st.floats(0.5, 4.0))
 def test_reliability_is_99_percent_at_the_rated_life_and_falls_with_damage(total, shape):

@@ -15,10 +15,8 @@ from root_readings import ERROR, GRID, passing
 from spur_gears import fzg_c, root_tension, slab_design
 
 from facegear.io.meshes import write_vtu
-from facegear.strength.fillet_surface import stress_surface
-from facegear.strength.root_form import root_form
-from facegear.strength.root_tables import root_arrays, root_tables
-from facegear.strength.spur import SpurGear
+from facegear.strength.root_form import SpurGear, root_form
+from facegear.strength.root_tables import root_arrays, root_tables, stress_surface
 
 ALIKE = np.zeros((2, 2), int)
 """Flanks of both gears without assembly errors."""

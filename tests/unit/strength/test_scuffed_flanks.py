@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.strength.scuffed_flanks import with_scuffing
+from facegear.strength.rating_tables import with_scuffing
 
 SPECTRUM = pd.DataFrame(
     [

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 from references import against, agrees
 from spur_gears import din_3990_11, fzg_c
 
-from facegear.config.material_card import CARDS, material_card
-from facegear.strength.factors import (
+from facegear.build.strength import material_card
+from facegear.schema.cards import CARDS
+from facegear.strength.materials import Life, damage
+from facegear.strength.root_form import (
     STRESS_CORRECTION_REFERENCE,
     contact_ratio_factor,
     elasticity_factor,
     mean_stress_factor,
     relative_notch_sensitivity,
+    root_form,
 )
-from facegear.strength.fatigue import damage
-from facegear.strength.materials import Life
-from facegear.strength.root_form import root_form
 
 STEEL = (206e9, 0.3)
 BENDING = Life((1e3, 3e6, 1e10), (2.5, 1.0, 0.85))
@@ -42,7 +42,7 @@ def test_form_and_stress_correction_of_fzg_c_gears_match_the_published_ones():
     "external source",
     "published form factors and stresses of FZG type C gears",
     capability="rating",
-    module="facegear.strength.factors",
+    module="facegear.strength.root_form",
 )
 def test_stresses_of_fzg_c_gears_match_the_published_ones():
     mesh, torque = fzg_c(), 200.0
@@ -99,7 +99,7 @@ def test_form_and_stress_correction_of_the_din_3990_11_example_for_a_load_at_the
     "third-party program",
     "DIN 3990-11 example of a public code that prints every factor (hanslhansl/din3990)",
     capability="rating",
-    module="facegear.strength.factors",
+    module="facegear.strength.root_form",
 )
 def test_safety_of_the_din_3990_11_example_with_its_load_factors():
     """Load factors, Z_B and Y_epsilon are the example's; its notch, surface and size factors are 1."""

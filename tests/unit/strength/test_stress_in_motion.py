@@ -10,18 +10,22 @@ from references import against, agrees
 from root_readings import POSITIONS, TORQUES, passing
 
 import facegear
-from facegear.config.machines import MachineInputs
-from facegear.geometry.bodies import BODIES
-from facegear.geometry.flank_errors import FLANKS
-from facegear.harmonics.series import Harmonics
+from facegear.bodies import BODIES
+from facegear.build.machine import MachineInputs
+from facegear.harmonics import Harmonics
+from facegear.machine.flanks import flank_law, flank_places
 from facegear.strength.contact_pressure import ContactPressure
-from facegear.strength.dynamic_stress import dynamic_stress_table
-from facegear.strength.flank_contacts import FlankContact
+from facegear.strength.dynamic_stress import (
+    FORCE_COLUMNS,
+    branch_forces,
+    dynamic_stress_table,
+    stress_table,
+    swept_forces,
+)
+from facegear.strength.flank_contacts import FlankContact, TensionHistory
 from facegear.strength.root_stress import down_the_fillet
 from facegear.strength.root_tables import root_tables
-from facegear.strength.stress_over_speed import FORCE_COLUMNS, branch_forces, stress_table, swept_forces
-from facegear.strength.tension_history import TensionHistory
-from facegear.transmission.flanks import flank_law, flank_places
+from facegear.teeth.placement import FLANKS
 
 PRESSURE = ContactPressure(TORQUES, np.sqrt(TORQUES), *np.zeros((4, 2)))
 EDGES_ALONE = replace(PRESSURE, pressure=np.full(2, np.nan))
@@ -153,7 +157,7 @@ def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_eac
     "analytic",
     "phase of a mesh",
     capability="dynamic_root_stress",
-    module="facegear.transmission.flanks",
+    module="facegear.machine.flanks",
 )
 def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
     stiffness = Harmonics(np.array([0, 3e7, 1e7]), np.array([4e8, 2e7, -1e7]))
@@ -180,7 +184,7 @@ SWEPT = pd.DataFrame(
     "manufactured",
     "a branch whose force is twice the speed",
     capability="stress_over_speed",
-    module="facegear.strength.stress_over_speed",
+    module="facegear.strength.dynamic_stress",
 )
 @pytest.mark.parametrize("way", [1, -1])
 def test_a_stable_stretch_counts_at_both_its_ends_and_once_where_its_pieces_meet(way):
@@ -201,7 +205,7 @@ def test_a_stable_stretch_counts_at_both_its_ends_and_once_where_its_pieces_meet
     "manufactured",
     "a sweep and a branch of known forces",
     capability="stress_over_speed",
-    module="facegear.strength.stress_over_speed",
+    module="facegear.strength.dynamic_stress",
 )
 def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import facegear
-from facegear.config.load import load_config
-from facegear.config.tooth_pair import pair_design
+from facegear.build.load import load_config
+from facegear.build.tooth_pair import pair_design
 from facegear.errors import ConfigErrors
-from facegear.geometry.limits import sharpest_fillet_radius
-from facegear.mesh.quality import scaled_jacobians
-from facegear.mesh.sizes import named_sizes, thin_fillet
-from facegear.mesh.tooth import gear_tooth
+from facegear.teeth.limits import sharpest_fillet_radius
+from facegear.teeth.mesh_quality import scaled_jacobians
+from facegear.teeth.mesh_sizes import named_sizes, thin_fillet
+from facegear.teeth.tooth_mesh import gear_tooth
 
 CONFIG = Path(__file__).parents[3] / "config" / "strength_only.yaml"
 SIZES = {"profile_mm": 2.6, "width_mm": 44, "thickness_mm": 10, "fillet_depth_mm": 0.8}

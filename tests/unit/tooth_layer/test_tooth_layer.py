@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from skfem import Basis, ElementHex2
 
-from facegear.config.elastic_bodies import body_shape, fitted_shape
-from facegear.config.load import load_config
-from facegear.config.tooth_pair import pair_design
-from facegear.gear_body.section import rectangle
-from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import gear_tooth
-from facegear.tooth_layer import fit
-from facegear.tooth_layer.rim import rim_below
+from facegear.build.elastic_bodies import body_shape, fitted_shape
+from facegear.build.load import load_config
+from facegear.build.tooth_pair import pair_design
+from facegear.parts import tooth_layer
+from facegear.parts.section import rectangle
+from facegear.parts.tooth_layer import rim_below
+from facegear.teeth.mesh_quality import hex_mesh
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.tooth_mesh import gear_tooth
 
 CONFIG = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 BODY = CONFIG.transmission.face_gear.body
@@ -48,11 +48,11 @@ def test_layer_fitted_to_the_papers_teeth_is_nearly_that_of_common_ones():
 @pytest.mark.parametrize(("hoop", "shear"), [(0.02, 0.3), (0.2, 0.05)])
 def test_fit_gives_the_numbers_of_the_layer_whose_energies_it_sees(monkeypatch, hoop, shear):
     shape = body_shape(FITTED, CONFIG.tooth_pair)
-    monkeypatch.setattr(fit, "ELEMENTS", (3, 1, 2))
+    monkeypatch.setattr(tooth_layer, "ELEMENTS", (3, 1, 2))
     layer = replace(shape.layer, hoop=hoop, shear=shear)
-    energies = fit.layer_energies(layer, shape, rim_below(shape))
-    monkeypatch.setattr(fit, "tooth_energies", lambda *given: energies)
-    found = fit.fitted_teeth(shape, pair_design(CONFIG.tooth_pair)).layer
+    energies = tooth_layer.layer_energies(layer, shape, rim_below(shape))
+    monkeypatch.setattr(tooth_layer, "tooth_energies", lambda *given: energies)
+    found = tooth_layer.fitted_teeth(shape, pair_design(CONFIG.tooth_pair)).layer
     assert (found.hoop, found.shear) == pytest.approx((hoop, shear), rel=1e-6)
 
 

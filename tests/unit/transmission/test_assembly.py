@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
 
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.assembly import assembly
-from facegear.transmission.flanks import constant_errors, flank_law
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.phases import PhaseConvention, mesh_phases
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.assembly import assembly
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_law
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import PhaseConvention, Role, Side, mesh_phases
 
 HALF = np.full(10, 50e-6)
 

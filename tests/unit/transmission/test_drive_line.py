@@ -10,14 +10,13 @@ from drive_lines import CHAINS, TILT_INERTIA, driven, on_bearings
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.transmission import statics
-from facegear.transmission.drive_line import DriveLine, TurningMass
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.loaded_modes import loaded_modes
-from facegear.transmission.mode_classes import name_modes
-from facegear.transmission.modes import modes_of
-from facegear.transmission.statics import equilibria, mean_equilibrium, static_bearing_forces
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine import statics
+from facegear.machine.drive_line import DriveLine, TurningMass
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.loaded_modes import loaded_modes
+from facegear.machine.modes import modes_of, name_modes
+from facegear.machine.statics import equilibria, mean_equilibrium, static_bearing_forces
 
 CYCLES = np.array([0.0, 0.3, 0.71])
 SHAFTS = pytest.mark.parametrize(
@@ -42,7 +41,7 @@ def swings(inertia, chain, held=0.0):
     "analytic",
     "masses on torsional springs by their characteristic equations, bodies.md 6",
     capability="shafts",
-    module="facegear.transmission.drive_line",
+    module="facegear.machine.drive_line",
 )
 def test_masses_on_torsional_springs_swing_at_the_roots_of_their_closed_form():
     engine, pinion = TurningMass("engine", 2.5e4, 0.08), TurningMass("pinion", 6e5, 0.002)

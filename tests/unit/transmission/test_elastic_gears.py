@@ -10,13 +10,14 @@ from gear_bodies import ANGLE, TEETH, gearbox
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.gear_body.excitation import phase_factors
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.elastic_gears import ElasticGears, coordinates
-from facegear.transmission.layout import Side
-from facegear.transmission.loaded_modes import loaded_modes
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.elastic_coordinates import coordinates
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Side
+from facegear.machine.loaded_modes import loaded_modes
+from facegear.parts.modes import phase_factors
+from facegear.parts.reduced_body import ReducedBody
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 DRIVE = np.array([[-np.sin(ANGLE), np.cos(ANGLE)]])
@@ -70,7 +71,7 @@ def in_the_body(body, speed, force, time):
     "analytic",
     "equations in the frame of the body, where nothing circulates",
     capability="modal",
-    module="facegear.transmission.elastic_gears",
+    module="facegear.machine.elastic_gears",
 )
 def test_load_that_stands_in_space_moves_a_turning_body_as_in_the_frame_of_the_body():
     body, speed, time = gear_bodies.small_body(), 35.0, 0.05
@@ -145,7 +146,7 @@ def test_hub_moved_as_a_rigid_whole_moves_flanks_and_momentum_as_the_same_motion
     "second implementation",
     "forced response of the whole finite-element body in space",
     capability="modal",
-    module="facegear.transmission.elastic_gears",
+    module="facegear.machine.elastic_gears",
 )
 def test_turning_splits_the_forced_response_of_two_meshes_as_another_program_has_it():
     """Hub and pinions held, errors of 1 um at 2875 Hz; at rest the two meshes are alike.
@@ -209,7 +210,7 @@ def factors_by_moving_loads(order, harmonic, angles):
     "analytic",
     "loads that move round the axis, by their spectrum",
     capability="gear_bodies",
-    module="facegear.gear_body.excitation",
+    module="facegear.parts.modes",
 )
 def test_phases_of_the_pinions_let_forces_add_up_in_one_wave_and_cancel_in_another():
     five = [3.00, 0.73, 3.10, 1.05, 2.66, 2.23, 2.56, 0.89, 3.03, 1.42, 1.96, 3.24, 1.36]

@@ -13,13 +13,13 @@ from force_tables import linear_table
 from gear_bodies import ANGLE, gearbox, mesh_forces
 from references import against, agrees
 
-from facegear.gear_body.compliance import flank_direction, influence
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.stages.gear_waves import _left_out
-from facegear.transmission.loaded_contacts import loaded_contacts
-from facegear.transmission.machine import FlankTables
-from facegear.transmission.static_gears import at_rest
-from facegear.transmission.statics import mean_equilibrium
+from facegear.machine.loaded_contacts import loaded_contacts
+from facegear.machine.machine import FlankTables
+from facegear.machine.static_gears import at_rest
+from facegear.machine.statics import mean_equilibrium
+from facegear.parts.gear_body import flank_direction, influence
+from facegear.parts.reduced_body import ReducedBody
+from facegear.pipeline.stages.gear_bodies import _left_out
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 
@@ -28,7 +28,7 @@ pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
     "second implementation",
     "statics with the influence of whole Fourier finite elements",
     capability="hunting modal",
-    module="facegear.transmission.elastic_gears",
+    module="facegear.machine.elastic_gears",
 )
 def test_left_and_right_idler_differ_on_gears_that_bend_by_as_much_as_another_program_has_it():
     rigid, flexible = gearbox(), at_rest(gearbox(gear_bodies.reference_modes()))

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
 
-from facegear.config.load import load_config
-from facegear.config.tooth_pair import pair_design
-from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.placement import mirror_design
-from facegear.geometry.unloaded import unloaded_contact
-from facegear.transmission.flanks import constant_errors
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.build.load import load_config
+from facegear.build.tooth_pair import pair_design
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role
+from facegear.teeth.design import AssemblyErrors
+from facegear.teeth.placement import mirror_design
+from facegear.teeth.unloaded import unloaded_contact
 
 SHIFT = 1e-6
 PHI = [0.02]

@@ -14,16 +14,14 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from scipy.linalg import eigh
 
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role, Side, Tilt
-from facegear.transmission.loaded_contacts import forces_by_active_sets, loaded_contacts
-from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
-from facegear.transmission.lumped_bodies import lumped_model
-from facegear.transmission.matrices import bearing_matrix, mass_diagonal
-from facegear.transmission.modal_tables import contact_table
-from facegear.transmission.mode_classes import ModeClass, name_modes
-from facegear.transmission.statics import mean_equilibrium
-from facegear.transmission.teeth import GEOMETRIC, mesh_parts
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC, mesh_parts
+from facegear.machine.layout import Role, Side, Tilt
+from facegear.machine.linear_model import bearing_matrix, lumped_model, mass_diagonal
+from facegear.machine.loaded_contacts import forces_by_active_sets, loaded_contacts
+from facegear.machine.loaded_modes import contact_table, loaded_modes, vibrating_machine
+from facegear.machine.modes import ModeClass, name_modes
+from facegear.machine.statics import mean_equilibrium
 
 ROOT = Path(__file__).parents[3]
 
@@ -51,7 +49,7 @@ def test_with_a_large_tail_torque_the_tail_idlers_upper_mesh_changes_flank():
     "second implementation",
     "active sets with NumPy beside the compiled statics",
     capability="modal",
-    module="facegear.transmission.loaded_modes",
+    module="facegear.machine.loaded_modes",
 )
 @settings(max_examples=40, deadline=None)
 @given(
@@ -203,7 +201,7 @@ def test_a_mesh_that_carries_nothing_stays_open_in_the_modes():
     "analytic",
     "mirror symmetry",
     capability="modal",
-    module="facegear.transmission.loaded_modes",
+    module="facegear.machine.loaded_modes",
 )
 @settings(max_examples=20, deadline=None)
 @given(torque=st.floats(50.0, 4000.0), backlash=st.floats(0.0, 2e-4), clearance=st.sampled_from([0.0, 2e-5]))
@@ -242,7 +240,7 @@ def test_no_mode_of_a_pinion_in_its_clearance_hangs_on_the_last_digits_of_a_torq
     "analytic",
     "eigenvalues of the machine with both flanks, by hand",
     capability="modal",
-    module="facegear.transmission.loaded_modes",
+    module="facegear.machine.loaded_modes",
 )
 def test_a_wedged_mesh_has_both_flanks_and_the_table_names_it():
     """A pinion set too deep presses both flanks of a tooth: 2 k along its way, 2 k along the gears' axis."""

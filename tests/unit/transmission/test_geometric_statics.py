@@ -12,22 +12,22 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.errors import NotConverged
-from facegear.harmonics.series import Harmonics
-from facegear.mesh_law.linear import linear_law
-from facegear.transmission.block_statics import Springs, settle_all
-from facegear.transmission.flanks import constant_errors, flank_gaps
-from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import Body, Role, Side, Tilt
-from facegear.transmission.matrices import bearing_matrix, flank_jacobian
-from facegear.transmission.static_springs import static_springs
-from facegear.transmission.statics import (
+from facegear.harmonics import Harmonics
+from facegear.machine.block_statics import Springs, settle_all, static_springs
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_gaps
+from facegear.machine.imperfections import Runout, perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Body, Role, Side, Tilt
+from facegear.machine.linear_model import bearing_matrix, flank_jacobian
+from facegear.machine.statics import (
     TOLERANCE,
     bearing_forces,
     equilibria,
     mean_equilibrium,
     static_equilibrium,
 )
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.meshing.linear import linear_law
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -71,7 +71,7 @@ def held_forces(machine):
     "analytic",
     "load sharing of a floating input in closed form",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize("bearing", 10.0 ** np.arange(5, 13))
 @pytest.mark.parametrize("misfit", [12e-6, -7e-6])
@@ -94,7 +94,7 @@ def test_a_floating_input_between_held_gears_shares_as_the_closed_form_says(bear
     "analytic",
     "load sharing of a floating input in closed form",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_both_limits_of_an_inputs_bearing():
     layout = layout_with([1e-6], [Role.INPUT])
@@ -116,7 +116,7 @@ LOOPS += [(3e7, k_id) for k_id in 2.0 * 10.0 ** np.arange(9, 16)]
     "analytic",
     "loop of input, idler and both gears in closed form",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize(("k_in", "k_id"), LOOPS)
 def test_the_loop_through_the_idlers_loads_the_upper_mesh_as_the_closed_form_says(k_in, k_id):
@@ -142,7 +142,7 @@ def test_the_loop_through_the_idlers_loads_the_upper_mesh_as_the_closed_form_say
     "analytic",
     "balance of forces of a pinion between two gears",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_twice_the_tangential_force():
     machine = machine_with(layout_with([1e3, 1e10], [Role.INPUT, Role.IDLER]), 2000.0, backlash=0.0)
@@ -163,7 +163,7 @@ def test_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_twice_the_
     "analytic",
     "base radius and tooth ratio",
     capability="hunting load_sharing_reference ratings",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_one_torque_is_one_mesh_force_over_the_base_radius_and_ratios_are_the_teeths():
     layout = make_layout((("one", Role.INPUT, 0.0),), (Side.UPPER,), kinematics=GEOMETRIC, pinion_bearing=1e8)
@@ -179,7 +179,7 @@ def test_one_torque_is_one_mesh_force_over_the_base_radius_and_ratios_are_the_te
     "analytic",
     "springs of both flanks and of the bearing in closed form",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_a_squeezed_pinion_wedges_with_both_flanks_loaded():
     bearing, pushed, half = 2e8, 180e-6, 50e-6
@@ -221,7 +221,7 @@ def random_machine(draw, most_pinions):
     "second implementation",
     "enumeration of all states of contact, numpy.linalg.lstsq",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=25, deadline=None)
 @given(st.data())
@@ -267,7 +267,7 @@ def _floats(machine):
     "analytic",
     "balance of forces and moments of every body",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=25, deadline=None)
 @given(st.data())
@@ -316,7 +316,7 @@ def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
     "analytic",
     "rigid motion",
     capability="modal hunting load_sharing_reference",
-    module="facegear.transmission.matrices",
+    module="facegear.machine.linear_model",
 )
 def test_moving_the_whole_gearbox_loads_nothing():
     """Sideways, along the axis, round the axis, and turning as the gears turn."""
@@ -344,7 +344,7 @@ def test_the_contact_problem_of_printed_meshes_is_the_dead_zone():
     "analytic",
     "normal part of a displacement",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_a_pinion_out_of_place_closes_one_mesh_by_what_it_opens_the_other():
     layout = layout_with([1e20], [Role.INPUT])
@@ -357,7 +357,7 @@ def test_a_pinion_out_of_place_closes_one_mesh_by_what_it_opens_the_other():
     "analytic",
     "lever on a tilt spring",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_a_gear_with_one_mesh_rocks_as_a_lever():
     """k_tilt / (R sin a)^2 in series with the mesh along its separating part."""
@@ -388,7 +388,7 @@ def test_tilt_of_no_give_is_the_gear_that_cannot_tilt():
     "analytic",
     "load sharing of a floating input in closed form, less its play",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_a_pinion_inside_its_clearance_floats_and_beyond_it_is_held():
     layout = layout_with([1e9], [Role.INPUT])

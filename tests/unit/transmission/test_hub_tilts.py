@@ -14,17 +14,17 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from scipy.sparse.linalg import eigsh
 
-from facegear.gear_body.matrices import body_matrices, rigid_motions
-from facegear.gear_body.mesh import body_mesh
-from facegear.gear_body.modes import order_modes
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.gear_body.reduction import reduced_body
-from facegear.gear_body.section import inertia_about, section_properties
-from facegear.load_sharing import sensitivity
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.layout import Tilt
-from facegear.transmission.static_gears import at_rest
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Tilt
+from facegear.machine.static_gears import at_rest
+from facegear.parts.body_mesh import body_mesh
+from facegear.parts.gear_body import reduced_body
+from facegear.parts.matrices import body_matrices, rigid_motions
+from facegear.parts.modes import order_modes
+from facegear.parts.reduced_body import ReducedBody
+from facegear.parts.section import inertia_about, section_properties
+from facegear.sharing import sensitivity
 
 RADIAL, TILTING, CENTRE = 3e8, 4e6, -0.02
 """Bearings, N/m and N m/rad; height of the point about which the hub tilts, m."""
@@ -122,7 +122,7 @@ def free_hub(gear_speed, count):
     "second implementation",
     "finite elements of the whole body whose bore is a rigid body on springs",
     capability="gear_waves",
-    module="facegear.transmission.elastic_gears",
+    module="facegear.machine.elastic_gears",
 )
 @pytest.mark.parametrize("side", [0, 1])
 def test_hub_that_tilts_beside_a_web_has_the_frequencies_of_a_body_whose_bore_is_free(side):
@@ -143,7 +143,7 @@ def test_stiffer_bearings_of_the_hub_come_to_a_hub_that_does_not_tilt_in_proport
     "analytic",
     "a rigid gear on springs whose centre of mass is off its bearings, by its equation of two motions",
     capability="gear_waves",
-    module="facegear.transmission.elastic_gears",
+    module="facegear.machine.elastic_gears",
 )
 def test_gear_that_does_not_bend_sways_and_tilts_with_its_gyroscopic_moments():
     """Its web is 1e6 times stiffer, which leaves 1e-6 of the compliance."""

@@ -8,18 +8,18 @@ from force_tables import power_table
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.load_sharing.quantities import quasi_static_quantities
-from facegear.load_sharing.quantity_names import PAST_LAW
-from facegear.mesh_law.force_table import ForceTable
-from facegear.transmission.flanks import constant_errors, flank_gaps, flank_law
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.loaded_contacts import loaded_contacts
-from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
-from facegear.transmission.machine import FlankTables
-from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
-from facegear.transmission.modal_tables import contact_table
-from facegear.transmission.statics import equilibria, mean_equilibrium, static_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_gaps, flank_law
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.linear_model import bearing_matrix, flank_jacobian, mass_diagonal
+from facegear.machine.loaded_contacts import loaded_contacts
+from facegear.machine.loaded_modes import contact_table, loaded_modes, vibrating_machine
+from facegear.machine.machine import FlankTables
+from facegear.machine.statics import equilibria, mean_equilibrium, static_equilibrium
+from facegear.meshing.force_table import ForceTable
+from facegear.quantities import PAST_LAW
+from facegear.sharing.quantities import quasi_static_quantities
 
 C, N = 2.4e11, 1.5
 TABLE = power_table(200, 0.2, 1e-7, 4e-4, C, N)
@@ -36,7 +36,7 @@ def made(pinions=PINIONS, sides=(Side.UPPER, Side.LOWER), torque=600.0, table=TA
     "analytic",
     "inverse of the power law of the force",
     capability="load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize("torque", [0.6, 60.0, 600.0, 3000.0])
 def test_a_mesh_stands_where_its_table_has_the_force_at_every_phase(torque):
@@ -64,7 +64,7 @@ def test_a_negative_torque_presses_the_back_flank_by_its_own_table():
     "second implementation",
     "eigenvalues of a stiffness matrix of differences",
     capability="modal",
-    module="facegear.transmission.loaded_modes",
+    module="facegear.machine.loaded_modes",
 )
 def test_frequencies_of_a_loaded_machine_are_those_of_differences_of_its_forces():
     """Each mesh has its own load; the stiffness matrix is taken from forces at displacements to either side

@@ -7,8 +7,8 @@ from free_machines import natural_modes, rigid_rotation
 from lumped_machines import drive_rows
 from references import against, agrees
 
-from facegear.transmission.lumped_bodies import lumped_model
-from facegear.transmission.mode_classes import ModeClass, name_modes
+from facegear.machine.linear_model import lumped_model
+from facegear.machine.modes import ModeClass, name_modes
 
 TABLE_2 = [0.0] * 6 + [756.7, 757.3, 757.9, 757.9, 833.5] + [1171.8] * 5
 TABLE_2 += [2260.1, 4617.0, 4770.0, 5080.8, 5406.4, 5565.2, 5581.5, 5581.5, 5622.2, 6069.2, 6438.0, 6488.0]
@@ -27,7 +27,7 @@ def paper(layout_of):
     "external source",
     "the paper, Table 2",
     capability="modal",
-    module="facegear.transmission.modes",
+    module="facegear.machine.modes",
 )
 def test_all_frequencies_of_table_2_within_its_rounding(paper):
     _, modes = paper
@@ -85,7 +85,7 @@ def test_the_rigid_rotation_deflects_no_mesh(layout_of):
 
 
 def test_a_single_face_gear_with_two_pinions_has_its_modes(layout_of):
-    from facegear.transmission.layout import Role, Side
+    from facegear.machine.layout import Role, Side
 
     layout = layout_of((("one", Role.INPUT, 0.0), ("two", Role.INPUT, 45.0)), (Side.UPPER,))
     modes = natural_modes(layout, 4.1e8)
@@ -95,7 +95,7 @@ def test_a_single_face_gear_with_two_pinions_has_its_modes(layout_of):
 
 def test_the_modal_stage_imports_nothing_heavy():
     code = (
-        "import sys; from facegear.config import lumped_model; from facegear.transmission import modes, "
+        "import sys; from facegear.schema import lumped_model; from facegear.machine import modes, "
         "mode_classes, modal_tables; print(sorted("
         "{'skfem', 'gmsh', 'matplotlib', 'meshio'} & set(sys.modules)))"
     )

@@ -12,7 +12,7 @@ import pytest
 from references import against, agrees
 
 import facegear
-from facegear.transmission.shaft_orders import loaded_machine
+from facegear.machine.shaft_orders import loaded_machine
 
 TO_SI = 0.11298
 """Inertia in lb in s2, stiffness in lb in/rad and torque in lb in, to kg m2, N m/rad and N m."""
@@ -118,7 +118,7 @@ def vibratory_torques(speeds_rpm):
     "external source",
     "Gunter and Chen 2001, example 8.1: two turbines on a ship's gear",
     capability="modal",
-    module="facegear.transmission.drive_line",
+    module="facegear.machine.drive_line",
 )
 def test_two_turbines_on_a_ships_gear_have_the_printed_frequencies():
     frequencies = 60.0 * make_marine_drive().modes().table()["frequency_hz"].to_numpy()
@@ -129,7 +129,7 @@ def test_two_turbines_on_a_ships_gear_have_the_printed_frequencies():
     "external source",
     "Gunter and Chen 2001, figure 8.10-5 as read by the authors of openTorsion",
     capability="shaft_orders",
-    module="facegear.transmission.shaft_orders",
+    module="facegear.machine.shaft_orders",
 )
 def test_the_propellers_shaft_carries_the_torque_of_the_published_figure():
     """Away from the resonance, where the damping of the book's propeller takes off less than 3 %."""
@@ -141,7 +141,7 @@ def test_the_propellers_shaft_carries_the_torque_of_the_published_figure():
     "third-party program",
     "openTorsion 0.3.2, its own example of that machine without damping",
     capability="shaft_orders",
-    module="facegear.transmission.shaft_orders",
+    module="facegear.machine.shaft_orders",
 )
 def test_the_propellers_shaft_carries_the_torque_that_opentorsion_finds():
     found = vibratory_torques(list(BY_OPENTORSION))

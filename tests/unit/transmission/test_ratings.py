@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.ratings import body_table, compute_ratings, mesh_table
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role, Side
+from facegear.machine.ratings import body_table, compute_ratings, mesh_table
 
 ROLES = st.lists(st.sampled_from([Role.INPUT, Role.IDLER, Role.TAIL]), min_size=0, max_size=4)
 SIDES = st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,), (Side.LOWER,)])
@@ -25,7 +25,7 @@ def geometric(roles, sides, torque, tail_share):
     "analytic",
     "balance of power of rigid gears",
     capability="ratings",
-    module="facegear.transmission.ratings",
+    module="facegear.machine.ratings",
 )
 @settings(max_examples=25, deadline=None)
 @given(ROLES, SIDES, st.floats(10.0, 5000.0), st.floats(0.0, 0.5), st.floats(100.0, 20000.0))
@@ -42,7 +42,7 @@ def test_power_in_is_power_out_for_any_layout_of_geometric_meshes(more, sides, t
     "analytic",
     "balance of power of every body",
     capability="ratings",
-    module="facegear.transmission.ratings",
+    module="facegear.machine.ratings",
 )
 @settings(max_examples=15, deadline=None)
 @given(ROLES, SIDES, st.floats(0.0, 0.5))
@@ -70,7 +70,7 @@ def test_what_statics_send_through_the_meshes_is_what_every_body_brings_or_takes
     "analytic",
     "tooth ratio",
     capability="ratings",
-    module="facegear.transmission.ratings",
+    module="facegear.machine.ratings",
 )
 def test_the_output_torque_is_the_sum_of_the_pinions_times_the_tooth_ratio():
     machine = geometric([Role.INPUT, Role.INPUT, Role.TAIL], (Side.LOWER, Side.UPPER), 1000.0, 0.1)
@@ -83,7 +83,7 @@ def test_the_output_torque_is_the_sum_of_the_pinions_times_the_tooth_ratio():
     "analytic",
     "ratio of the lever arms of the paper's equation 13",
     capability="ratings",
-    module="facegear.transmission.ratings",
+    module="facegear.machine.ratings",
 )
 def test_equation_13_as_printed_misses_the_balance_by_the_ratio_of_its_lever_arms():
     machine = make_machine(make_layout(), torque=1000.0, tail_share=0.0)

@@ -10,20 +10,14 @@ from lumped_machines import make_layout, make_machine
 from rocking_bodies import InOtherCoordinates, Rocking, whirl
 
 from facegear.errors import NotConverged
-from facegear.transmission import statics
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.loaded_modes import loaded_modes
-from facegear.transmission.mode_classes import name_modes
-from facegear.transmission.static_springs import has_blocks
-from facegear.transmission.statics import (
-    equilibria,
-    mean_equilibrium,
-    static_bearing_forces,
-    static_equilibrium,
-)
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.machine import statics
+from facegear.machine.block_statics import has_blocks
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC, KINEMATICS
+from facegear.machine.layout import Role, Side
+from facegear.machine.loaded_modes import loaded_modes
+from facegear.machine.modes import name_modes
+from facegear.machine.statics import equilibria, mean_equilibrium, static_bearing_forces, static_equilibrium
 
 BODY, J, STIFFNESS, POLAR = "one", 0.003, 5e4, 0.005
 PLACES = ((BODY, Role.INPUT, 0.0), ("two", Role.TAIL, 40.25))

@@ -9,16 +9,15 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.dynamics.following import follow
-from facegear.dynamics.steady_state.simulate import build_model
-from facegear.harmonics.series import Harmonics
-from facegear.load_sharing.hunting import hunting_cycle
-from facegear.transmission.flanks import slow_errors
-from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import Role
-from facegear.transmission.shaft_orders import loaded_machine, mesh_amplitudes, turn_orders
-from facegear.transmission.teeth import GEOMETRIC
-from facegear.transmission.tooth_errors import ToothErrors
+from facegear.harmonics import Harmonics
+from facegear.machine.flank_errors import slow_errors
+from facegear.machine.imperfections import Runout, ToothErrors, perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role
+from facegear.machine.shaft_orders import loaded_machine, mesh_amplitudes, turn_orders
+from facegear.motion.following import follow
+from facegear.motion.steady_state.simulate import build_model
+from facegear.sharing.hunting import hunting_cycle
 
 LAYOUT = make_layout((("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=GEOMETRIC)
 CONSTANT = Harmonics(np.zeros(1), np.array([4.1e8]))
@@ -73,7 +72,7 @@ def test_both_gears_add_up_and_each_keeps_its_own_orders():
     "analytic",
     "a runout is a sine of the angle of turn",
     capability="shaft_orders",
-    module="facegear.transmission.shaft_orders",
+    module="facegear.machine.shaft_orders",
 )
 @settings(max_examples=10, deadline=None)
 @given(st.floats(1e-6, 2e-5), st.floats(0.0, 6.0))
@@ -92,7 +91,7 @@ def test_a_runout_is_the_first_order_of_its_turn_alone(amplitude, phase):
     "second implementation",
     "equilibria of the machine turned slowly",
     capability="shaft_orders",
-    module="facegear.transmission.shaft_orders",
+    module="facegear.machine.shaft_orders",
 )
 def test_turned_slowly_the_forces_are_those_of_the_equilibria():
     machine = machine_with(5e-6)
@@ -111,7 +110,7 @@ def test_turned_slowly_the_forces_are_those_of_the_equilibria():
     "second implementation",
     "the motion followed in time until the start is forgotten",
     capability="shaft_orders",
-    module="facegear.transmission.shaft_orders",
+    module="facegear.machine.shaft_orders",
 )
 def test_running_the_forces_are_those_of_the_motion_followed_in_time():
     """While no flank parts and the mesh stiffness is constant."""

@@ -8,13 +8,13 @@ from references import against, agrees
 from ruamel.yaml import YAML
 
 import facegear
-from facegear.config.base import parse
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import MachineInputs
-from facegear.config.transmission import Transmission
+from facegear.build.machine import MachineInputs
+from facegear.build.machine_layout import ToothNumbers
 from facegear.errors import ConfigError
-from facegear.harmonics.series import Harmonics
-from facegear.stages.shafts import shafts
+from facegear.harmonics import Harmonics
+from facegear.pipeline.stages.machine import shafts
+from facegear.schema.base import parse
+from facegear.schema.transmission import Transmission
 
 TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)
 TEXT = """
@@ -53,7 +53,7 @@ def outcome(**changes):
     "analytic",
     "two equal pinions opposite each other: lever rule and compliance of bodies.md 6",
     capability="shafts",
-    module="facegear.stages.shafts",
+    module="facegear.pipeline.stages.machine",
 )
 def test_two_equal_pinions_load_their_bearings_by_the_lever_rule():
     found = outcome().content
@@ -76,7 +76,7 @@ def test_two_equal_pinions_load_their_bearings_by_the_lever_rule():
     "analytic",
     "a chain of torsional springs under one torque",
     capability="shafts",
-    module="facegear.stages.shafts",
+    module="facegear.pipeline.stages.machine",
 )
 def test_torque_winds_every_spring_of_a_chain_up():
     torsion = outcome().content["torsion"].set_index(["body", "mass"]).loc["one"]

@@ -8,9 +8,8 @@ from force_tables import power_table, two_pairs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.mesh_law.force_table import ForceTable
-from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
-from facegear.transmission.soft_tables import soften_table
+from facegear.meshing.force_table import ForceTable
+from facegear.meshing.load_dependent import LoadDependentLaw, load_dependent_law, soften_table
 
 ONE_WAVE = power_table(16, 0.2, first=0.05)
 SMOOTH = ForceTable(

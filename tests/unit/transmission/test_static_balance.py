@@ -10,16 +10,20 @@ from lumped_machines import drive_rows, make_layout, make_machine
 from references import against, agrees
 
 from facegear.errors import NotConverged
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.balance import balance, bearing_loads
-from facegear.transmission.flanks import constant_errors, flank_gaps
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import KINEMATICS
-from facegear.transmission.layout import Layout, Role, Side
-from facegear.transmission.matrices import bearing_matrix, flank_jacobian
-from facegear.transmission.printed_kinematics import PRINTED_KINEMATICS
-from facegear.transmission.statics import mean_equilibrium, static_bearing_forces, static_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_gaps
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC, KINEMATICS, PRINTED_KINEMATICS
+from facegear.machine.layout import Layout, Role, Side
+from facegear.machine.linear_model import bearing_matrix, flank_jacobian
+from facegear.machine.statics import (
+    balance,
+    bearing_loads,
+    mean_equilibrium,
+    static_bearing_forces,
+    static_equilibrium,
+)
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -64,7 +68,7 @@ def external_forces(layout: Layout, on_bearings, torques):
     "analytic",
     "balance of forces and moments of the gearbox",
     capability="hunting",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=10, deadline=None)
 @given(coupled_machines(GEOMETRIC))
@@ -80,7 +84,7 @@ def test_what_the_bearings_of_a_gearbox_take_balances_its_torques_however_they_c
     "analytic",
     "balance of forces and moments of the gearbox",
     capability="hunting",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=10, deadline=None)
 @given(coupled_machines(GEOMETRIC), st.integers(0, 2**31))
@@ -100,7 +104,7 @@ def test_external_forces_on_any_bodies_end_in_the_bearings(machine, seed):
     "analytic",
     "springs of both flanks and of the bearing in closed form",
     capability="hunting",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
     """Bearing k_b and both flanks along the gear's axis, held gear: k_b (d - u) = 2 k u sin^2 a."""
@@ -119,7 +123,7 @@ def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
     "second implementation",
     "dense linear solution with NumPy",
     capability="load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=10, deadline=None)
 @given(coupled_machines(PRINTED_KINEMATICS, backlash=0.0))

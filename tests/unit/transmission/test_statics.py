@@ -8,21 +8,20 @@ from lumped_machines import drive_rows, make_machine
 from references import against, agrees
 
 from facegear.errors import InvalidInput
-from facegear.harmonics.series import Harmonics
-from facegear.mesh_law.linear import linear_law
-from facegear.transmission.dense_statics import Contacts, Line
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.machine import Machine, balanced_torques
-from facegear.transmission.phases import PhaseConvention, mesh_phases
-from facegear.transmission.statics import static_equilibrium
+from facegear.harmonics import Harmonics
+from facegear.machine.dense_statics import Contacts, Line
+from facegear.machine.imperfections import perfect
+from facegear.machine.layout import PhaseConvention, Role, Side, mesh_phases
+from facegear.machine.machine import Machine, balanced_torques
+from facegear.machine.statics import static_equilibrium
+from facegear.meshing.linear import linear_law
 
 
 @against(
     "analytic",
     "balance of torques",
     capability="load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=30, deadline=None)
 @given(
@@ -53,10 +52,10 @@ def test_static_mesh_forces_balance_the_torques_on_every_pinion(torque, share, b
     "second implementation",
     "numpy.linalg.lstsq of the linear machine",
     capability="load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_without_backlash_statics_is_the_linear_solution(machine_of):
-    from facegear.transmission.matrices import bearing_diagonal
+    from facegear.machine.linear_model import bearing_diagonal
 
     machine = machine_of(backlash=0.0)
     directions = drive_rows(machine.layout)
@@ -77,7 +76,7 @@ def test_idlers_carry_load_on_the_opposite_flank_of_the_lower_gear(machine_of):
     "analytic",
     "mirror symmetry",
     capability="load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 def test_left_and_right_carry_the_same_where_the_machine_is_symmetric(machine_of):
     forces = static_equilibrium(machine_of()).forces

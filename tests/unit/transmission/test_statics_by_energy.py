@@ -9,13 +9,14 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from scipy.optimize import minimize
 
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import constant_errors, flank_gaps
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Body, Role, Side
-from facegear.transmission.matrices import bearing_diagonal, flank_jacobian
-from facegear.transmission.statics import bearing_forces, mean_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
+from facegear.harmonics import Harmonics
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_gaps
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Body, Role, Side
+from facegear.machine.linear_model import bearing_diagonal, flank_jacobian
+from facegear.machine.statics import bearing_forces, mean_equilibrium
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -81,7 +82,7 @@ def potential(machine):
     "third-party program",
     "scipy.optimize.minimize (BFGS) of the elastic energy",
     capability="hunting load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=25, deadline=None)
 @given(machines())

@@ -9,11 +9,10 @@ from references import against, agrees
 
 import facegear
 from facegear.errors import ConfigErrors
-from facegear.load_sharing.hunting import hunting_length
-from facegear.transmission.flanks import slow_errors, teeth_in_mesh
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.kinematics import GEOMETRIC
-from facegear.transmission.tooth_errors import ToothErrors
+from facegear.machine.flank_errors import slow_errors, teeth_in_mesh
+from facegear.machine.imperfections import ToothErrors, perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.sharing.hunting import hunting_length
 
 POSITIONS, EARLY = 8, 5e-6
 
@@ -29,7 +28,7 @@ def one_tooth(count, tooth):
     "second implementation",
     "cumulative pitch deviations of the same teeth",
     capability="hunting",
-    module="facegear.transmission.tooth_errors",
+    module="facegear.machine.imperfections",
 )
 @pytest.mark.parametrize("body", ["pinion", "gear"])
 def test_a_tooth_that_comes_early_is_met_where_its_pitch_deviation_is(body):

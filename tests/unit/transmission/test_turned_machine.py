@@ -12,13 +12,12 @@ from lumped_machines import PLACES, make_layout, make_machine
 from references import against, agrees
 
 import facegear
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.flanks import slow_errors
-from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import Role, Side
-from facegear.transmission.phases import PhaseConvention
-from facegear.transmission.statics import equilibria, static_equilibrium
-from facegear.transmission.teeth import GEOMETRIC, mesh_parts
+from facegear.harmonics import Harmonics
+from facegear.machine.flank_errors import slow_errors
+from facegear.machine.imperfections import Runout, perfect
+from facegear.machine.kinematics import GEOMETRIC, mesh_parts
+from facegear.machine.layout import PhaseConvention, Role, Side
+from facegear.machine.statics import equilibria, static_equilibrium
 
 WAVY = Harmonics(np.array([0.0, 3e-6, 1e-6]), np.array([0.0, 5e-6, -2e-6]))
 TWO_ENGINES = (("one", Role.INPUT, 0.0), ("two", Role.INPUT, 37.3))
@@ -34,7 +33,7 @@ def turned(layout, by):
     "analytic",
     "symmetry under turning",
     capability="hunting",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @settings(max_examples=25, deadline=None)
 @given(data=st.data(), by=st.floats(-143.0, 143.0), phasing=st.sampled_from(["mesh", "in_step", "given"]))
@@ -65,7 +64,7 @@ def test_turning_the_whole_machine_changes_no_flank_force(data, by, phasing):
     "analytic",
     "symmetry under turning",
     capability="load_sharing_reference",
-    module="facegear.transmission.statics",
+    module="facegear.machine.statics",
 )
 @pytest.mark.parametrize("convention", PhaseConvention)
 @pytest.mark.parametrize("lags", [None, np.zeros(10)])
@@ -80,7 +79,7 @@ def test_turning_the_printed_machine_changes_no_mesh_force(convention, lags):
     "analytic",
     "symmetry under turning",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 def test_turning_an_in_step_machine_by_a_quarter_pitch_keeps_its_vibration():
     """k(t) counted from angle 0 and e(t) from the first pinion: an RMS of 8.1 um became one of 2.7 um."""
@@ -103,7 +102,7 @@ def test_turning_an_in_step_machine_by_a_quarter_pitch_keeps_its_vibration():
     "analytic",
     "an eccentric gear is a gear displaced",
     capability="hunting following",
-    module="facegear.transmission.flanks",
+    module="facegear.machine.flanks",
 )
 @settings(max_examples=25, deadline=None)
 @given(one=runouts, side=st.sampled_from(Side), start=st.floats(-100.0, 100.0))

@@ -8,12 +8,17 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.gear_body.reduced_body import ReducedBody
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.teeth import GEOMETRIC
-from facegear.transmission.turning_modes import machine_at_speeds, turning_modes, wave_table
-from facegear.transmission.waves_over_speed import campbell_crossings, campbell_table
+from facegear.harmonics import Harmonics
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.turning_modes import (
+    campbell_crossings,
+    campbell_table,
+    machine_at_speeds,
+    turning_modes,
+    wave_table,
+)
+from facegear.parts.reduced_body import ReducedBody
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 RPM = np.pi / 30
@@ -39,7 +44,7 @@ def modes_at(machine, gear_rpm):
     "second implementation",
     "Fourier elements extrapolated, hexahedra of a whole gear",
     capability="gear_waves",
-    module="facegear.transmission.turning_modes",
+    module="facegear.machine.turning_modes",
 )
 def test_waves_pass_a_point_in_space_at_the_frequencies_that_another_program_has_and_are_kept_apart():
     machine = held_gears()
@@ -79,7 +84,7 @@ def test_both_waves_damp_alike_at_rest_and_gears_of_steel_stay_damped_at_speed()
     "analytic",
     "Jeffcott rotor with damping in its shaft: l^2 + d l + w^2 - i W d = 0",
     capability="gear_waves",
-    module="facegear.transmission.turning_modes",
+    module="facegear.machine.turning_modes",
 )
 def test_damping_that_turns_makes_a_mass_on_a_shaft_grow_beyond_its_natural_frequency():
     """One mode that moves sideways as a rigid whole: n M + g = 0 and S - P = -M."""
@@ -128,7 +133,7 @@ def two_waves():
     "analytic",
     "waves of one mode in space: sqrt(w^2 + (B + c^2) W^2) +- (n + c) W",
     capability="gear_waves",
-    module="facegear.transmission.waves_over_speed",
+    module="facegear.machine.turning_modes",
 )
 def test_lines_over_speed_follow_the_waves_of_a_gear_that_nothing_couples():
     machine = held_gears()

@@ -12,22 +12,23 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from test_elastic_gears_at_rest import below
 
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.gear_body.compliance import flank_direction, influence
-from facegear.harmonics.series import Harmonics
-from facegear.transmission import elastic_gears
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.flanks import constant_errors, flank_law
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Role
-from facegear.transmission.loaded_contacts import loaded_contacts
-from facegear.transmission.loaded_modes import loaded_modes, machine_in_motion, pressed_springs
-from facegear.transmission.machine import FlankTables, balanced_torques
-from facegear.transmission.shaft_orders import LoadedMachine, TurnOrders, loaded_machine
-from facegear.transmission.static_gears import at_rest
-from facegear.transmission.statics import mean_equilibrium
-from facegear.transmission.teeth import GEOMETRIC
-from facegear.transmission.turning_modes import machine_at_speeds
+from facegear.harmonics import Harmonics
+from facegear.machine import elastic_gears
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_law
+from facegear.machine.imperfections import perfect
+from facegear.machine.kinematics import GEOMETRIC
+from facegear.machine.layout import Role
+from facegear.machine.loaded_contacts import loaded_contacts
+from facegear.machine.loaded_modes import loaded_modes, machine_in_motion, pressed_springs
+from facegear.machine.machine import FlankTables, balanced_torques
+from facegear.machine.shaft_orders import LoadedMachine, TurnOrders, loaded_machine
+from facegear.machine.static_gears import at_rest
+from facegear.machine.statics import mean_equilibrium
+from facegear.machine.turning_modes import machine_at_speeds
+from facegear.motion.steady_state.simulate import build_model, simulate
+from facegear.parts.gear_body import flank_direction, influence
 
 pytestmark = pytest.mark.xdist_group("reference_body")  # solved once a process
 K, SPEED = 4.1e8, 5000.0
@@ -122,7 +123,7 @@ def vibrations(linear, springs, damping, speed):
     "analytic",
     "teeth and rims as springs between massless points, condensed at every place of the mesh cycle",
     capability="gear_waves modal shaft_orders",
-    module="facegear.transmission.flank_springs",
+    module="facegear.machine.loaded_contacts",
 )
 @pytest.mark.parametrize("seed", [0, 3, 7])
 def test_wedged_machine_vibrates_as_one_with_springs_of_its_bodies_between_the_flanks(seed):
@@ -172,7 +173,7 @@ def test_law_that_depends_on_the_load_couples_wedged_flanks_as_the_stiffness_tha
     "second implementation",
     "equilibria with the whole compliance between the flanks",
     capability="shaft_orders",
-    module="facegear.transmission.shaft_orders",
+    module="facegear.machine.shaft_orders",
 )
 def test_errors_of_wedged_flanks_that_turn_slowly_change_forces_as_equilibria_do():
     """One pinion, so that no body carries two meshes, of which the compliance between would be left out."""
@@ -194,7 +195,7 @@ def test_errors_of_wedged_flanks_that_turn_slowly_change_forces_as_equilibria_do
     "second implementation",
     "modes with the flanks coupled by a stiffness matrix of their own",
     capability="dynamics_response",
-    module="facegear.transmission.elastic_gears",
+    module="facegear.machine.elastic_gears",
 )
 @pytest.mark.parametrize("seed", [0, 3, 7])
 def test_attached_coordinates_couple_wedged_flanks_the_better_the_faster_they_are(seed, monkeypatch):
@@ -243,7 +244,7 @@ def test_motion_of_wedged_meshes_comes_to_that_with_all_modes():
     "second implementation",
     "eigenvalues of the whole matrices, flanks coupled by a stiffness matrix of their own",
     capability="dynamics_response",
-    module="facegear.dynamics.steady_state.simulate",
+    module="facegear.motion.steady_state.simulate",
 )
 def test_multipliers_of_wedged_meshes_are_those_of_flanks_that_are_coupled():
     machine = wedged_pinions(0, Harmonics(np.zeros(1), np.array([K])))

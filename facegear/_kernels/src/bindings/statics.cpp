@@ -12,7 +12,7 @@ namespace {
 using namespace bindings;
 using namespace statics;
 
-// Arrays of a `Springs` of facegear/transmission/static_springs.py, checked.
+// Arrays of a `Springs` of facegear/machine/block_statics.py, checked.
 class GivenSprings {
   public:
     explicit GivenSprings(const Record& given)

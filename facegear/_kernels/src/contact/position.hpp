@@ -13,7 +13,7 @@
 
 namespace facegear::contact {
 
-// Where contact is sought at first (facegear/contact/search_strip.py).
+// Where contact is sought at first (facegear/contact/position_solver.py).
 struct SearchStrip {
     double gap = 0.0;         // least gap of a column of functions, over the rigid approach of the limit
     double width = 0.0;       // by how much others in it exceed that gap, over what it is below the limit

@@ -1,4 +1,4 @@
-// The gear's surfaces in closed form, as in facegear/geometry/closed_forms.py (docs/explanation/geometry.md;
+// The gear's surfaces in closed form, as in facegear/teeth/closed_forms.py (docs/explanation/geometry.md;
 // Litvin and Fuentes 2004, chapter 18). Angles in rad, lengths in m.
 #pragma once
 

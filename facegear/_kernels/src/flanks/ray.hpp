@@ -29,7 +29,7 @@ struct Rays {
 
 enum Part : std::int8_t { NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND };
 
-// What rays (n,) hit, as `Separation` in facegear/geometry/separation.py has it.
+// What rays (n,) hit, as `Separation` in facegear/teeth/separation.py has it.
 struct Hits {
     double *gap, *u, *v, *continued, *radius;
     std::int8_t* part;

@@ -22,7 +22,7 @@ constexpr int BISECTIONS = 6;
 constexpr double PARALLEL = 1e-9;
 
 // Where a ray meets a surface: the distance (m) from its start, infinite beside the surface, where on the
-// surface as `Separation` in facegear/geometry/separation.py has it, and the gear radius (m).
+// surface as `Separation` in facegear/teeth/separation.py has it, and the gear radius (m).
 struct Hit {
     double distance, u, v, radius;
 };

@@ -17,7 +17,7 @@ struct Groups {
     Index count() const { return starts.size - 1; }
 };
 
-// Fields of a `Tally` in facegear/load_sharing/tally.py: of F = 2 M flanks, drive flanks first, and of G
+// Fields of a `Tally` in facegear/sharing/quantities.py: of F = 2 M flanks, drive flanks first, and of G
 // groups.
 struct Counted {
     List<double> mean, largest; // (F,), N

@@ -30,7 +30,7 @@ constexpr int MAX_STEPS = 200;
 constexpr double JUST_CLOSED = 1e-9;
 // Residual from which a stalled search is looked at, and roundings of the largest sum of forces that count as
 // balance: backlash of some mm leaves more than the tolerance, and a free body would slide on to no end.
-// `facegear/transmission/balance.py` accepts 32 of them.
+// `facegear/machine/statics.py` accepts 32 of them.
 constexpr double NEARLY = 1e-9, ROUNDINGS = 4.0;
 
 // Factorises the leading 3 x 3 (upper triangle) by Cholesky's method, and applies the factor to the columns

@@ -16,11 +16,11 @@ from oscillators import backlash_oscillator
 from references import against, agrees
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
-from facegear.mesh_law.power import PowerLaw
+from facegear.meshing.power import PowerLaw
+from facegear.motion.branches.continuation import ContinuationSettings
+from facegear.motion.branches.family import Family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
 
 AUTO = pd.read_csv(Path(__file__).parents[4] / "docs" / "measured" / "auto_peer.csv")
 LOADS = {"a": (0.1, 0.05), "b": (0.1, 0.1), "Fm2": (0.2, 0.05), "Fm3": (0.3, 0.05)}
@@ -46,7 +46,7 @@ def make_branch(case):
     "third-party program",
     "AUTO by xpplab 0.1.2 on a smoothed law, the smoothing going to zero (docs/measured/auto_peer.csv)",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 @pytest.mark.parametrize("case", AUTO["case"].unique())
 def test_auto_finds_our_folds_and_doublings_as_its_smoothing_goes_to_zero(case):

@@ -7,20 +7,20 @@ import pytest
 from oscillators import one_degree
 
 import facegear
-from facegear.config.machine_layout import ToothNumbers
-from facegear.config.machines import MachineInputs
-from facegear.dynamics.branches.continuation import ContinuationSettings
-from facegear.dynamics.branches.explore import explore, lies_on
-from facegear.dynamics.branches.family import Family, speed_family
-from facegear.dynamics.branches.margins import coexistence_ranges, stability_limits, stable_at
-from facegear.dynamics.branches.motion_arrays import special_arrays
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import at_parameter
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.survey import survey
-from facegear.dynamics.branches.tables import end_table
-from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
+from facegear.build.machine import MachineInputs
+from facegear.build.machine_layout import ToothNumbers
+from facegear.motion.branches.continuation import ContinuationSettings
+from facegear.motion.branches.explore import explore, lies_on
+from facegear.motion.branches.family import Family, speed_family
+from facegear.motion.branches.margins import coexistence_ranges, stability_limits, stable_at
+from facegear.motion.branches.motion_arrays import special_arrays
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.points import at_parameter
+from facegear.motion.branches.special import Kind
+from facegear.motion.branches.survey import survey
+from facegear.motion.branches.tables import end_table
+from facegear.motion.plan import Settings, State
+from facegear.motion.steady_state.simulate import build_model, simulate, static_start
 
 QUICK = Settings(tolerance=1e-8, settle=256, window=32, extensions=0, longest_period=4)
 RANGE = ContinuationSettings(0.3, 0.6)

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from oscillators import backlash_oscillator
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, follow, reverse_tangent
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.switching import doubled_branch
+from facegear.motion.branches.continuation import BranchEnd, ContinuationSettings, follow, reverse_tangent
+from facegear.motion.branches.family import Family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
+from facegear.motion.branches.switching import doubled_branch
 
 WIDE = ContinuationSettings(0.25, 2.8)
 

@@ -8,20 +8,20 @@ from lumped_machines import make_machine
 from oscillators import backlash_oscillator, one_degree, square_wave
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import (
+from facegear.meshing.linear import LinearLaw
+from facegear.motion.branches.continuation import (
     Branch,
     BranchEnd,
     ContinuationSettings,
     follow,
     reverse_tangent,
 )
-from facegear.dynamics.branches.explore import crossings, distance
-from facegear.dynamics.branches.family import Family, speed_family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.mesh_law.linear import LinearLaw
+from facegear.motion.branches.explore import crossings, distance
+from facegear.motion.branches.family import Family, speed_family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 EXACT = [0.828463984388, 0.820631087712, 0.708031618722, 1.407088466023]
 """Two folds and two grazes of oracle (a)."""

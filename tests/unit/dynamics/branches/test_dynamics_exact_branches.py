@@ -12,19 +12,19 @@ from oscillators import backlash_oscillator, meissner, one_degree, two_coordinat
 from references import against, agrees
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import (
+from facegear.motion.branches.continuation import (
     Branch,
     BranchEnd,
     ContinuationSettings,
     follow,
     reverse_tangent,
 )
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import at_parameter
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.switching import doubled_branch, symmetry_broken_branch
-from facegear.dynamics.motion import State
+from facegear.motion.branches.family import Family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.points import at_parameter
+from facegear.motion.branches.special import Kind
+from facegear.motion.branches.switching import doubled_branch, symmetry_broken_branch
+from facegear.motion.plan import State
 
 WIDE = ContinuationSettings(0.5, 2.2)
 
@@ -73,7 +73,7 @@ def branch_a(amplitude=0.05, in_gap=None) -> Branch:
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_oracle_a_has_two_folds_and_two_grazes():
     branch = branch_a()
@@ -94,7 +94,7 @@ def test_oracle_a_has_two_folds_and_two_grazes():
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.points",
+    module="facegear.motion.branches.points",
 )
 @pytest.mark.parametrize(
     ("speed", "state", "extremes", "multipliers"),
@@ -126,7 +126,7 @@ def test_unstable_orbits_of_oracle_a(speed, state, extremes, multipliers):
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_oracle_b_has_its_folds_and_doublings():
     branch = branch_a(0.1)
@@ -147,7 +147,7 @@ def test_oracle_b_has_its_folds_and_doublings():
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.switching",
+    module="facegear.motion.branches.switching",
 )
 @pytest.mark.parametrize("start", [0, 1])
 def test_period_two_curve_of_oracle_b_joins_both_doublings(start):
@@ -182,7 +182,7 @@ def test_period_two_curve_of_oracle_b_joins_both_doublings(start):
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.points",
+    module="facegear.motion.branches.points",
 )
 def test_unstable_period_two_orbit_of_oracle_b():
     point = orbit(backlash(0.1).over(2), 1.2, 0.4151, -0.0089)
@@ -199,7 +199,7 @@ def test_unstable_period_two_orbit_of_oracle_b():
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_oracle_c_contact_only_damping():
     branch = branch_a(0.05, 0.01)
@@ -221,7 +221,7 @@ def test_oracle_c_contact_only_damping():
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.points",
+    module="facegear.motion.branches.points",
 )
 def test_saltation_matters_where_damping_in_contact_meets_variable_stiffness():
     period_map = square_wave(0.01)
@@ -234,7 +234,7 @@ def test_saltation_matters_where_damping_in_contact_meets_variable_stiffness():
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.switching",
+    module="facegear.motion.branches.switching",
 )
 def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
     period_map = two_sided()
@@ -270,7 +270,7 @@ SYMMETRIC = (1.674260831215, 0.364887573423)
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_oracle_e_square_wave_folds_and_unstable_orbit():
     period_map = square_wave()
@@ -295,7 +295,7 @@ def test_oracle_e_square_wave_folds_and_unstable_orbit():
     "analytic",
     "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_two_coordinates_lose_stability_to_a_torus_and_regain_it():
     period_map = PeriodMap(Family("W", lambda speed: (two_coordinates(), speed)), 1, 1e-14)
@@ -316,7 +316,7 @@ def test_two_coordinates_lose_stability_to_a_torus_and_regain_it():
     "analytic",
     "onset of contact loss of the linear oscillator",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_a_brief_loss_of_contact_at_resonance_is_met_by_long_steps():
     """At the peak of a linear resonance the amplitude exceeds the mean deflection by 1 in 4000 only."""
@@ -345,7 +345,7 @@ def test_same_points_with_other_steps_from_either_end(largest):
     "own convergence",
     "integration tolerance 1e-10",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_tolerance_moves_special_points_by_no_more_than_a_millionth():
     lists = [

@@ -8,11 +8,11 @@ from oscillators import backlash_oscillator
 from references import against, agrees
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import ContinuationSettings
-from facegear.dynamics.branches.family import Plane
-from facegear.dynamics.branches.loci import Corner, LocusRun, follow_locus
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
+from facegear.motion.branches.continuation import ContinuationSettings
+from facegear.motion.branches.family import Plane
+from facegear.motion.branches.loci import Corner, LocusRun, follow_locus
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
 
 
 def parent(plane, second):
@@ -24,7 +24,7 @@ def parent(plane, second):
     "analytic",
     "folds and cusps of the oscillator with backlash, closed pieces with 50 digits",
     capability="branches_loci",
-    module="facegear.dynamics.branches.loci",
+    module="facegear.motion.branches.loci",
 )
 @pytest.mark.parametrize(
     ("mean", "up", "down"),
@@ -50,7 +50,7 @@ def test_fold_locus_passes_the_folds_at_other_loads(mean, up, down):
     "analytic",
     "folds and cusps of the oscillator with backlash, closed pieces with 50 digits",
     capability="branches_loci",
-    module="facegear.dynamics.branches.loci",
+    module="facegear.motion.branches.loci",
 )
 def test_fold_locus_passes_its_cusp():
     plane = Plane(("W", "Fm"), lambda speed, load: (backlash_oscillator(speed, 0.05, load), speed))
@@ -69,7 +69,7 @@ def test_fold_locus_passes_its_cusp():
     "analytic",
     "folds and cusps of the oscillator with backlash, closed pieces with 50 digits",
     capability="branches_loci",
-    module="facegear.dynamics.branches.loci",
+    module="facegear.motion.branches.loci",
 )
 def test_two_period_doublings_meet_where_their_locus_turns():
     plane = Plane(("W", "Fa"), lambda speed, load: (backlash_oscillator(speed, 0.05, 0.1, load), speed))
@@ -90,7 +90,7 @@ def test_two_period_doublings_meet_where_their_locus_turns():
     "analytic",
     "scaling of the equation of motion",
     capability="branches_loci",
-    module="facegear.dynamics.branches.loci",
+    module="facegear.motion.branches.loci",
 )
 def test_scaling_clearance_and_load_together_moves_no_fold():
     """x / s obeys the same equation: along the locus in the common scale s the speed stays."""

@@ -11,18 +11,18 @@ from oscillators import backlash_oscillator
 from references import against, agrees
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, follow, reverse_tangent
-from facegear.dynamics.branches.explore import crossings, explore, lies_on
-from facegear.dynamics.branches.family import Family, machine_plane, speed_family
-from facegear.dynamics.branches.margins import coexistence_ranges, passed_by, stability_limits
-from facegear.dynamics.branches.operating_tables import jump_table
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import at_parameter, without_neutral
-from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.survey import survey
-from facegear.dynamics.branches.sweep_orbits import SweptMotion
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.motion.branches.continuation import BranchEnd, ContinuationSettings, follow, reverse_tangent
+from facegear.motion.branches.explore import crossings, explore, lies_on
+from facegear.motion.branches.family import Family, machine_plane, speed_family
+from facegear.motion.branches.margins import coexistence_ranges, passed_by, stability_limits
+from facegear.motion.branches.motion_arrays import SweptMotion
+from facegear.motion.branches.operating_tables import jump_table
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.points import at_parameter, without_neutral
+from facegear.motion.branches.special import Kind
+from facegear.motion.branches.survey import survey
+from facegear.motion.plan import Settings
+from facegear.motion.steady_state.simulate import build_model, simulate
 
 QUICK = Settings(tolerance=1e-8, settle=256, window=32, extensions=0, longest_period=4)
 WIDE = ContinuationSettings(0.25, 2.6)
@@ -44,7 +44,7 @@ def starts():
     "second implementation",
     "share of the same box of starts by another program, 0.3651 +- 0.0005",
     capability="branches_starts",
-    module="facegear.dynamics.branches.explore",
+    module="facegear.motion.branches.explore",
 )
 def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
     """0.3651 +- 0.0005 of the box x0 in 0 .. 2, v0 in -0.5 .. 0.5."""
@@ -59,7 +59,7 @@ def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
     "analytic",
     "fold speeds of the oscillator with backlash in closed pieces",
     capability="branches_starts branches",
-    module="facegear.dynamics.branches.survey",
+    module="facegear.motion.branches.survey",
 )
 def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
     period_map, found = starts
@@ -130,7 +130,7 @@ def machine_branch():
     "second implementation",
     "central differences of the period map",
     capability="branches",
-    module="facegear.dynamics.branches.period_map",
+    module="facegear.motion.branches.period_map",
 )
 def test_matrix_of_the_map_agrees_with_differences_of_the_map(machine_branch):
     """The determinant alone is blind to errors of stiffness (Liouville)."""
@@ -186,7 +186,7 @@ def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine
     "own convergence",
     "integration tolerances 1e-6 and 1e-10",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_machine_has_the_same_points_at_other_tolerances(machine_branch, tolerance):
@@ -203,7 +203,7 @@ def test_machine_has_the_same_points_at_other_tolerances(machine_branch, toleran
     "analytic",
     "scaling of the equation of motion",
     capability="branches",
-    module="facegear.dynamics.branches.continuation",
+    module="facegear.motion.branches.continuation",
 )
 def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machine_branch):
     model, period_map, branch = machine_branch

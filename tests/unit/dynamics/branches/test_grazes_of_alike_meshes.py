@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.dynamics.branches.grazes import grazes
-from facegear.dynamics.branches.locate import _join
-from facegear.dynamics.branches.special import Kind, Special
+from facegear.motion.branches.grazes import grazes
+from facegear.motion.branches.locate import _join
+from facegear.motion.branches.special import Kind, Special
 
 EDGE = 1.0
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 from lumped_machines import make_machine
 
-from facegear.config.branches import branch_plan
-from facegear.dynamics.branches import machine
-from facegear.dynamics.branches.machine import random_starts, scattered
-from facegear.dynamics.integrator.system import machine_system
-from facegear.dynamics.steady_state.simulate import build_model
+from facegear.build.plans import branch_plan
+from facegear.motion.branches import machine
+from facegear.motion.branches.machine import random_starts, scattered
+from facegear.motion.integrator.system import machine_system
+from facegear.motion.steady_state.simulate import build_model
 
 SPEED = 6200.0
 

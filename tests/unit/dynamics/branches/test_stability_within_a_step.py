@@ -11,10 +11,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from whole_branches import branch_at
 
-from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.special import Kind
+from facegear.motion.branches.continuation import BranchEnd, ContinuationSettings
+from facegear.motion.branches.family import Family
+from facegear.motion.branches.period_map import PeriodMap
+from facegear.motion.branches.special import Kind
 
 BEARINGS = np.array([0.2, 1.1])
 MESH = np.array([1.0, 0.8])
@@ -68,7 +68,7 @@ def changes_of_stability(branch):
     "analytic",
     "multipliers of a linear system in two pieces, by matrix exponentials",
     capability="branches",
-    module="facegear.dynamics.branches.between",
+    module="facegear.motion.branches.special",
 )
 @pytest.mark.parametrize("damping", [0.02, 0.003, 0.0003])
 def test_every_unstable_band_of_a_linear_machine_is_met_at_the_default_step(damping):
@@ -84,7 +84,7 @@ def test_every_unstable_band_of_a_linear_machine_is_met_at_the_default_step(damp
     "analytic",
     "multipliers of a linear system in two pieces, by matrix exponentials",
     capability="branches",
-    module="facegear.dynamics.branches.between",
+    module="facegear.motion.branches.special",
 )
 @pytest.mark.parametrize("largest", [0.3, 1.2, 0.1])
 def test_doublings_of_the_loaded_oscillator_with_two_modes_do_not_depend_on_the_step(largest):
@@ -121,7 +121,7 @@ def scipy_multipliers(speed, depth, damping):
     "third-party program",
     "multipliers of Mathieu's equation in two coordinates by SciPy's DOP853",
     capability="branches",
-    module="facegear.dynamics.branches.between",
+    module="facegear.motion.branches.special",
 )
 def test_stability_of_mathieus_equation_in_two_coordinates_is_that_of_scipy():
     depth, damping = 0.4, 0.01

@@ -1,0 +1,323 @@
+"""Limits of a gear's face, and early warnings about a run from geometry and statics."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import radians
+from typing import Any
+
+import numpy as np
+
+from facegear.build.lumped_model import machine
+from facegear.build.machine_layout import lumped_sections
+from facegear.build.strength import rating_request
+from facegear.build.tooth_pair import ToothPair, pair_design
+from facegear.errors import ConfigError, FacegearError
+from facegear.harmonics import Harmonics
+from facegear.machine.ratings import mesh_table
+from facegear.schema.plausibility import MESH_STIFFNESS, USUAL_FACE_MODULES
+from facegear.schema.strength import Strength
+from facegear.strength.safety import hertz_stress, pinion_form
+from facegear.teeth.analysis import (
+    PairAnalysis,
+    analyse,
+    jam,
+    jam_in_words,
+    section_contact_ratio,
+    summary_in_words,
+)
+from facegear.teeth.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
+from facegear.teeth.limits import FaceRange, face_range, radius_limits
+from facegear.teeth.validate import check_shaper
+
+
+def limits_in_words(shaper_teeth: int, pinion_teeth: int, **pair_numbers: Any) -> str:
+    """Describe both limits of the face radii in one line.
+
+    Parameters
+    ----------
+    shaper_teeth : int
+        Number of teeth of the shaper; 0: three more than the pinion.
+    pinion_teeth : int
+        Number of teeth of the pinion.
+    **pair_numbers : Any
+        The other arguments of `face_limits`.
+
+    Returns
+    -------
+    str
+        Both radii (mm) and what limits them.
+
+    Raises
+    ------
+    ConfigError
+        For numbers that no pair can have.
+    """
+    shaper = shaper_teeth or pinion_teeth + 3
+    radii = face_limits(shaper_teeth=shaper, pinion_teeth=pinion_teeth, **pair_numbers)
+    return f"face_gear radii in mm, with a shaper of {shaper} teeth: {radii}"
+
+
+def face_limits(
+    pinion_teeth: int,
+    face_gear_teeth: int,
+    module_mm: float,
+    pressure_angle_deg: float,
+    shaper_teeth: int,
+    pinion_addendum_modules: float = 1.0,
+    pinion_dedendum_modules: float = 1.25,
+    profile_shift_modules: float = 0.0,
+    gear_addendum_modules: float = 1.0,
+    shaper_addendum_modules: float = 1.25,
+    shaper_tip_rounding_modules: float = 0.0,
+) -> FaceRange:
+    """Compute the radii between which the face of a face gear may lie.
+
+    Parameters
+    ----------
+    pinion_teeth : int
+        Number of teeth of the pinion, 5 to 500.
+    face_gear_teeth : int
+        Number of teeth of the face gear, more than the pinion's, at most 2000.
+    module_mm : float
+        Module, 0.1 to 100 mm.
+    pressure_angle_deg : float
+        Pressure angle, 10 to 40 deg.
+    shaper_teeth : int
+        Number of teeth of the shaper.
+    pinion_addendum_modules : float
+        Addendum of the pinion in modules (unit 1).
+    pinion_dedendum_modules : float
+        Dedendum of the pinion in modules (unit 1).
+    profile_shift_modules : float
+        Profile shift of the pinion in modules (unit 1).
+    gear_addendum_modules : float
+        Addendum of the face gear in modules (unit 1).
+    shaper_addendum_modules : float
+        Addendum of the shaper in modules (unit 1).
+    shaper_tip_rounding_modules : float
+        Tip rounding of the shaper in modules (unit 1).
+
+    Returns
+    -------
+    FaceRange
+        Both radii (m) and what limits them.
+
+    Raises
+    ------
+    ConfigError
+        For numbers that no pair can have.
+    """
+    if not 5 <= pinion_teeth <= 500:
+        raise ConfigError("pinion_teeth", pinion_teeth, "from 5 to 500")
+    if not pinion_teeth < face_gear_teeth <= 2000:
+        requirement = f"more than the pinion's {pinion_teeth}, at most 2000"
+        raise ConfigError("face_gear_teeth", face_gear_teeth, requirement)
+    if not 0.1 <= module_mm <= 100.0:
+        raise ConfigError("module_mm", module_mm, "from 0.1 to 100")
+    if not 10.0 <= pressure_angle_deg <= 40.0:
+        raise ConfigError("pressure_angle_deg", pressure_angle_deg, "from 10 to 40")
+    for name, value, low, high in (
+        ("pinion_addendum_modules", pinion_addendum_modules, 0.1, 2.0),
+        ("pinion_dedendum_modules", pinion_dedendum_modules, 0.1, 2.5),
+        ("profile_shift_modules", profile_shift_modules, -1.0, 1.0),
+        ("gear_addendum_modules", gear_addendum_modules, 0.1, 2.0),
+        ("shaper_addendum_modules", shaper_addendum_modules, 0.1, 2.5),
+        ("shaper_tip_rounding_modules", shaper_tip_rounding_modules, 0.0, 0.6),
+    ):
+        if not low <= value <= high:
+            raise ConfigError(name, value, f"from {low:g} to {high:g}")
+    m = 1e-3 * module_mm
+    pinion = PinionGeometry(
+        teeth=pinion_teeth,
+        width=m,
+        addendum=m * pinion_addendum_modules,
+        dedendum=m * pinion_dedendum_modules,
+        rack_tip_radius=0.0,
+        bore_radius=m,
+        profile_shift=m * profile_shift_modules,
+    )
+    gear = FaceGearGeometry(
+        teeth=face_gear_teeth,
+        inner_radius=m,
+        outer_radius=m,
+        addendum=m * gear_addendum_modules,
+        rim_thickness=m,
+    )
+    tool = Shaper(shaper_teeth, m * shaper_addendum_modules, m * shaper_tip_rounding_modules)
+    design = PairDesign(m, radians(pressure_angle_deg), pinion, gear, tool)
+    check_shaper(design)
+    return face_range(design, radius_limits(design))
+
+
+POSITIONS = 16
+"""Positions of a pitch that are looked at; the smallest gap is refined between them."""
+LIGHTEST = 0.05
+"""Part of the largest mesh load below which the torques of the contact analysis need not reach down."""
+NOTCHES = (1.0, 8.0)
+"""Range of q_s in which ISO 6336-3 gives the stress correction."""
+ROUNDING = 1e-6
+"""Relative difference of torques that is rounding, or that of an estimated stiffness."""
+
+
+@dataclass(frozen=True)
+class EarlyFindings:
+    """Lines about a case.
+
+    Attributes
+    ----------
+    failures
+        What would end a stage of the run.
+    remarks
+        What the run would warn of.
+    facts
+        Key numbers of the geometry.
+    """
+
+    failures: tuple[str, ...]
+    remarks: tuple[str, ...]
+    facts: tuple[str, ...]
+
+
+def pair_findings(values: Mapping[str, Any]) -> EarlyFindings:
+    """Interference, clearance and whether the fillets can be rated.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of a validated config with what follows from other keys filled in (`resolved`).
+
+    Returns
+    -------
+    EarlyFindings
+        Without lines for a pair without bodies.
+    """
+    if values["tooth_pair"]["pinion"] is None:
+        return EarlyFindings((), (), ())
+    design = pair_design(ToothPair.of_config(values["tooth_pair"]))
+    try:
+        analysis = analyse(design, POSITIONS)
+        stuck = jam(design, analysis)
+    except FacegearError as error:
+        return EarlyFindings((f"tooth_pair: {error}",), (), ())
+    failures: list[str] = []
+    remarks: list[str] = []
+    if stuck is not None:
+        failures.append(jam_in_words(analysis, stuck))
+    elif analysis.interference is not None:
+        from_contact = values["mesh_stiffness"]["source"] != "harmonics"
+        lines = failures if from_contact else remarks
+        lines.append(_interference(analysis, from_contact))
+    if analysis.contact_ratio < 1.0:
+        remarks.append(
+            f"tooth_pair: contact ratio {analysis.contact_ratio:.3f}, below 1: tooth pairs do not overlap, "
+            "and flanks touch with their edges"
+        )
+    gear, path = design.face_gear, 0.5 * design.module * design.face_gear.teeth
+    if not gear.inner_radius <= path <= gear.outer_radius:
+        remarks.append(
+            f"tooth_pair: the path of contact, at gear radius {1e3 * path:.1f} mm, lies beside the face of "
+            f"{1e3 * gear.inner_radius:g} to {1e3 * gear.outer_radius:g} mm: flanks touch at its end"
+        )
+    unrated, beyond = _rating(values, design)
+    failures, remarks = failures + unrated, remarks + beyond
+    return EarlyFindings(tuple(failures), tuple(remarks), (f"geometry: {summary_in_words(analysis)}",))
+
+
+def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
+    """Meshes without load at rest, and torques outside those of the contact analysis.
+
+    Parameters
+    ----------
+    values : mapping
+        Plain values of a validated config with what follows from other keys filled in (`resolved`).
+
+    Returns
+    -------
+    EarlyFindings
+        Without lines for a config without a machine.
+    """
+    if values["transmission"] is None:
+        return EarlyFindings((), (), ())
+    # Imported here: statics need machine code, which a pair without a machine does not.
+    section, teeth = lumped_sections(values["transmission"], values["tooth_pair"])
+    stiffness = Harmonics(np.zeros(1), np.array([_stiffness(values)]))
+    no_error = Harmonics(np.zeros(1), np.zeros(1))
+    try:
+        meshes = mesh_table(machine(section, teeth, stiffness, no_error), values["dynamics"]["speed_rpm"])
+    except FacegearError as error:
+        return EarlyFindings((), (f"the machine at rest, with an estimated mesh stiffness: {error}",), ())
+    remarks = []
+    open_ones = meshes.loc[meshes["flank"] == "open", "mesh"]
+    if len(open_ones):
+        remarks.append(f"no load at rest: {', '.join(open_ones)}")
+    if values["mesh_stiffness"]["source"] != "harmonics":
+        loads = meshes.set_index("mesh")["pinion_torque_n_m"].abs()
+        remarks += _unsolved(values, dict(loads[loads > 0.0]))
+    return EarlyFindings((), tuple(remarks), ())
+
+
+def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
+    gap = analysis.interference
+    assert gap is not None
+    consequence = (
+        "no mesh stiffness can be computed" if from_contact else "the given mesh stiffness leaves it out"
+    )
+    return (
+        f"tooth_pair: the teeth interfere: at gear radius {1e3 * gap.radius:.1f} mm the gear's "
+        f"{gap.gear_part} stands {-1e6 * gap.gap:.1f} um deep in the pinion's {gap.pinion_part}; "
+        f"{consequence}"
+    )
+
+
+def _rating(values: Mapping[str, Any], design: PairDesign) -> tuple[list[str], list[str]]:
+    """Why the pair cannot be rated, and where the rating leaves the range of its standard."""
+    if values["strength"] is None:
+        return [], []
+    ratio = section_contact_ratio(design)
+    try:
+        form = pinion_form(design, ratio)
+        hertz_stress(design, ratio, rating_request(Strength.of_config(values["strength"]), design))
+    except FacegearError as error:
+        text = str(error)
+        return [text if text.startswith("strength") else f"strength: {text}"], []
+    low, high = NOTCHES
+    notch = form.notch_parameter
+    if low <= notch < high:
+        return [], []
+    line = (
+        f"strength: notch parameter q_s = {notch:.3g} of the pinion's fillet, outside the {low:g} to "
+        f"{high:g} of ISO 6336-3; tooth_pair.pinion.rack_tip_radius_modules rounds it"
+    )
+    return [], [line]
+
+
+def _stiffness(values: Mapping[str, Any]) -> float:
+    """Mean mesh stiffness, N/m: as given, or what a steel mesh of this face width has."""
+    mean = values["mesh_stiffness"]["mean_n_per_m"]
+    if mean is not None:
+        return float(mean)
+    gear, module = values["tooth_pair"]["face_gear"], values["tooth_pair"]["module_mm"]
+    face = USUAL_FACE_MODULES * module if gear is None else gear["outer_radius_mm"] - gear["inner_radius_mm"]
+    return MESH_STIFFNESS * 1e-3 * float(face)
+
+
+def _unsolved(values: Mapping[str, Any], loads: Mapping[str, float]) -> Iterator[str]:
+    """Loads of meshes at rest, N m, that lie outside the torques of the contact analysis."""
+    if not loads:
+        return
+    low, high = values["contact"]["torques_n_m"][0], values["contact"]["torques_n_m"][-1]
+    heaviest = max(loads, key=lambda mesh: loads[mesh])
+    if loads[heaviest] > high * (1.0 + ROUNDING):
+        yield (
+            f"contact.torques_n_m ends at {high:g}: {heaviest} carries about {loads[heaviest]:.3g} N m "
+            "at rest, so that its numbers are extrapolated"
+        )
+    if values["mesh_stiffness"]["mesh_law"] != "load_dependent":
+        return
+    light = [mesh for mesh, load in loads.items() if LIGHTEST * loads[heaviest] < load < low]
+    if light:
+        lightest = min(light, key=lambda mesh: loads[mesh])
+        yield (
+            f"contact.torques_n_m begins at {low:g}: {lightest} carries about {loads[lightest]:.3g} N m "
+            "at rest"
+        )

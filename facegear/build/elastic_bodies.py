@@ -1,0 +1,414 @@
+"""The bodies of face gears that bend, from the config: their sections in SI units, and what these must be."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import radians, tan
+from typing import Any, NoReturn
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.build.tooth_pair import ToothPair, pair, pair_design
+from facegear.errors import ConfigError, InvalidInput
+from facegear.parts import section as shapes
+from facegear.parts import wheel
+from facegear.parts.wheel import Patch, require_meshable
+from facegear.schema.gear_body import BodySection
+from facegear.schema.transmission import Transmission
+from facegear.teeth.section_outline import tooth_fill
+
+THINNEST = "thinnest wall of the section"
+"""Name of the quantity by which `facegear.parts` refuses a thin wall."""
+KEYS = {
+    "outer radius of the hub": "hub.outer_radius_mm",
+    "bore radius of the hub": "hub.bore_radius_mm",
+    "inner radius of the rim": "rim.inner_radius_mm",
+    "back of the hub": "hub.back_mm",
+    "back of the rim": "rim.back_mm",
+    "offset of the web": "web.offset_mm",
+    "corners of the section": "corners_mm",
+    THINNEST: "corners_mm",
+}
+"""Keys of the section by the words in which its shape is refused."""
+MASS_ROUNDING = 1e-6
+"""Largest part of the mass of a section by which the mass of the config may lie below it, from rounding."""
+ON_LINE = 1e-9
+"""Distance (m) up to which a corner counts as lying on a line: rounding."""
+
+
+def body_of(section: Transmission, side: str) -> BodySection | None:
+    """Return the body of a face gear.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    side : str
+        `lower` or `upper`.
+
+    Returns
+    -------
+    BodySection or None
+        Section of the body; None for a rigid gear.
+    """
+    single_gear = section.single_gears.get(side)
+    return (single_gear.body if single_gear is not None else None) or section.face_gear.body
+
+
+def elastic_gears(section: Transmission) -> dict[str, BodySection]:
+    """Return the bodies of the face gears that bend.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+
+    Returns
+    -------
+    dict[str, BodySection]
+        Sections of the bodies by side.
+    """
+    bodies = {side: body_of(section, side) for side in section.face_gears}
+    return {side: body for side, body in bodies.items() if body is not None}
+
+
+def any_elastic(transmission: Mapping[str, Any] | None) -> bool:
+    """Whether a face gear bends.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any] or None
+        Plain values of section `transmission`; None without it.
+
+    Returns
+    -------
+    bool
+        True if one of the gears has a body that bends.
+    """
+    if transmission is None:
+        return False
+    parts = (transmission["face_gear"], *transmission["single_gears"].values())
+    return any(part.get("body") is not None for part in parts)
+
+
+def pitch_height(teeth: ToothPair) -> float:
+    """Height of the pitch plane over the plane on which the contact analysis clamps the teeth.
+
+    Parameters
+    ----------
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    float
+        Height, m.
+    """
+    assert teeth.face_gear is not None and teeth.shaper is not None
+    return 1e-3 * (teeth.face_gear.rim_thickness_mm + teeth.module_mm * teeth.shaper.addendum_modules)
+
+
+def contact_patch(section: BodySection, teeth: ToothPair) -> Patch:
+    """Return the patch of the rim on which a mesh presses.
+
+    Parameters
+    ----------
+    section : BodySection
+        Section of the body.
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    Patch
+        Its height (m) and half its width (rad).
+    """
+    pitch = 2.0 * np.pi / teeth.face_gear_teeth
+    return Patch(pitch_height(teeth), 0.5 * section.contact_width_pitches * pitch)
+
+
+def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
+    """Return the cross-section of a body in SI units.
+
+    Parameters
+    ----------
+    section : BodySection
+        Section of the body.
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    shapes.Section
+        Corners (m), material and tooth layer of the cross-section.
+
+    Raises
+    ------
+    InvalidInput
+        For a cross-section that cannot exist.
+    """
+    gear = teeth.face_gear
+    assert gear is not None and teeth.shaper is not None
+    inner, outer = 1e-3 * gear.inner_radius_mm, 1e-3 * gear.outer_radius_mm
+    top = 1e-3 * gear.rim_thickness_mm
+    corners, held_edges = _polygon(section, inner, outer, top)
+    tip = pitch_height(teeth) + 1e-3 * teeth.module_mm * gear.addendum_modules
+    material = pair(teeth).material("face_gear")
+    if (material_section := section.material) is not None:
+        material = type(material)(1e9 * material_section.young_modulus_gpa, material_section.poisson_ratio)
+    layer = shapes.Layer(inner, outer, top, tip) if section.teeth else None
+    if layer is not None and section.teeth == "fitted":
+        fill_factor, centre = tooth_fill(pair_design(teeth))
+        layer = replace(layer, density=fill_factor, taper=6.0 * (0.5 - centre))
+    return shapes.Section(corners, held_edges, (inner, outer), material, section.density_kg_per_m3, layer)
+
+
+def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
+    """Return the cross-section of a body, as `body_shape`, with its teeth as stiff as `body.teeth` says.
+
+    Parameters
+    ----------
+    section : BodySection
+        Section of the body.
+    teeth : ToothPair
+        Section `tooth_pair` of the config, with bodies.
+
+    Returns
+    -------
+    shapes.Section
+        The cross-section in SI units.
+
+    Raises
+    ------
+    NotConverged
+        If the stiffness of the teeth is not found.
+    """
+    shape = body_shape(section, teeth)
+    if section.teeth != "fitted":
+        return shape
+    from facegear.parts.tooth_layer import fitted_teeth  # loads finite elements
+
+    return fitted_teeth(shape, pair_design(teeth))
+
+
+def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tuple[Array, tuple[bool, ...]]:
+    """Corners in m, anticlockwise, and for each edge whether it is held."""
+    if section.corners_mm:
+        config_corners = 1e-3 * np.array(section.corners_mm)
+        shapes.require_simple(config_corners)
+        corners = shapes.anticlockwise(config_corners)
+        if section.held_edges:
+            is_held = np.isin(np.arange(1, len(config_corners) + 1), section.held_edges)
+            return corners, tuple(
+                (is_held if np.array_equal(corners, config_corners) else is_held[::-1]).tolist()
+            )
+        return corners, bore(corners)
+    rim = section.rim
+    assert rim is not None
+    rim_inner = inner if rim.inner_radius_mm is None else 1e-3 * rim.inner_radius_mm
+    rim_outer = outer if rim.outer_radius_mm is None else 1e-3 * rim.outer_radius_mm
+    if rim_inner >= rim_outer:
+        raise InvalidInput("inner radius of the rim", 1e3 * rim_inner, f"below {1e3 * rim_outer:g} mm")
+    whole = wheel.Rim(rim_inner, rim_outer, 1e-3 * rim.back_mm, top)
+    if section.hub is None or section.web is None:
+        corners = shapes.rectangle(rim_inner, rim_outer, whole.back, top)
+    else:
+        hub, web = section.hub, section.web
+        corners = wheel.wheel(
+            wheel.Hub(*(1e-3 * getattr(hub, key) for key in type(hub).model_fields)),
+            wheel.Web(
+                1e-3 * web.hub_thickness_mm,
+                1e-3 * web.rim_thickness_mm,
+                1e-3 * web.offset_mm,
+                tan(radians(web.cone_angle_deg)),
+            ),
+            whole,
+        )
+    return corners, bore(corners)
+
+
+def bore(corners: Array) -> tuple[bool, ...]:
+    """Find the edges at the smallest distance from the axis.
+
+    Parameters
+    ----------
+    corners : (corners, 2) array
+        Distance from the axis and height of each corner, m.
+
+    Returns
+    -------
+    tuple[bool, ...]
+        For each edge whether it belongs to the bore.
+    """
+    inside = corners[:, 0] < corners[:, 0].min() + ON_LINE
+    return tuple((inside & np.roll(inside, -1)).tolist())
+
+
+def check_bodies(teeth: ToothPair, section: Transmission) -> None:
+    """Require that the bodies of a machine can exist and fit its teeth and masses.
+
+    Parameters
+    ----------
+    teeth : ToothPair
+        Section `tooth_pair` of the config.
+    section : Transmission
+        Section `transmission` of the config.
+
+    Raises
+    ------
+    ConfigError
+        For the first body that does not.
+    """
+    _refuse_hubs_alone(section)
+    for side in section.face_gears:
+        if (body := body_of(section, side)) is None:
+            continue
+        single_gear = section.single_gears.get(side)
+        alone = single_gear is not None and single_gear.body is not None
+        key = f"transmission.single_gears.{side}" if alone else "transmission.face_gear"
+        _check_body(key, side, body, teeth, section)
+
+
+def _refuse_hubs_alone(section: Transmission) -> None:
+    """Raises ConfigError for the tilt of a hub where no web bends."""
+    single = section.single_gears.items()
+    rigid = [
+        f"single_gears.{side}"
+        for side, single_gear in single
+        if single_gear.hub_tilt and not body_of(section, side)
+    ]
+    if section.face_gear.hub_tilt is not None and not elastic_gears(section):
+        rigid.append("face_gear")
+    if rigid:
+        requirement = "left out where the gear has no body that bends, whose tilt is given by tilt"
+        raise ConfigError(f"transmission.{rigid[0]}.hub_tilt", "given", requirement)
+
+
+def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Transmission) -> None:
+    """The hub's tilt carries at least the section. Raises ConfigError."""
+    single_gear = section.single_gears.get(side)
+    alone = single_gear is not None and single_gear.hub_tilt is not None
+    tilt = (
+        single_gear.hub_tilt
+        if single_gear is not None and single_gear.hub_tilt is not None
+        else section.face_gear.hub_tilt
+    )
+    if tilt is None:
+        return
+    centre = pitch_height(teeth) - 1e-3 * tilt.centre_below_pitch_plane_mm
+    min_inertia = shapes.inertia_about(shape, centre)
+    if tilt.inertia_kg_m2 < min_inertia * (1.0 - MASS_ROUNDING):
+        owner_key = f"transmission.single_gears.{side}" if alone else "transmission.face_gear"
+        requirement = f"at least {min_inertia:.6g} kg m2, which the section of the body has about that point"
+        raise ConfigError(f"{owner_key}.hub_tilt.inertia_kg_m2", tilt.inertia_kg_m2, requirement)
+
+
+def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, section: Transmission) -> None:
+    if section.mesh_kinematics == "printed":
+        raise ConfigError(f"{key}.body", "a section", "rigid where mesh_kinematics is printed")
+    if teeth.face_gear is None:
+        raise ConfigError("tooth_pair.face_gear", None, f"given, as required by {key}.body")
+    single_gear = section.single_gears.get(side)
+    if section.face_gear.tilt is not None or (single_gear is not None and single_gear.tilt is not None):
+        raise ConfigError(
+            f"{key}.tilt",
+            "given",
+            "left out beside a body, whose web tilts the rim; hub_tilt is that of its bearings",
+        )
+    try:
+        shape = body_shape(body, teeth)
+        require_teeth_on_rim(shape, 1e-3 * teeth.face_gear.rim_thickness_mm)
+        require_meshable(shape.corners)
+    except InvalidInput as error:
+        _refuse_shape(f"{key}.body", body, error)
+    mass, polar, *_ = shapes.section_properties(shape)
+    for name, min_value, unit in (("mass_kg", mass, "kg"), ("inertia_kg_m2", polar, "kg m2")):
+        single = getattr(single_gear, name) if single_gear is not None else None
+        value = getattr(section.face_gear, name) if single is None else single
+        if value < min_value * (1.0 - MASS_ROUNDING):
+            owner_key = key if single is None else f"transmission.single_gears.{side}"
+            requirement = (
+                f"at least {min_value:.6g} {unit}, which the section of the body has; more is the hub's"
+            )
+            raise ConfigError(f"{owner_key}.{name}", value, requirement)
+    _check_hub(side, shape, teeth, section)
+
+
+def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
+    name, value, requirement = KEYS[error.quantity], error.value, error.allowed.replace("`", "")
+    if error.quantity == THINNEST:
+        name, value = _thinnest_key(body)
+        requirement = f"such that the thinnest wall of the section, now {error.value} mm, is {requirement}"
+    elif body.corners_mm:
+        name = "corners_mm"
+    raise ConfigError(f"{key}.{name}", value, requirement) from None
+
+
+def _thinnest_key(body: BodySection) -> tuple[str, object]:
+    """The key, with its value, that a user changes who has drawn a wall too thin."""
+    if body.web is not None:
+        keys = ("hub_thickness_mm", "rim_thickness_mm")
+        value, thinner = min((getattr(body.web, key), key) for key in keys)
+        return f"web.{thinner}", value
+    return ("corners_mm", list(body.corners_mm)) if body.corners_mm else ("rim", "given")
+
+
+def require_teeth_on_rim(shape: shapes.Section, top: float) -> None:
+    """Require that an edge of the cross-section carries all teeth, with their rim solid below it.
+
+    Parameters
+    ----------
+    shape : shapes.Section
+        Cross-section in SI units.
+    top : float
+        Height of that edge, m.
+
+    Raises
+    ------
+    InvalidInput
+        If no edge does, or there is a gap below the teeth.
+    """
+    inner, outer = shape.teeth
+    words = f"such that it has an edge at height {1e3 * top:g} mm from {1e3 * inner:g} to {1e3 * outer:g} mm"
+    flat = np.abs(shape.edges[:, :, 1] - top).max(axis=1) < ON_LINE
+    covers = (shape.edges[:, :, 0].min(axis=1) < inner + ON_LINE) & (
+        shape.edges[:, :, 0].max(axis=1) > outer - ON_LINE
+    )
+    radii_mm: Sequence[float] = (1e3 * shape.corners[:, 0]).round(6).tolist()
+    if not (flat & covers).any():
+        requirement = f"{words}, on which the teeth stand"
+        raise InvalidInput("inner radius of the rim", [min(radii_mm), max(radii_mm)], requirement)
+    if crosses_rectangle(shape.edges, inner, outer, 0.0, top):
+        raise InvalidInput("corners of the section", "a gap below the teeth", f"{words}, solid to height 0")
+
+
+def crosses_rectangle(edges: Array, inner: float, outer: float, back: float, front: float) -> bool:
+    """Whether an edge runs through the inside of a rectangle.
+
+    Parameters
+    ----------
+    edges : (edges, 2, 2) array
+        Distance from the axis and height (m) of both ends of each edge.
+    inner : float
+        Smallest distance of the rectangle from the axis, m.
+    outer : float
+        Largest distance of the rectangle from the axis, m.
+    back : float
+        Smallest height of the rectangle, m.
+    front : float
+        Largest height of the rectangle, m.
+
+    Returns
+    -------
+    bool
+        True if one does.
+    """
+    low, high = np.array([inner, back]) + ON_LINE, np.array([outer, front]) - ON_LINE
+    first, way = edges[:, 0], edges[:, 1] - edges[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        to_low, to_high = (low - first) / way, (high - first) / way
+    still = way == 0.0
+    inside = (first > low) & (first < high)
+    enter = np.where(still, np.where(inside, 0.0, np.inf), np.minimum(to_low, to_high)).max(axis=1)
+    leave = np.where(still, np.where(inside, 1.0, -np.inf), np.maximum(to_low, to_high)).min(axis=1)
+    return bool((np.maximum(enter, 0.0) < np.minimum(leave, 1.0)).any())

@@ -1,0 +1,282 @@
+"""The whole config: read, merged, validated, with defaults filled in."""
+
+import os
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from facegear.build.config import Config
+from facegear.errors import ConfigErrors
+from facegear.schema.base import parse
+from facegear.schema.yaml_file import numbers, read_yaml
+
+FILE_KEYS = (
+    ("reproduction",),
+    ("tooth_pair", "pinion", "flanks", "file"),
+    ("tooth_pair", "face_gear", "flanks", "file"),
+    ("mesh_stiffness", "csv"),
+    ("strength", "duty_csv"),
+    ("strength", "pinion", "card"),
+    ("strength", "face_gear", "card"),
+    ("lubrication", "oil"),
+    ("transmission", "face_gear", "body", "corners_csv"),
+    ("transmission", "face_gear", "body", "step"),
+    ("transmission", "single_gears", "lower", "body", "corners_csv"),
+    ("transmission", "single_gears", "lower", "body", "step"),
+    ("transmission", "single_gears", "upper", "body", "corners_csv"),
+    ("transmission", "single_gears", "upper", "body", "step"),
+)
+"""Keys whose value is the name of a file; it counts from the folder of the config file that sets it."""
+
+
+def load_config(
+    paths: str | Path | Sequence[str | Path], overrides: Mapping[str, Any] | None = None
+) -> Config:
+    """Read and validate a config file, or several laid over one another.
+
+    Parameters
+    ----------
+    paths : str or Path or Sequence[str | Path]
+        The file, or several of which a later one goes before an earlier one.
+    overrides : Mapping[str, Any] or None
+        Values that go before those of all files.
+
+    Returns
+    -------
+    Config
+        The config.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
+    """
+    files = [paths] if isinstance(paths, str | Path) else paths
+    values: dict[str, Any] = {}
+    for path in files:
+        values = merge_values(values, read_layers(path))
+    source = ", ".join(_short(path) for path in files)
+    return parse(Config, merge_values(values, numbers(dict(overrides or {}))), source)
+
+
+def config_of(values: Mapping[str, Any]) -> Config:
+    """Validate a config that stands in memory.
+
+    Names of files in it count from the working directory. Its key `extends` names a config file anywhere.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Values of the config.
+
+    Returns
+    -------
+    Config
+        The config.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
+    """
+    config_values = _with_paths(plain(values), Path())
+    base = config_values.pop("extends", None)
+    if base is not None and not isinstance(base, str | Path):
+        raise ConfigErrors("config", [f"extends = {base!r}: must be the name of a config file"])
+    return parse(Config, config_values if base is None else merge_values(read_layers(base), config_values))
+
+
+def plain(value: Any) -> Any:
+    """Convert NumPy numbers and arrays, tuples and other iterables to values that YAML can hold.
+
+    Parameters
+    ----------
+    value : Any
+        Any value.
+
+    Returns
+    -------
+    Any
+        A copy in plain values.
+    """
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, Path):
+        return str(value)
+    return (
+        [plain(item) for item in value]
+        if isinstance(value, Iterable) and not isinstance(value, str)
+        else value
+    )
+
+
+def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
+    """Read a config file over the file that its key `extends` names, in the same folder.
+
+    Parameters
+    ----------
+    path : str or Path
+        The config file.
+    below : Sequence[Path]
+        Files that extend this one, for the check against circles.
+
+    Returns
+    -------
+    dict[str, Any]
+        Plain values of both.
+
+    Raises
+    ------
+    ConfigErrors
+        If that file is missing, lies elsewhere, or extends this one.
+    """
+    path = Path(path)
+    values = _with_paths(read_yaml(path), path.parent)
+    if "extends" not in values:
+        return values
+    base = values.pop("extends")
+    possible_bases = {sibling.name for sibling in path.parent.glob("*.yaml")} - {
+        path.name,
+        *(layer.name for layer in below),
+    }
+    if not isinstance(base, str) or base not in possible_bases:
+        message = f"extends = {base!r}: must be the name of another config file in the same folder"
+        raise ConfigErrors(_short(path), [message])
+    return merge_values(read_layers(path.with_name(base), (path, *below)), values)
+
+
+def base_path(path: str | Path) -> Path | None:
+    """Return the config file that a config file names under `extends`.
+
+    Parameters
+    ----------
+    path : str or Path
+        The config file.
+
+    Returns
+    -------
+    Path or None
+        Path of the base; None if it extends none.
+    """
+    base = read_yaml(Path(path)).get("extends")
+    return None if base is None else Path(path).with_name(str(base))
+
+
+def relative_to_cwd(name: str, folder: Path) -> str:
+    """Convert the name of a file from a folder to the working directory.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file as `folder` counts it.
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    str
+        Its name as it is read from the working directory; an absolute name stays.
+    """
+    return name if os.path.isabs(name) else os.path.relpath(folder / name)
+
+
+def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
+    for *sections, key in FILE_KEYS:
+        inside: Any = values
+        for section in sections:
+            inside = inside.get(section) if isinstance(inside, dict) else None
+        _locate(inside, key, folder)
+    for point in _study_points(values):
+        for *sections, key in FILE_KEYS:
+            _locate(point, ".".join([*sections, key]), folder)
+            _locate(point.get(sections[0]) if sections else None, key, folder)
+    return values
+
+
+def _locate(inside: Any, key: str, folder: Path) -> None:
+    if isinstance(inside, dict) and isinstance(inside.get(key), str):
+        inside[key] = relative_to_cwd(inside[key], folder)
+
+
+def _study_points(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield the values that the points of all studies set, as far as they have the form of studies at all."""
+    for study in _dicts(values.get("studies")):
+        for axis in _dicts(study.get("axes")):
+            for point in _dicts(axis.get("points")):
+                yield from _dicts([point.get("set")])
+
+
+def _dicts(values: Any) -> list[dict[str, Any]]:
+    return [value for value in values if isinstance(value, dict)] if isinstance(values, list) else []
+
+
+def merge_values(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Lay mappings over one another key by key; lists are replaced whole.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Values below.
+    over : Mapping[str, Any]
+        Values that go before them.
+
+    Returns
+    -------
+    dict[str, Any]
+        The merged values.
+    """
+    result = dict(values)
+    for key, value in over.items():
+        inside = result.get(key)
+        if isinstance(inside, Mapping) and isinstance(value, Mapping):
+            value = merge_values(inside, value)
+        result[key] = value
+    return result
+
+
+def _short(path: str | Path) -> str:
+    path = Path(path)
+    return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else str(path)
+
+
+OPTIONS = ("--configfile", "--configfiles")
+"""Options of Snakemake that name config files."""
+ENDINGS = (".yaml", ".yml", ".json")
+"""Endings of the names of config files."""
+
+
+def check_configfiles(arguments: Sequence[str]) -> None:
+    """End the program with one line a mistake if a config file cannot be read.
+
+    The profiles call it with the command line: Snakemake opens these files before any code of a workflow
+    runs, and what it cannot read ends in a traceback.
+
+    Parameters
+    ----------
+    arguments : Sequence[str]
+        Arguments of the command line.
+    """
+    for name in _config_files(arguments):
+        try:
+            read_layers(name)
+        except ConfigErrors as error:
+            message = str(error)
+            if not name.endswith(ENDINGS):
+                message += f"\nIs {name} a target? Write -- before the targets that follow --configfile."
+            sys.exit(message)
+
+
+def _config_files(arguments: Sequence[str]) -> Iterator[str]:
+    """Yield the arguments that stand after an option for config files, up to the next option."""
+    is_file = False
+    for argument in arguments:
+        option, equals, value = argument.partition("=")
+        if argument.startswith("-"):
+            is_file = option in OPTIONS
+            if is_file and equals:
+                yield value
+        elif is_file:
+            yield argument

@@ -1,0 +1,341 @@
+"""The lumped machine with its mesh law, friction, elastic gears and poses, put together in one place."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any, Self
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import PchipInterpolator
+
+from facegear.arrays import Array, Arrays
+from facegear.build.lumped_model import machine
+from facegear.build.machine_layout import ToothNumbers
+from facegear.errors import ConfigError
+from facegear.harmonics import Harmonics, fit_harmonics, stack_series
+from facegear.lubrication.columns import EXCITATION_COLUMNS
+from facegear.machine.disturbances import MeshFriction
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.imperfections import from_arrays
+from facegear.machine.layout import Layout, Side
+from facegear.machine.machine import FlankTables, Machine
+from facegear.machine.poses.fixed_point import posed_machine
+from facegear.machine.poses.surface import PoseSurface
+from facegear.machine.static_gears import at_rest
+from facegear.machine.statics import mean_equilibrium
+from facegear.meshing import stiffness_source
+from facegear.meshing.force_table import ForceTable
+from facegear.parts.reduced_body import ReducedBody
+from facegear.schema.transmission import Transmission
+from facegear.teeth.placement import GEARS
+
+TablesOf = Callable[[Layout], tuple[FlankTables, ...]]
+"""Tables of the flanks at each gear of a machine."""
+
+
+def flank_tables(law: Arrays, layout: Layout) -> tuple[FlankTables, ...]:
+    """Return the tables of the flanks at each gear of a machine.
+
+    Parameters
+    ----------
+    law : mapping of arrays
+        Arrays `law` of stage mesh_law: `level_m`, `force_n` and `slope_n_per_m`, with the tables of
+        `ForceTable` along the first axis, and the numbers `flank_variant` (gears, 2) of the tables for
+        the drive and back flank of each gear.
+    layout : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    tuple[FlankTables, ...]
+        One entry for each gear; a gear alone has the tables of the upper one.
+    """
+    return tables_of(law)(layout)
+
+
+def tables_of(law: Arrays) -> TablesOf:
+    """Return a function that gives the tables of the flanks of many machines.
+
+    Machines with the same gears share their tables.
+
+    Parameters
+    ----------
+    law : mapping of arrays
+        Arrays `law` of stage mesh_law, as in `flank_tables`.
+
+    Returns
+    -------
+    TablesOf
+        Function from a layout to the tables of its gears.
+    """
+    tables = [
+        ForceTable(_read_only(levels), _read_only(forces), _read_only(slopes))
+        for levels, forces, slopes in zip(law["level_m"], law["force_n"], law["slope_n_per_m"], strict=True)
+    ]
+
+    @cache
+    def of_sides(sides: tuple[Side, ...]) -> tuple[FlankTables, ...]:
+        rows = [GEARS.index(side.value) if len(sides) > 1 else 0 for side in sides]
+        numbers = law["flank_variant"][rows]
+        return tuple(FlankTables(tables[drive], tables[back]) for drive, back in numbers)
+
+    return lambda layout: of_sides(tuple(gear.side for gear in layout.gears))
+
+
+def _read_only(values: Array) -> Array:
+    """Return a copy that refuses to be written into."""
+    copy = values.copy()
+    copy.flags.writeable = False
+    return copy
+
+
+ORDERS = 8
+"""Harmonics of the mesh frequency that friction excites; the mean is exact."""
+
+
+def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
+    """Add friction in motion to a machine.
+
+    Each mesh has the friction of the torque that it carries at rest. Between the torques of the contact
+    analysis it is interpolated over the logarithm of the torque, outside them it is that of the nearest.
+
+    Parameters
+    ----------
+    machine : Machine
+        The lumped machine.
+    table : pd.DataFrame
+        Table `excitation` of stage lubrication, columns EXCITATION_COLUMNS.
+
+    Returns
+    -------
+    Machine
+        The machine with friction.
+
+    Raises
+    ------
+    NotConverged
+        If the machine has no rest.
+    """
+    torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(at_rest(machine)).forces[0])
+    table_torques, ratios = _ratios(table)
+    ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
+    ratios[..., 4] /= 1e3 * machine.layout.gear_arm
+    return replace(
+        machine,
+        friction=MeshFriction(np.stack([_series(table_torques, ratios, torque) for torque in torques])),
+    )
+
+
+def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
+    """Torques (t,) and the ratios (t, positions, parts) at each of them."""
+    names = list(EXCITATION_COLUMNS[2:])
+    by_torque = table.sort_values(["torque_n_m", "position"]).groupby("torque_n_m")
+    ratios = np.stack([rows[names].to_numpy() for _, rows in by_torque])
+    return np.array(list(by_torque.groups), float), ratios
+
+
+def _series(torques: Array, ratios: Array, torque: float) -> Array:
+    """Fourier series (parts, 2, orders) of the ratios at a torque, N m."""
+    clipped_torque = np.clip(torque, torques[0], torques[-1])
+    at = (
+        ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(clipped_torque))
+    )
+    return stack_series([fit_harmonics(column).series.truncate(ORDERS) for column in at.T])
+
+
+def at_mesh_torque(section: Transmission, torque: float) -> Transmission:
+    """Scale all torques of a machine so that an input has a given torque in each mesh.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    torque : float
+        Torque on the pinion in each mesh, N m.
+
+    Returns
+    -------
+    Transmission
+        The section with the scaled torques.
+
+    Raises
+    ------
+    ConfigError
+        If inputs carry no torque.
+    """
+    input_torque = section.torque.per_input_n_m
+    if input_torque == 0.0:
+        raise ConfigError(
+            "transmission.torque.per_input_n_m", input_torque, "not 0, for the bins of a duty cycle"
+        )
+    factor = torque * len(section.face_gears) / abs(input_torque)
+    return Transmission.of_config(with_torques(section.model_dump(mode="json"), factor))
+
+
+def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]:
+    """Multiply all torques of section `transmission` by a factor.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any]
+        Plain values of the section.
+    part : float
+        Factor on the torques, dimensionless.
+
+    Returns
+    -------
+    dict[str, Any]
+        Plain values with the new torques.
+    """
+
+    def scale_torque(section: Mapping[str, Any]) -> dict[str, Any]:
+        torque = section.get("torque_n_m")
+        return {**section, "torque_n_m": torque if torque is None else part * torque}
+
+    return {
+        **transmission,
+        "torque": {**transmission["torque"], "per_input_n_m": part * transmission["torque"]["per_input_n_m"]},
+        "pinions": [scale_torque(pinion) for pinion in transmission["pinions"]],
+        "single_gears": {name: scale_torque(gear) for name, gear in transmission["single_gears"].items()},
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class MachineInputs:
+    """Everything that decides what a lumped machine is.
+
+    The pipeline resolves it from the config and from the files of earlier stages; a feature that changes what
+    a machine is adds a field here and a line to `build`.
+
+    Attributes
+    ----------
+    transmission : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Tooth numbers, module (m) and pressure angle (rad) of the pair.
+    harmonics : Harmonics or pd.DataFrame or None
+        Mesh stiffness (N/m): a series, or table `harmonics` of stage stiffness, which brings the pair's own
+        transmission error; None where it is not computed.
+    unloaded_error : Harmonics or None
+        Transmission error of the unloaded pair (m) beside a series of the stiffness.
+    friction : pd.DataFrame or None
+        Table `excitation` of stage lubrication, where friction acts on the motion.
+    law : mapping of arrays or None
+        Arrays `law` of stage mesh_law, where mesh forces depend on the load.
+    poses : mapping of arrays or None
+        Arrays `surface` of stage pose_surface, where meshes stand in the loaded position of their bodies.
+    bodies : mapping of arrays or None
+        Arrays `reduced` of stage gear_bodies, where face gears bend.
+    tooth_errors : mapping of arrays or None
+        Arrays `curves` of stage tooth_errors, where single teeth deviate.
+    """
+
+    transmission: Transmission
+    teeth: ToothNumbers
+    harmonics: Harmonics | pd.DataFrame | None = None
+    unloaded_error: Harmonics | None = None
+    friction: pd.DataFrame | None = None
+    law: Arrays | None = None
+    poses: Arrays | None = None
+    bodies: Arrays | None = None
+    tooth_errors: Arrays | None = None
+
+    @classmethod
+    def of_config(cls, values: Mapping[str, Any], harmonics: Harmonics | pd.DataFrame) -> Self:
+        """Return the inputs of a machine without anything that earlier stages compute but its stiffness.
+
+        Parameters
+        ----------
+        values : mapping
+            Plain values of a whole config.
+        harmonics : Harmonics or pd.DataFrame
+            Mesh stiffness, N/m.
+
+        Returns
+        -------
+        MachineInputs
+            Inputs with sections `transmission` and `tooth_pair` of the config.
+        """
+        transmission = Transmission.of_config(values["transmission"])
+        return cls(
+            transmission=transmission,
+            teeth=ToothNumbers.of_config(values["tooth_pair"]),
+            harmonics=harmonics,
+        )
+
+    def at_torque(self, torque_n_m: float) -> Self:
+        """Return the inputs with another torque.
+
+        Parameters
+        ----------
+        torque_n_m : float
+            Torque of an input in each of its meshes, N m.
+
+        Returns
+        -------
+        MachineInputs
+            The same inputs, all torques of the transmission in proportion.
+        """
+        return replace(self, transmission=at_mesh_torque(self.transmission, torque_n_m))
+
+    def build(self) -> Machine:
+        """Build the machine.
+
+        Returns
+        -------
+        Machine
+            The lumped machine with everything that the inputs hold.
+
+        Raises
+        ------
+        ConfigError
+            If pinions or torques do not fit the layout.
+        NotConverged
+            If the loaded position of the bodies is not found.
+        """
+        if self.harmonics is None:
+            raise ValueError("harmonics: a mesh stiffness is needed to build a machine")
+        series, error = self.harmonics, self.unloaded_error
+        if isinstance(series, pd.DataFrame):
+            error = stiffness_source.unloaded_error(series)
+            series = stiffness_source.series_of(series)
+        lumped_machine = machine(self.transmission, self.teeth, series, error)
+        if self.law is not None:
+            lumped_machine = replace(lumped_machine, tables=flank_tables(self.law, lumped_machine.layout))
+        if self.bodies is not None:
+            elastic = elastic_gears(self.bodies, lumped_machine.layout)
+            lumped_machine = replace(lumped_machine, bodies=elastic, softening=elastic.softening())
+        if self.tooth_errors is not None:
+            errors = replace(lumped_machine.imperfections, teeth=from_arrays(self.tooth_errors))
+            lumped_machine = replace(lumped_machine, imperfections=errors)
+        # Friction acts where the loaded bodies stand, so poses come first.
+        if self.poses is not None:
+            lumped_machine = posed_machine(lumped_machine, PoseSurface.of_arrays(self.poses))
+        return lumped_machine if self.friction is None else with_friction(lumped_machine, self.friction)
+
+
+def elastic_gears(bodies: Arrays, layout: Layout) -> ElasticGears:
+    """Return the face gears of a layout that bend.
+
+    Parameters
+    ----------
+    bodies : mapping of arrays
+        Arrays `reduced` of stage gear_bodies.
+    layout : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    ElasticGears
+        Reduced bodies of the gears that are not rigid.
+    """
+    gear_numbers = {gear.side.value: number for number, gear in enumerate(layout.gears)}
+    return ElasticGears(
+        layout,
+        {
+            number: ReducedBody.of_arrays(bodies, side)
+            for side, number in gear_numbers.items()
+            if f"{side}_order" in bodies
+        },
+    )

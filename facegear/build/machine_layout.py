@@ -1,0 +1,322 @@
+"""The layout that section `transmission` describes: bodies, angles and meshes, in SI.
+
+The one place where that section and the tooth numbers of section `tooth_pair` meet.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Self
+
+import numpy as np
+
+from facegear.machine.kinematics import KINEMATICS
+from facegear.machine.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
+from facegear.parts.shafts import Bearing, Elasticity, Segment, Shaft, condense_shaft
+from facegear.schema.bodies import (
+    LIKE_ALL_GEARS,
+    LIKE_ALL_PINIONS,
+    GearBody,
+    PinionBody,
+    SingleGear,
+    SinglePinion,
+    TiltSection,
+)
+from facegear.schema.changes import TEETH
+from facegear.schema.gear_body import MaterialSection
+from facegear.schema.shafts import SegmentSection, ShaftSection, TurningMassSection
+from facegear.schema.transmission import PinionPlace, Transmission
+from facegear.sharing.groups import load_groups, split_groups
+
+
+@dataclass(frozen=True)
+class ToothNumbers:
+    """Numbers of the tooth pair that the lumped model needs; radii in m, angle in rad."""
+
+    pinion_teeth: int
+    gear_teeth: int
+    pinion_base_radius: float
+    pressure_angle: float
+
+    @classmethod
+    def of_config(cls, values: Mapping[str, Any]) -> Self:
+        """Return the tooth numbers from plain config values.
+
+        Parameters
+        ----------
+        values : Mapping[str, Any]
+            Section `tooth_pair`, or its keys TEETH alone.
+
+        Returns
+        -------
+        Self
+            Tooth numbers in SI units.
+        """
+        return cls.of_teeth(*(values[key] for key in TEETH))
+
+    @classmethod
+    def of_teeth(
+        cls, pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
+    ) -> Self:
+        """Return the tooth numbers from the values of the keys TEETH.
+
+        Parameters
+        ----------
+        pinion_teeth : int
+            Number of teeth of each pinion.
+        face_gear_teeth : int
+            Number of teeth of each face gear.
+        module_mm : float
+            Module, mm.
+        pressure_angle_deg : float
+            Pressure angle, deg.
+
+        Returns
+        -------
+        Self
+            Tooth numbers in SI units.
+        """
+        angle = float(np.radians(pressure_angle_deg))
+        base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
+        return cls(pinion_teeth, face_gear_teeth, base_radius, angle)
+
+
+def lumped_sections(
+    transmission: Mapping[str, Any], teeth: Mapping[str, Any]
+) -> tuple[Transmission, ToothNumbers]:
+    """Return section `transmission` and the tooth numbers from plain values of a validated config.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any]
+        Plain values of section `transmission`.
+    teeth : Mapping[str, Any]
+        Plain values of section `tooth_pair`, or of its keys TEETH.
+
+    Returns
+    -------
+    tuple[Transmission, ToothNumbers]
+        Section and tooth numbers.
+    """
+    return Transmission.of_config(transmission), ToothNumbers.of_config(teeth)
+
+
+def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> Layout:
+    """Return the layout of a machine from plain config values.
+
+    Parameters
+    ----------
+    transmission : Mapping[str, Any]
+        Plain values of section `transmission`.
+    teeth : Mapping[str, Any]
+        Plain values of section `tooth_pair`, or of its keys TEETH.
+
+    Returns
+    -------
+    Layout
+        Bodies, angles and meshes in SI units.
+    """
+    return layout(*lumped_sections(transmission, teeth))
+
+
+def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
+    """Return the layout that a config describes.
+
+    Equal layouts are one object, so that results cached on it are reused.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Tooth numbers of the pair.
+
+    Returns
+    -------
+    Layout
+        Bodies, angles and meshes in SI units.
+    """
+    return _intern_layout(_layout(section, teeth))
+
+
+@lru_cache(maxsize=16)
+def _intern_layout(shape: Layout) -> Layout:
+    return shape
+
+
+def _layout(section: Transmission, teeth: ToothNumbers) -> Layout:
+    radius_mm, given_mm = section.pinion.base_radius_mm, section.face_gear.mesh_radius_mm
+    sides = [side for side in Side if side.value in section.face_gears]
+    pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
+    conjugate = pinion_radius * teeth.gear_teeth / teeth.pinion_teeth
+    return Layout(
+        pinions=tuple(
+            Pinion(
+                pinion.name,
+                Role(pinion.role),
+                _pitches(pinion, teeth.gear_teeth),
+                _pinion_body(section, pinion),
+            )
+            for pinion in section.pinions
+        ),
+        gears=tuple(
+            FaceGear(side, _body(section.face_gear, section.single_gears.get(side.value))) for side in sides
+        ),
+        pinion_teeth=teeth.pinion_teeth,
+        gear_teeth=teeth.gear_teeth,
+        pressure_angle=teeth.pressure_angle,
+        pinion_radius=pinion_radius,
+        gear_radius=conjugate if given_mm is None else 1e-3 * given_mm,
+        kinematics=KINEMATICS[section.mesh_kinematics],
+    )
+
+
+def single_parts(section: Transmission, shape: Layout) -> tuple[list[SinglePinion], list[SingleGear]]:
+    """Return the sections of single pinions and face gears.
+
+    Parameters
+    ----------
+    section : Transmission
+        Section `transmission` of the config.
+    shape : Layout
+        Layout of the machine.
+
+    Returns
+    -------
+    tuple[list[SinglePinion], list[SingleGear]]
+        A section for each pinion and each face gear, in the order of the layout.
+    """
+    return (
+        [section.single_pinions.get(pinion.name, LIKE_ALL_PINIONS) for pinion in shape.pinions],
+        [section.single_gears.get(gear.side.value, LIKE_ALL_GEARS) for gear in shape.gears],
+    )
+
+
+def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
+    """Return a pinion on its bearing stiffness, or on the stiffness of its shaft where no moment acts."""
+    single_pinion = section.single_pinions.get(pinion.name)
+    if (shaft := section.shaft_of(pinion)) is None:
+        return _body(section.pinion, single_pinion)
+    compliance = condense_shaft(stepped_shaft(shaft)).compliance
+    (x, xy), (_, y) = np.linalg.inv(compliance[:2, :2]).tolist()
+    mass, inertia = _inertias(section.pinion, single_pinion)
+    return Body(mass, inertia, (x, y, 1.0 / float(compliance[2, 2])), xy)
+
+
+def _body(section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None) -> Body:
+    """Build a body from the data that all share and its own."""
+    stiffness = (single_part and single_part.bearing_stiffness_n_per_m) or section.bearing_stiffness_n_per_m
+    assert stiffness is not None
+    if ((single_part and single_part.body) or section.body) is None:
+        tilt = (single_part and single_part.tilt) or section.tilt
+    else:
+        tilt = (single_part and single_part.hub_tilt) or section.hub_tilt
+    return Body(
+        *_inertias(section, single_part),
+        (stiffness.x, stiffness.y, stiffness.z),
+        stiffness.xy,
+        _tilt(tilt) if tilt else None,
+    )
+
+
+def _tilt(section: TiltSection) -> Tilt:
+    below = 1e-3 * section.centre_below_pitch_plane_mm
+    return Tilt(section.inertia_kg_m2, section.stiffness_n_m_per_rad, below)
+
+
+def _inertias(
+    section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None
+) -> tuple[float, float]:
+    """Mass and inertia."""
+    single_part = single_part or LIKE_ALL_PINIONS
+    return (
+        section.mass_kg if single_part.mass_kg is None else single_part.mass_kg,
+        section.inertia_kg_m2 if single_part.inertia_kg_m2 is None else single_part.inertia_kg_m2,
+    )
+
+
+def _pitches(pinion: PinionPlace, gear_teeth: int) -> float:
+    if pinion.angle_pitches is not None:
+        return pinion.angle_pitches
+    return float(pinion.angle_deg or 0.0) / 360.0 * gear_teeth
+
+
+def split_kinds(values: Mapping[str, Any]) -> list[str]:
+    """Return the kinds of the groups that split a load: inputs and idlers for the paper's machine.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of a whole config.
+
+    Returns
+    -------
+    list[str]
+        The kinds, each once.
+    """
+    groups = split_groups(wired_layout(values["transmission"], values["tooth_pair"]))
+    return list(dict.fromkeys(group.kind.value for group in groups))
+
+
+def has_groups(values: Mapping[str, Any]) -> bool:
+    """Whether several pinions do the same, whether or not they split a load.
+
+    Parameters
+    ----------
+    values : Mapping[str, Any]
+        Plain values of a whole config.
+
+    Returns
+    -------
+    bool
+        True if there is such a group.
+    """
+    return bool(load_groups(wired_layout(values["transmission"], values["tooth_pair"])))
+
+
+def stepped_shaft(section: ShaftSection) -> Shaft:
+    """Return the shaft of a section with its bearings, in SI units.
+
+    Parameters
+    ----------
+    section : ShaftSection
+        The section, validated.
+
+    Returns
+    -------
+    Shaft
+        Its segments, elasticity, bearings and place of the pinion.
+    """
+    return Shaft(
+        tuple(_segment(part) for part in section.segments),
+        _elasticity(section.material),
+        tuple(Bearing(1e-3 * bearing.at_mm, bearing.stiffness()) for bearing in section.bearings),
+        1e-3 * section.pinion_mm,
+    )
+
+
+def torsional_spring(section: TurningMassSection) -> float:
+    """Return the stiffness of the spring before a turning mass.
+
+    Parameters
+    ----------
+    section : TurningMassSection
+        The section, validated.
+
+    Returns
+    -------
+    float
+        Given, or of the shaft that its segments make, N m/rad.
+    """
+    if section.stiffness_n_m_per_rad is not None:
+        return section.stiffness_n_m_per_rad
+    material = _elasticity(section.material)
+    return 1.0 / sum(1.0 / _segment(part).torsional_stiffness(material) for part in section.segments)
+
+
+def _segment(section: SegmentSection) -> Segment:
+    return Segment(1e-3 * section.length_mm, 1e-3 * section.diameter_mm, 1e-3 * section.bore_mm)
+
+
+def _elasticity(material: MaterialSection) -> Elasticity:
+    return Elasticity(1e9 * material.young_modulus_gpa, material.poisson_ratio)

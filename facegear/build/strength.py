@@ -1,0 +1,140 @@
+"""The request of a rating in SI units: limits of materials, duty cycle, factors."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from facegear.schema.base import parse
+from facegear.schema.cards import Card, Limits
+from facegear.schema.strength import Strength
+from facegear.schema.yaml_file import read_yaml
+from facegear.strength.duty import DutyBin, given_duty, machine_duty
+from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits
+from facegear.strength.safety import RatedBody, RatingRequest
+from facegear.teeth.design import PairDesign
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def material_card(path: str | Path) -> MaterialCard:
+    """Read a material card.
+
+    Parameters
+    ----------
+    path : str or Path
+        The yaml file.
+
+    Returns
+    -------
+    MaterialCard
+        The card in SI units.
+
+    Raises
+    ------
+    ConfigErrors
+        With one line for every mistake.
+    """
+    return limits_of(parse(Card, read_yaml(path), source=str(path)))
+
+
+def limits_of(card: Card) -> MaterialCard:
+    """Convert a material card to SI units.
+
+    Parameters
+    ----------
+    card : Card
+        The validated card.
+
+    Returns
+    -------
+    MaterialCard
+        Moduli and limits in Pa, lengths in m.
+    """
+    bending, pitting = card.bending, card.pitting
+    return MaterialCard(
+        name=card.name,
+        source=card.source,
+        grade=card.grade,
+        young_modulus=1e9 * card.young_modulus_gpa,
+        poisson_ratio=card.poisson_ratio,
+        pitting=None
+        if pitting is None
+        else PittingLimits(1e6 * pitting.limit_mpa, _life(pitting), pitting.weibull_shape),
+        bending=None
+        if bending is None
+        else BendingLimits(
+            limit=1e6 * bending.limit_mpa,
+            life=_life(bending),
+            weibull_shape=bending.weibull_shape,
+            slip_layer=None if bending.slip_layer_mm is None else 1e-3 * bending.slip_layer_mm,
+            mean_stress=None
+            if bending.mean_stress is None
+            else (bending.mean_stress.constant, bending.mean_stress.slope),
+        ),
+    )
+
+
+def _life(limits: Limits) -> Life:
+    """Life factors over cycles."""
+    cycles, factors = zip(*limits.life, strict=True)
+    return Life(cycles, factors)
+
+
+def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
+    """Return the bins of the duty cycle with all load factors that section `strength` gives.
+
+    Parameters
+    ----------
+    section : Strength
+        Section `strength` of the config.
+
+    Returns
+    -------
+    tuple[DutyBin, ...]
+        Torque on the pinion (N m), speed (1/s) and time (s) of each bin.
+    """
+    return tuple(
+        DutyBin(section.factor * load.torque_n_m, load.speed_rpm / 60.0, 3600.0 * load.hours)
+        for load in section.duty
+    )
+
+
+def rating_request(
+    section: Strength, design: PairDesign, spectrum: "pd.DataFrame | None" = None
+) -> RatingRequest:
+    """Return the request of the rating in SI units.
+
+    Parameters
+    ----------
+    section : Strength
+        Section `strength` of the config.
+    design : PairDesign
+        Geometry of the pair.
+    spectrum : pd.DataFrame or None
+        Loads of the flanks in the machine, from stage duty_loads; None where the section gives the load
+        factors.
+
+    Returns
+    -------
+    RatingRequest
+        Limits and duty of both gears, time (s) and smallest safeties.
+    """
+    duty, ratio = duty_bins(section), design.pinion.teeth / design.face_gear.teeth
+    sections = {"pinion": section.pinion, "face_gear": section.face_gear}
+    if spectrum is None:
+        flanks = tuple(
+            given_duty(gear, duty, (body.cycles_per_turn or 1) * turns, body.both_ways)
+            for (gear, body), turns in zip(sections.items(), (1.0, ratio), strict=True)
+        )
+    else:
+        flanks = machine_duty(spectrum, duty, ratio, section.factor * design.pinion_base_radius)
+    return RatingRequest(
+        bodies={
+            gear: RatedBody(limits_of(body.card), 1e-6 * body.root_roughness_um)
+            for gear, body in sections.items()
+        },
+        duty=flanks,
+        time=sum(load.time for load in duty),
+        min_bending=section.min_bending_safety,
+        min_pitting=section.min_pitting_safety,
+    )

@@ -1,0 +1,327 @@
+"""The tooth pair in SI units with its materials, elements and contact analysis."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import pi, radians
+from typing import Any
+
+from pydantic import Field, model_validator
+
+from facegear.bodies import BODIES, Body
+from facegear.build.flanks import Teeth, check_flanks, common_flanks, differences
+from facegear.build.plans import contact_plan, mesh_sizes
+from facegear.contact.options import ContactPlan
+from facegear.contact.resolution import along_the_ellipse, estimated_memory
+from facegear.errors import ConfigError, NotConverged
+from facegear.schema.base import Section, refuse, require_all
+from facegear.schema.contact import Contact, Mesh
+from facegear.schema.flanks import FlanksSection, Side, read_files
+from facegear.schema.gear_body import MaterialSection
+from facegear.schema.tooth_pair import (
+    AssemblySection,
+    FaceGearSection,
+    GearModificationsSection,
+    PinionSection,
+    ReliefSection,
+    ShaperSection,
+)
+from facegear.teeth.design import (
+    AssemblyErrors,
+    FaceGearGeometry,
+    GearModifications,
+    Material,
+    PairDesign,
+    PinionGeometry,
+    Relief,
+    Shaper,
+)
+from facegear.teeth.mesh_sizes import MeshSizes
+from facegear.teeth.surfaces import flank_face
+from facegear.teeth.validate import check
+
+
+class ToothPair(Section):
+    """A spur pinion and the face gear generated for it."""
+
+    pinion_teeth: int = Field(ge=5, le=500, description="number of teeth of each pinion")
+    face_gear_teeth: int = Field(ge=10, le=2000, description="number of teeth of each face gear")
+    module_mm: float = Field(ge=0.1, le=100, description="pitch diameter of the pinion over its teeth")
+    pressure_angle_deg: float = Field(ge=10, le=40, description="at the pitch circle of the pinion")
+    material: MaterialSection = Field(
+        MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3), description="of both gears"
+    )
+    pinion: PinionSection | None = Field(
+        default=None, description="bodies are needed by geometry and contact"
+    )
+    face_gear: FaceGearSection | None = Field(
+        default=None, description="blank of the face gear; goes with pinion and shaper"
+    )
+    shaper: ShaperSection | None = Field(
+        default=None, description="tool that cuts the face gear; goes with both bodies"
+    )
+    assembly: AssemblySection = AssemblySection()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_flank_files(cls, values: Any) -> Any:
+        """Files of measured flanks are read here, so that a fault is reported before any work."""
+        return read_files(values)
+
+    @model_validator(mode="after")
+    def _possible(self) -> "ToothPair":
+        require_all(self._check_teeth, self._check_bodies)
+        return self
+
+    def _check_teeth(self) -> None:
+        if self.face_gear_teeth <= self.pinion_teeth:
+            refuse("face_gear_teeth", self.face_gear_teeth, f"more than the pinion's {self.pinion_teeth}")
+
+    def _check_bodies(self) -> None:
+        bodies = {name: getattr(self, name) for name in ("pinion", "face_gear", "shaper")}
+        absent_bodies = [name for name, body in bodies.items() if body is None]
+        if len(absent_bodies) == len(bodies) or self.face_gear_teeth <= self.pinion_teeth:
+            return
+        if absent_bodies:
+            refuse(absent_bodies[0], None, "given: pinion, face_gear and shaper go together")
+        nominal = _nominal(self)
+        try:
+            check(nominal)
+        except NotConverged as error:
+            refuse("face_gear", self.face_gear_teeth, f"other teeth or radii: {error}")
+        for body, section, teeth in _measured_bodies(self):
+            check_flanks(section, f"{body}.flanks", flank_face(nominal, body), teeth)
+
+
+def pair_design(section: ToothPair) -> PairDesign:
+    """Return the geometry of the pair, its flanks with the mean deviations of their teeth.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    PairDesign
+        The pair in SI units.
+
+    Raises
+    ------
+    ConfigError
+        For a section without bodies.
+    """
+    design = _nominal(section)
+    for body, flanks_section, teeth in _measured_bodies(section):
+        flanks = common_flanks(flanks_section, flank_face(design, body), teeth)
+        design = replace(design, **{body: replace(getattr(design, body), flanks=flanks)})
+    return design
+
+
+def single_teeth(section: ToothPair, flank: str) -> dict[Body, Teeth]:
+    """Return the differences of single teeth from the mean of all teeth, for one flank of each gear.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+    flank : str
+        `drive` or `back`.
+
+    Returns
+    -------
+    dict[Body, Teeth]
+        Differences (m) tooth by tooth for each gear; None for a tooth without any.
+
+    Raises
+    ------
+    ConfigError
+        For a section without bodies.
+    """
+    sides: tuple[Side, Side] = ("right", "left") if flank == "drive" else ("left", "right")
+    design = _nominal(section)
+    measured_bodies = {
+        body: (measured_body, teeth) for body, measured_body, teeth in _measured_bodies(section)
+    }
+    counts = {"pinion": section.pinion_teeth, "face_gear": section.face_gear_teeth}
+    by_body: dict[Body, Teeth] = {}
+    for body, side in zip(BODIES, sides, strict=True):
+        measured_body = measured_bodies.get(body)
+        grids = measured_body and differences(
+            measured_body[0], side, flank_face(design, body), measured_body[1]
+        )
+        by_body[body] = grids or (None,) * counts[body]
+    return by_body
+
+
+def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, int]]:
+    """Bodies with grids, and their numbers of teeth."""
+    teeth = section.pinion_teeth, section.face_gear_teeth
+    for body, count in zip(BODIES, teeth, strict=True):
+        body_section: PinionSection | FaceGearSection | None = getattr(section, body)
+        if body_section is not None and body_section.flanks.grids:
+            yield body, body_section.flanks, count
+
+
+def _nominal(section: ToothPair) -> PairDesign:
+    """The pair with all flanks as designed."""
+    m = 1e-3 * section.module_mm
+    pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
+    if pinion is None or gear is None or shaper is None:
+        raise ConfigError("tooth_pair.pinion", None, "given, as geometry and contact need the bodies")
+    return PairDesign(
+        module=m,
+        pressure_angle=radians(section.pressure_angle_deg),
+        pinion=PinionGeometry(
+            teeth=section.pinion_teeth,
+            width=1e-3 * pinion.width_mm,
+            addendum=m * pinion.addendum_modules,
+            dedendum=m * pinion.dedendum_modules,
+            rack_tip_radius=m * pinion.rack_tip_radius_modules,
+            bore_radius=1e-3 * pinion.bore_radius_mm,
+            profile_shift=m * pinion.profile_shift_modules,
+            thinning=1e-6 * pinion.thinning_um,
+            tip_chamfer=1e-3 * pinion.tip_chamfer_mm,
+            tip_relief=_relief(pinion.tip_relief),
+            root_relief=_relief(pinion.root_relief),
+            lead_crowning=_relief(pinion.lead_crowning),
+        ),
+        face_gear=FaceGearGeometry(
+            teeth=section.face_gear_teeth,
+            inner_radius=1e-3 * gear.inner_radius_mm,
+            outer_radius=1e-3 * gear.outer_radius_mm,
+            addendum=m * gear.addendum_modules,
+            rim_thickness=1e-3 * gear.rim_thickness_mm,
+            modifications=_modifications(gear.modifications),
+        ),
+        shaper=Shaper(shaper.teeth, m * shaper.addendum_modules, m * shaper.tip_rounding_modules),
+        assembly=AssemblyErrors(
+            offset=1e-6 * section.assembly.offset_um,
+            shaft_angle_error=section.assembly.shaft_angle_error_deg * pi / 180,
+            axial_shift=1e-6 * section.assembly.axial_shift_um,
+        ),
+    )
+
+
+def materials(section: ToothPair) -> tuple[Material, Material]:
+    """Return the materials of pinion and face gear.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    tuple[Material, Material]
+        Both materials in SI units.
+    """
+    body_materials = [body.material if body else None for body in (section.pinion, section.face_gear)]
+    pinion, gear = (_material(material or section.material) for material in body_materials)
+    return pinion, gear
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A tooth pair in SI units; materials of pinion and face gear."""
+
+    design: PairDesign
+    materials: tuple[Material, Material]
+
+    def material(self, body: str) -> Material:
+        """Return the material of one gear.
+
+        Parameters
+        ----------
+        body : str
+            `pinion` or `face_gear`.
+
+        Returns
+        -------
+        Material
+            Its material.
+        """
+        return self.materials[("pinion", "face_gear").index(body)]
+
+
+def pair(section: ToothPair) -> Pair:
+    """Return geometry and materials of the pair.
+
+    Parameters
+    ----------
+    section : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    Pair
+        The pair in SI units.
+
+    Raises
+    ------
+    ConfigError
+        For a section without bodies.
+    """
+    return Pair(pair_design(section), materials(section))
+
+
+def _material(section: MaterialSection) -> Material:
+    return Material(1e9 * section.young_modulus_gpa, section.poisson_ratio)
+
+
+def _modifications(section: GearModificationsSection) -> GearModifications:
+    return GearModifications(
+        tip_relief=_relief(section.tip_relief),
+        root_relief=_relief(section.root_relief),
+        end_relief=_relief(section.end_relief),
+        profile_crowning=_relief(section.profile_crowning),
+        lead_crowning=_relief(section.lead_crowning),
+        lead_slope=1e-6 * section.lead_slope_um,
+        profile_slope=1e-6 * section.profile_slope_um,
+        bias=1e-6 * section.bias_um,
+    )
+
+
+def _relief(section: ReliefSection) -> Relief:
+    return Relief(1e-6 * section.amount_um, 1e-3 * section.start_mm, 1e-3 * section.length_mm)
+
+
+@dataclass(frozen=True)
+class ContactSetup:
+    """A pair, the sizes of its elements and what is asked of the contact analysis."""
+
+    pair: Pair
+    sizes: MeshSizes
+    plan: ContactPlan
+
+    @property
+    def memory(self) -> float:
+        """Estimated bytes of the larger body's compliance."""
+        return estimated_memory(self.pair.design, self.sizes, self.plan)
+
+
+def contact_setup(tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> ContactSetup:
+    """Set up the contact analysis, with as many cuts along the face as the contact ellipse asks for.
+
+    Parameters
+    ----------
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    mesh : Mesh
+        Section `mesh` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    ContactSetup
+        The pair, the sizes of its elements and the plan, in SI units.
+
+    Raises
+    ------
+    ConfigError
+        For a pair without bodies, and for an ellipse that no cuts resolve.
+    """
+    teeth = pair(tooth_pair)
+    sizes = mesh_sizes(mesh, teeth.design.module)
+    plan = along_the_ellipse(teeth.design, teeth.materials, sizes, contact_plan(contact))
+    return ContactSetup(teeth, sizes, plan)

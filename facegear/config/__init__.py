@@ -1,1 +1,0 @@
-"""The only place that validates a config and converts it to SI."""

@@ -1,0 +1,1 @@
+"""The answers of a gearbox, chapter by chapter: functions of its case that `Gearbox` takes as methods."""

@@ -1,1 +1,0 @@
-"""Time response of the lumped model: integration, steady state, stability, speed sweeps."""

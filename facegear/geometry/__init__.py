@@ -1,1 +1,0 @@
-"""Exact tooth surfaces of the pair: flanks, fillets, limits, unloaded contact."""

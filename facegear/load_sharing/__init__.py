@@ -1,1 +1,0 @@
-"""How evenly the meshes share the load: coefficients, studies, summaries."""

@@ -1,0 +1,1 @@
+"""The lumped model: bodies, meshes, matrices, statics, natural modes and poses."""

@@ -1,0 +1,217 @@
+"""Forces on the bodies beside the meshes' springs: periodic torques, and friction of the meshes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput
+from facegear.harmonics import Harmonics, stacked_values
+from facegear.machine.drive_line import DriveLine
+from facegear.machine.layout import DOF_PER_BODY, Layout
+from facegear.machine.linear_model import LinearModel
+
+WHOLE = 1e-9
+"""Distance of a frequency over that of the mesh from a whole number that counts as rounding."""
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """Torque `amplitude` cos(order turns + phase) beside the mean torque of a body.
+
+    Attributes
+    ----------
+    body : int
+        Its number in the layout; the torque acts where the body's mean torque acts.
+    order : float
+        Vibrations in one turn of the body, dimensionless.
+    teeth : int
+        Of the body.
+    amplitude : float
+        N m.
+    phase : float
+        At the start, rad.
+    """
+
+    body: int
+    order: float
+    teeth: int
+    amplitude: float
+    phase: float = 0.0
+
+    @property
+    def of_mesh(self) -> float:
+        """Frequency over that of the mesh, dimensionless."""
+        return self.order / self.teeth
+
+    @property
+    def mesh_harmonic(self) -> int:
+        """Number of the mesh harmonic with this frequency. Raises InvalidInput where there is none."""
+        nearest = round(self.of_mesh)
+        if nearest < 1 or abs(self.of_mesh - nearest) > WHOLE * nearest:
+            multiples = (
+                f"an order that is a multiple of {self.teeth}, the teeth of its body, for motion in time, "
+                "which repeats with the mesh; vibration at the orders of turns (shaft_orders) takes every one"
+            )
+            raise InvalidInput("order of an excitation", self.order, multiples)
+        return nearest
+
+
+def rigid_rotation(layout: Layout, linear: LinearModel, line: DriveLine | None) -> Array:
+    """Return the common rotation of all bodies, which no mesh and no bearing feels.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies, with geometric meshes.
+    linear : LinearModel
+        Their coordinates.
+    line : DriveLine or None
+        Turning masses behind torsional springs.
+
+    Returns
+    -------
+    (n,) array
+        1 for each pinion and the teeth's ratio for each gear, dimensionless.
+    """
+    pinions = len(layout.pinions)
+    ratio = layout.pinion_teeth / layout.gear_teeth
+    turns = np.array([1.0 if body < pinions else ratio for body in range(len(layout.bodies))])
+    rotation = np.zeros(linear.size)
+    rotation[: layout.dof][layout.spins] = turns
+    for body, first, chain in () if line is None else line.chains():
+        rotation[first : first + len(chain)] = turns[body]
+    return rotation
+
+
+def without_rigid_rotation(force: Array, linear: LinearModel, rotation: Array) -> Array:
+    """Take off a force what turns all bodies together, which strains nothing.
+
+    Parameters
+    ----------
+    force : (n,) array
+        N and N m.
+    linear : LinearModel
+        Coordinates and masses.
+    rotation : (n,) array
+        `rigid_rotation`, dimensionless.
+
+    Returns
+    -------
+    (n,) array
+        N and N m: the rest, in balance with the inertia of all bodies.
+    """
+    inertia = linear.momentum(rotation)
+    return np.asarray(force - inertia * (rotation @ force) / (rotation @ inertia))
+
+
+PARTS = ("tangential", "along_pinion_axis", "along_gear_axis", "pinion_lever", "face_gear_lever")
+"""Ratios of friction to the elastic force of a flank.
+
+Force on the pinion along the tangent of the face gear, along the pinion's axis (away from the gear's) and
+along the gear's axis, in the frame of the upper gear's mesh, and the moments on pinion and face gear about
+their own axes, positive as they turn, over the arms of the elastic force.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class MeshFriction:
+    """Ratios of friction to elastic force as Fourier series over the reference's mesh cycle.
+
+    Attributes
+    ----------
+    ratios : (meshes, PARTS, 2, orders) array
+        Series of the drive flank of each mesh without its lag, sine part first; dimensionless.
+    """
+
+    ratios: Array
+
+    def loss(self, phases: Array, cycles: Array, forces: Array) -> Array:
+        """Return the force that friction takes along the base circles: loss over their speed.
+
+        The machine turns evenly.
+
+        Parameters
+        ----------
+        phases : (meshes,) array
+            Lag of each mesh, mesh periods.
+        cycles : (K,) array
+            Positions, mesh periods.
+        forces : (K, meshes) array
+            Elastic forces, those of the drive flank positive, N.
+
+        Returns
+        -------
+        (K, meshes) array
+            N.
+        """
+        levers = -flank_ratios(self.ratios, phases)[:, 3:].sum(axis=1)
+        drive, back = np.split(stacked_values(levers, cycles), 2, axis=1)
+        return np.maximum(forces, 0.0) * drive + np.maximum(-forces, 0.0) * back
+
+
+def friction_rows(layout: Layout, at_output: bool = True) -> Array:
+    """Return the directions in which the PARTS act on the bodies, equal for both flanks.
+
+    A pinion without a bearing along its axis stays where it is.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    at_output : bool
+        Whether a moment on the output meets each moment, so that none turns the machine as a whole.
+
+    Returns
+    -------
+    (meshes, PARTS, dof) array
+        N/N, and m for moments.
+    """
+    rows = np.zeros((len(layout.meshes), len(PARTS), layout.dof))
+    tilt_coordinates = layout.first_tilts
+    output = DOF_PER_BODY * (len(layout.pinions) + layout.output) + 3
+    for row, (i, g) in zip(rows, layout.meshes, strict=True):
+        side = layout.gears[g].sign
+        cosine, sine = np.cos(layout.angles[i]), np.sin(layout.angles[i])
+        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
+        row[0, pinion], row[0, gear : gear + 2] = side, [-side * cosine, -side * sine]
+        has_axial_bearing = layout.pinions[i].body.bearing[2] > 0.0
+        row[1, pinion + 2], row[1, gear : gear + 2] = float(has_axial_bearing), [-sine, cosine]
+        row[2, pinion + 1], row[2, gear + 2] = side, -side
+        if g in tilt_coordinates:
+            row[2, tilt_coordinates[g] : tilt_coordinates[g] + 2] = (
+                side * layout.mesh_radius * np.array([cosine, sine])
+            )
+        row[3, pinion + 3], row[4, gear + 3] = layout.pinion_arm, layout.gear_arm
+        if at_output:
+            row[3:, output] -= layout.gear_arm
+    return rows
+
+
+def flank_ratios(ratios: Array, phases: Array) -> Array:
+    """Return the series of all drive flanks, then all back flanks, each with its lag.
+
+    The back flank is the mirror image of the drive flank that turns the other way: its tangential force and
+    its moments are those at the mirrored place, the other parts are opposite.
+
+    Parameters
+    ----------
+    ratios : (meshes, PARTS, 2, orders) array
+        Series of the drive flanks without lag, dimensionless.
+    phases : (meshes,) array
+        Lag of each mesh, mesh periods.
+
+    Returns
+    -------
+    (2 meshes, PARTS, 2, orders) array
+        Dimensionless.
+    """
+    mirror = np.array([1.0, -1.0, -1.0, 1.0, 1.0])[:, None, None] * np.array([-1.0, 1.0])[:, None]
+    flank_series = np.concatenate([ratios, ratios * mirror])
+    lagged_series = np.empty_like(flank_series)
+    for flank, lag in zip(
+        np.ndindex(flank_series.shape[:2]), np.repeat(np.tile(phases, 2), len(PARTS)), strict=True
+    ):
+        series = Harmonics(*flank_series[flank]).shift(float(lag))
+        lagged_series[flank] = series.sine, series.cosine
+    return lagged_series

@@ -1,0 +1,306 @@
+"""Shafts that bend below pinions, and turning masses on the other end of torsional springs.
+
+A pinion whose shaft is given by its 5 x 5 stiffness may tilt: two coordinates, with the gyroscopic moments of
+its spin. Its bearing in the layout is what remains without tilts and without moments, so that statics are
+those of the layout alone. An engine, a rotor, or several of them in a row, adds one coordinate each; the
+torque of the body acts on the last.
+"""
+
+from collections.abc import Iterator, Mapping, Set
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array, Integers
+from facegear.machine.layout import DOF_PER_BODY, TILT_LETTERS, Layout
+from facegear.machine.linear_model import LinearModel, Spin
+from facegear.parts.shafts import CondensedShaft
+from facegear.rigid_body import MOTIONS
+
+THETA = 3
+"""Index of the rotation among the four coordinates of a body."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seat:
+    """Shaft that a pinion sits on.
+
+    Attributes
+    ----------
+    tilt_inertia : float or None
+        Moment of inertia about a diameter, kg m2; None for a pinion that does not tilt.
+    """
+
+    shaft: CondensedShaft
+    tilt_inertia: float | None = None
+
+    @property
+    def couples_axially(self) -> bool:
+        """Whether the bearings move a pinion along its axis where it is loaded across."""
+        axial_row = np.delete(self.shaft.compliance[2], 2)
+        return bool((axial_row != 0.0).any())
+
+
+@dataclass(frozen=True)
+class TurningMass:
+    """A turning mass behind a torsional spring: N m/rad, kg m2, and the damping ratio of the two masses that
+    the spring joins, by themselves.
+    """
+
+    name: str
+    stiffness: float
+    inertia: float
+    damping_ratio: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Spring:
+    """A torsional spring between two coordinates of the model: N m/rad, N m s/rad."""
+
+    first: int
+    second: int
+    stiffness: float
+    damping: float
+
+
+@dataclass(frozen=True, eq=False)
+class DriveLine:
+    """Seats by the pinions' numbers in the layout, chains of turning masses by those of the bodies."""
+
+    layout: Layout
+    seats: Mapping[int, Seat]
+    masses: Mapping[int, tuple[TurningMass, ...]]
+
+    @property
+    def tilting(self) -> tuple[int, ...]:
+        """The pinions that tilt."""
+        return tuple(i for i, seat in sorted(self.seats.items()) if seat.tilt_inertia is not None)
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates that the drive line adds."""
+        return 2 * len(self.tilting) + sum(len(chain) for chain in self.masses.values())
+
+    def tilts(self, pinion: int) -> Integers:
+        """Return the coordinates tilt_x and tilt_y of a pinion that tilts.
+
+        Parameters
+        ----------
+        pinion : int
+            Number of the pinion in the layout.
+
+        Returns
+        -------
+        (2,) array of int
+            Indices of coordinates of the model.
+        """
+        return self.layout.dof + 2 * self.tilting.index(pinion) + np.arange(2)
+
+    def motions(self, pinion: int) -> Integers:
+        """Return the coordinates of a pinion among x, y, z, tilt_x, tilt_y.
+
+        Parameters
+        ----------
+        pinion : int
+            Number of the pinion in the layout.
+
+        Returns
+        -------
+        (5,) or (3,) array of int
+            Indices of coordinates; three for a pinion that does not tilt.
+        """
+        straight = DOF_PER_BODY * pinion + np.arange(3)
+        return np.append(straight, self.tilts(pinion)) if pinion in self.tilting else straight
+
+    def chains(self) -> Iterator[tuple[int, int, tuple[TurningMass, ...]]]:
+        """Yield every chain of turning masses.
+
+        Yields
+        ------
+        tuple of int, int and tuple of TurningMass
+            Number of the body, first coordinate and masses.
+        """
+        first = self.layout.dof + 2 * len(self.tilting)
+        for body, chain in sorted(self.masses.items()):
+            yield body, first, chain
+            first += len(chain)
+
+    def torque_coordinates(self) -> Integers:
+        """Return where the torque of every body acts.
+
+        Returns
+        -------
+        (bodies,) array of int
+            Indices of coordinates: the last mass of a chain, or the rotation of the body.
+        """
+        at = np.arange(len(self.layout.bodies)) * DOF_PER_BODY + THETA
+        for body, first, chain in self.chains():
+            at[body] = first + len(chain) - 1
+        return at
+
+    def springs(self) -> list[Spring]:
+        """Return all torsional springs, from each body outwards.
+
+        Returns
+        -------
+        list of Spring
+            Stiffness in N m/rad, damping in N m s/rad.
+        """
+        springs = []
+        for body, first, chain in self.chains():
+            before, inertia = DOF_PER_BODY * body + THETA, self.layout.bodies[body].inertia
+            for number, mass in enumerate(chain, start=first):
+                reduced_inertia = inertia * mass.inertia / (inertia + mass.inertia)
+                damping = 2.0 * mass.damping_ratio * np.sqrt(mass.stiffness * reduced_inertia)
+                springs.append(Spring(before, number, mass.stiffness, float(damping)))
+                before, inertia = number, mass.inertia
+        return springs
+
+    def __call__(self, model: LinearModel) -> LinearModel:
+        """Return the model with these coordinates behind its own.
+
+        The lumped damping acts on shafts and their bearings, and on no turning mass.
+        """
+        added_count = self.size
+        inertias = self._inertias()
+        mass = np.pad(model.mass, (0, added_count))
+        mass[model.size :, model.size :] = np.diag(inertias)
+        stiffness = np.pad(model.stiffness, (0, added_count))
+        for pinion, seat in self.seats.items():
+            coordinates = self.motions(pinion)
+            if coordinates.size == MOTIONS or seat.couples_axially:
+                matrix = seat.shaft.stiffness if coordinates.size == MOTIONS else seat.shaft.square
+                stiffness[np.ix_(coordinates, coordinates)] = matrix
+        torsion, dampers = self._torsion_matrices(model)
+        torques = np.pad(model.torques, (0, added_count))
+        turning = self.torque_coordinates()
+        torques[self.layout.spins] = 0.0
+        torques[turning] = model.torques[self.layout.spins]
+        return replace(
+            model,
+            labels=(*model.labels, *self._labels()),
+            mass=mass,
+            stiffness=stiffness + torsion,
+            rows=np.pad(model.rows, ((0, 0), (0, added_count))),
+            torques=torques,
+            forces=np.pad(model.forces, (0, added_count)),
+            lengths=np.append(model.lengths, self._lengths()),
+            dampers=np.pad(model.dampers, (0, added_count)) + dampers,
+            spin=self._spin(model),
+        )
+
+    def _inertias(self) -> Array:
+        tilts = [self.seats[i].tilt_inertia for i in self.tilting for _ in range(2)]
+        return np.array([*tilts, *(mass.inertia for *_, chain in self.chains() for mass in chain)], float)
+
+    def _labels(self) -> list[str]:
+        names = self.layout.body_names
+        tilts = [f"{names[i]}:{letter}" for i in self.tilting for letter in TILT_LETTERS]
+        return tilts + [f"{names[body]}:{mass.name}" for body, _, chain in self.chains() for mass in chain]
+
+    def _lengths(self) -> Array:
+        layout = self.layout
+        radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
+        tilts = [layout.pinion_radius] * (2 * len(self.tilting))
+        return np.array(tilts + [radii[body] for body, _, chain in self.chains() for _ in chain])
+
+    def _torsion_matrices(self, model: LinearModel) -> tuple[Array, Array]:
+        """Return the stiffness of the torsional springs, and dampers that take the lumped damping away from
+        them.
+        """
+        whole = model.size + self.size
+        stiffness, dampers = np.zeros((2, whole, whole))
+        for spring in self.springs():
+            ends = np.ix_([spring.first, spring.second], [spring.first, spring.second])
+            apart = np.array([[1.0, -1.0], [-1.0, 1.0]])
+            stiffness[ends] += spring.stiffness * apart
+            dampers[ends] += (spring.damping - model.bearing_damping * spring.stiffness) * apart
+            dampers[spring.second, spring.second] -= model.mass_damping * self._inertia(spring.second)
+        return stiffness, dampers
+
+    def _inertia(self, coordinate: int) -> float:
+        return float(self._inertias()[coordinate - self.layout.dof])
+
+    def _spin(self, model: LinearModel) -> Spin | None:
+        """Return the gyroscopic terms. Pinions turn against their z, which points away from the gears'
+        axis.
+        """
+        if not self.tilting:
+            return None
+        whole = model.size + self.size
+        gyroscopic = np.zeros((whole, whole))
+        for pinion in self.tilting:
+            about_x, about_y = self.tilts(pinion)
+            polar = self.layout.pinions[pinion].body.inertia
+            gyroscopic[about_x, about_y], gyroscopic[about_y, about_x] = -polar, polar
+        return Spin(gyroscopic, np.zeros((whole, whole)), np.zeros((whole, whole)))
+
+    def without_shafts(self, pinions: Set[int], layout: Layout) -> "DriveLine":
+        """Return the drive line for a layout in which some pinions have bearings of their own.
+
+        Parameters
+        ----------
+        pinions : Set[int]
+            Numbers of these pinions.
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        DriveLine
+            The seats of these pinions are left out.
+        """
+        seats = {i: seat for i, seat in self.seats.items() if i not in pinions}
+        return DriveLine(layout, seats, self.masses)
+
+    def static_from_layout(self, model: LinearModel) -> bool:
+        """Whether `extend_displacements` holds.
+
+        Parameters
+        ----------
+        model : LinearModel
+            Linear model of the layout.
+
+        Returns
+        -------
+        bool
+            False where an axial force loads a pinion whose bearings couple axial and other motions.
+        """
+        axial_coordinates = [self.motions(i)[2] for i, seat in self.seats.items() if seat.couples_axially]
+        return not model.forces[axial_coordinates].any()
+
+    def extend_displacements(self, model: LinearModel, displacements: Array) -> Array:
+        """Return static displacements with the drive line from those of the machine without it.
+
+        No moment loads a pinion, and a torque passes its chain whole.
+
+        Parameters
+        ----------
+        model : LinearModel
+            Linear model of the layout.
+        displacements : (K, n) array
+            Displacements without the drive line, m and rad.
+
+        Returns
+        -------
+        (K, n + size) array
+            m and rad.
+        """
+        first = model.size
+        displacements, added_displacements = displacements.copy(), np.zeros((len(displacements), self.size))
+        loads = displacements[:, :first] @ model.stiffness
+        for pinion, seat in self.seats.items():
+            straight, compliance = self.motions(pinion)[:3], seat.shaft.compliance
+            if seat.couples_axially:
+                displacements[:, straight[2]] = loads[:, straight] @ compliance[:3, 2]
+            if pinion in self.tilting:
+                added_displacements[:, self.tilts(pinion) - first] = loads[:, straight] @ compliance[:3, 3:]
+        for body, start, chain in self.chains():
+            at = DOF_PER_BODY * body + THETA
+            twist = np.cumsum([model.torques[at] / mass.stiffness for mass in chain])
+            added_displacements[:, start - first : start - first + len(chain)] = (
+                displacements[:, at, None] + twist
+            )
+        return np.concatenate(
+            [displacements[:, :first], added_displacements, displacements[:, first:]], axis=1
+        )

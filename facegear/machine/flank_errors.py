@@ -1,0 +1,187 @@
+"""Errors of every flank over the mesh cycle: series, constant parts, slow ones, single teeth."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.by_content import kept_by_content
+from facegear.harmonics import Harmonics
+from facegear.machine.assembly import assembly
+from facegear.machine.layout import Layout, Side
+from facegear.machine.machine import Machine
+
+
+def _lags(machine: Machine) -> list[float]:
+    """Return the lag of every mesh in the mesh cycle, in mesh periods."""
+    return [float(lag) for lag in np.round(machine.phases, 12) % 1.0]
+
+
+def error_series(machine: Machine) -> tuple[Harmonics, ...]:
+    """Return e(t) of every flank over the reference's mesh cycle, without constant and slow errors.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    tuple of Harmonics
+        One series for each flank, in m; drive flanks first.
+    """
+    return _error_series(machine.without_errors)
+
+
+@lru_cache(maxsize=16)
+def _error_series(machine: Machine) -> tuple[Harmonics, ...]:
+    mesh_series = machine.imperfections.series
+    shapes = [mesh_series.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
+    return _flank_series(tuple(shapes), machine.error_phases)
+
+
+@lru_cache(maxsize=16)
+def constant_errors(machine: Machine) -> Array:
+    """Return the error of every flank that never changes: teeth, pinions out of place, assembly.
+
+    The array is shared between calls and must not be written to.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+
+    Returns
+    -------
+    (2 meshes,) array
+        m; positive keeps the flank from touching.
+    """
+    layout, errors = machine.layout, machine.imperfections
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    misfit = assembly(layout, machine.half_backlash, errors.clocking).misfit
+    side = np.array([[gear.sign] for gear in layout.gears])
+    lower = np.array([[float(gear.side is Side.LOWER)] for gear in layout.gears])
+    off = side * cosine * errors.position[:, 0] + lower * misfit
+    separating_error = -side * sine * errors.position[:, 1]
+    return _flanks(errors.error - off.ravel(), separating_error.ravel())
+
+
+def slow_errors(machine: Machine, cycles: Array) -> Array:
+    """Return the error of every flank from runouts, pitch deviations and single teeth.
+
+    A face gear's high point stands at its phase from the first pinion at the start and goes on as the gear
+    turns, the lower one against the angles. Teeth whose centre lies towards the angle p stand ahead by the
+    sine of p less the mesh's angle.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    cycles : (K,) array
+        Mesh cycles of the reference from the start, periods.
+
+    Returns
+    -------
+    (K, 2 meshes) array
+        m.
+    """
+    layout, errors = machine.layout, machine.imperfections
+    tangential, separating_error = np.zeros((2, cycles.size, len(layout.meshes)))
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    from_first = 2.0 * np.pi * layout.pitches_from_first / layout.gear_teeth
+    for mesh, (i, g) in enumerate(layout.meshes):
+        side = layout.gears[g].sign
+        runout = errors.pinion_runout[i]
+        turn = 2.0 * np.pi * cycles / layout.pinion_teeth + runout.phase
+        tangential[:, mesh] -= side * cosine * runout.amplitude * np.sin(turn)
+        separating_error[:, mesh] -= side * sine * runout.amplitude * np.cos(turn)
+        runout = errors.gear_runout[g]
+        turn = 2.0 * np.pi * cycles / layout.gear_teeth + runout.phase - side * from_first[i]
+        tangential[:, mesh] += cosine * runout.amplitude * np.sin(turn)
+        on_pinion, on_gear = teeth_in_mesh(layout, mesh, cycles)
+        tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
+        tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
+    return _flanks(tangential, separating_error) - _early_teeth(machine, cycles)
+
+
+def _early_teeth(machine: Machine, cycles: Array) -> Array:
+    """Return by how much every flank comes early (K, 2 meshes), m, as single teeth of its gears deviate.
+
+    Both teeth are at the place of the mesh cycle at which the mesh is.
+    """
+    teeth, layout = machine.imperfections.teeth, machine.layout
+    early = np.zeros((2, cycles.size, len(layout.meshes)))
+    if teeth is None:
+        return _beside(early)
+    for mesh, lag in enumerate(_lags(machine)):
+        positions = []
+        for tooth in teeth_in_mesh(layout, mesh, cycles):
+            apart = cycles - lag - tooth
+            positions.append(tooth + apart - np.round(apart))
+        early[:, :, mesh] = teeth.early(layout, *positions)
+    return _beside(early)
+
+
+def _beside(values: Array) -> Array:
+    """Concatenate the values of drive and back flanks (2, K, meshes) to (K, 2 meshes)."""
+    return np.concatenate([values[0], values[1]], axis=-1)
+
+
+def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Array]:
+    """Return the teeth of the pinion and of the face gear that a mesh has come to, counted on from turn to
+    turn.
+
+    At the start the first tooth of each gear is at the first pinion. A fraction lies between two teeth.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    mesh : int
+        Index of the mesh.
+    cycles : (K,) array
+        Mesh cycles of the reference from the start, periods.
+
+    Returns
+    -------
+    pair of (K,) arrays
+        Tooth of the pinion and tooth of the face gear, as an index from 0.
+    """
+    i, g = layout.meshes[mesh]
+    half_turn = 0.5 * layout.pinion_teeth if layout.half_turned(g) else 0.0
+    return cycles - half_turn, cycles - layout.gears[g].sign * layout.pitches_from_first[i]
+
+
+def mirror_series(series: Harmonics) -> Harmonics:
+    """Return the series of f(-t).
+
+    Parameters
+    ----------
+    series : Harmonics
+        The series of f(t).
+
+    Returns
+    -------
+    Harmonics
+        In the unit of the given series.
+    """
+    return Harmonics(-series.sine, series.cosine)
+
+
+@kept_by_content(8)
+def _flank_series(drive: tuple[Harmonics, ...], phases: Array) -> tuple[Harmonics, ...]:
+    """Return the series of drive flanks and of their mirror images, each with the lag of its mesh."""
+    flanks = [*drive, *(mirror_series(series) for series in drive)]
+    lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
+    return tuple(series.shift(lag) for series, lag in zip(flanks, lags, strict=True))
+
+
+def _flanks(tangential: Array, separating_error: Array) -> Array:
+    return np.concatenate([separating_error + tangential, separating_error - tangential], axis=-1)
+
+
+def _deviation(curve: Array | None, tooth_positions: Array) -> Array:
+    """Pitch deviation between the teeth, linear from tooth to tooth, (K,)."""
+    if curve is None:
+        return np.zeros(tooth_positions.size)
+    return np.interp(tooth_positions, np.arange(curve.size), curve, period=curve.size)

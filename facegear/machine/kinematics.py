@@ -1,0 +1,258 @@
+"""Kinematics of meshes: as the teeth move, and as the source paper prints them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput
+from facegear.machine.layout import DOF_PER_BODY, Kinematics, Layout
+
+
+@dataclass(frozen=True)
+class PrintedKinematics:
+    """Kinematics of equation (13): both flanks of a mesh share one line of action.
+
+    Any radii are multiplied by the cosine of the pressure angle, and the angles of the pinions know no sense
+    of rotation.
+    """
+
+    name: str = "printed"
+    flanks_apart: bool = False
+    follows_rotation: bool = False
+
+    def require(self, layout: Layout) -> None:
+        """Accept any radii.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout to check.
+        """
+
+    def arm(self, radius: float, pressure_angle: float) -> float:
+        """Return the torque over the mesh force that balances it: the radius times the cosine of the pressure
+        angle.
+
+        Parameters
+        ----------
+        radius : float
+            Radius that a layout gives to a body, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        return radius * float(np.cos(pressure_angle))
+
+    def mesh_radius(self, layout: Layout) -> float:
+        """Return the given radius of the face gear.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        return layout.gear_radius
+
+    def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
+        """Return the radius at which forces act along the base radius.
+
+        Parameters
+        ----------
+        base_radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        return float(base_radius / np.cos(pressure_angle))
+
+    def flank_rows(self, layout: Layout) -> Array:
+        """Return the derivative of the flanks' deflections by the DOF.
+
+        Drive flanks are as equation (13) has them; back flanks are their negative.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        (2 meshes, dof) array
+            Drive flanks first; m/m, and m/rad for rotations.
+        """
+        cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+        angles = layout.angles
+        rows = np.zeros((len(layout.meshes), layout.dof))
+        for row, (i, g) in zip(rows, layout.meshes, strict=True):
+            pinion = DOF_PER_BODY * i
+            gear = DOF_PER_BODY * (len(layout.pinions) + g)
+            axial = -layout.gears[g].sign
+            row[pinion : pinion + 4] = cosine, sine, 0.0, layout.pinion_radius * cosine
+            row[gear] = -np.cos(angles[i]) * cosine
+            row[gear + 1] = -np.sin(angles[i]) * cosine
+            row[gear + 2] = axial * sine
+            row[gear + 3] = -layout.gear_radius * cosine
+        return np.concatenate([rows, -rows])
+
+
+PRINTED_KINEMATICS = PrintedKinematics()
+"""The only object of its class."""
+
+
+SAME_ARM = 1e-9
+"""Relative difference of radii that counts as none."""
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """Forces act along the normals of the flanks: `pinion_radius` and `gear_radius` are base radii."""
+
+    name: str = "geometric"
+    flanks_apart: bool = True
+    follows_rotation: bool = True
+
+    def require(self, layout: Layout) -> None:
+        """Raise InvalidInput unless the radii are those of the tooth numbers.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout to check.
+        """
+        conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
+        if abs(layout.gear_radius - conjugate) > SAME_ARM * conjugate:
+            requirement = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
+            raise InvalidInput("gear_radius", layout.gear_radius, requirement)
+
+    def arm(self, radius: float, pressure_angle: float) -> float:
+        """Return the torque over the mesh force that balances it: the radius itself.
+
+        Parameters
+        ----------
+        radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        return radius
+
+    def mesh_radius(self, layout: Layout) -> float:
+        """Return the distance of the meshes from the face gears' axis, m N2 / 2.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        return layout.gear_radius / float(np.cos(layout.pressure_angle))
+
+    def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
+        """Return the radius of a face gear in the layout: its base radius.
+
+        Parameters
+        ----------
+        base_radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        return base_radius
+
+    def flank_rows(self, layout: Layout) -> Array:
+        """Return the derivative of the flanks' deflections by the DOF.
+
+        The back flank's normal has the same separating part and the opposite tangential part.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        (2 meshes, dof) array
+            Drive flanks first; m/m, and m/rad for rotations.
+        """
+        tangential, separating_part = mesh_parts(layout)
+        return np.concatenate([separating_part + tangential, separating_part - tangential])
+
+
+GEOMETRIC = Teeth()
+"""The only object of its class."""
+
+
+def mesh_parts(layout: Layout) -> tuple[Array, Array]:
+    """Return tangential and separating motion at the flanks by the DOF, from the geometry.
+
+    A pinion sees the lower gear as the upper one rotated by 180 degrees about the pinion axis, so its x and y
+    change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
+
+    Parameters
+    ----------
+    layout : Layout
+        The layout.
+
+    Returns
+    -------
+    pair of (meshes, dof) arrays
+        Tangential and separating part; m/m, and m/rad for rotations.
+    """
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    tangential, separating_part = np.zeros((2, len(layout.meshes), layout.dof))
+    angles = layout.angles
+    tilt_coordinates = layout.first_tilts
+    for row, (i, g) in enumerate(layout.meshes):
+        side = layout.gears[g].sign
+        along = np.array([np.cos(angles[i]), np.sin(angles[i])])
+        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
+        tangential[row, pinion] = side * cosine
+        tangential[row, gear : gear + 2] = -side * cosine * along
+        tangential[row, [pinion + 3, gear + 3]] = layout.pinion_arm, -layout.gear_arm
+        separating_part[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
+        if g in tilt_coordinates:
+            # Tilts about x and y lift the rim at the mesh by its distance from the diameter, and move it
+            # along the tangent where they are about a point below the pitch plane.
+            away = np.array([along[1], -along[0]])
+            below = getattr(layout.gears[g].body.tilt, "below", 0.0)
+            tangential[row, tilt_coordinates[g] : tilt_coordinates[g] + 2] -= below * cosine * away
+            separating_part[row, tilt_coordinates[g] : tilt_coordinates[g] + 2] = (
+                side * sine * layout.mesh_radius * along
+            )
+    return tangential, separating_part
+
+
+KINEMATICS: Mapping[str, Kinematics] = {
+    kinematics.name: kinematics for kinematics in (GEOMETRIC, PRINTED_KINEMATICS)
+}
+"""Kinematics of the meshes by their names in a config."""

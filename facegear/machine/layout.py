@@ -1,0 +1,411 @@
+"""Layout of a transmission: pinions around one or two face gears, and which of them mesh."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput
+
+DOF_PER_BODY = 4
+"""Coordinates of each body: x, y, z and rotation about its own axis."""
+DOF_LETTERS = ("x", "y", "z", "theta")
+"""Names of the coordinates of a body, in their order."""
+TILT_LETTERS = ("tilt_x", "tilt_y")
+"""Names of the two tilts of a body that may tilt."""
+
+
+class Role(StrEnum):
+    """Role of a pinion in the power flow."""
+
+    INPUT = "input"
+    IDLER = "idler"
+    TAIL = "tail"
+
+
+class Side(StrEnum):
+    """Face gear: `lower` (6 in the paper) or `upper` (7, the output)."""
+
+    LOWER = "lower"
+    UPPER = "upper"
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """Rocking of a face gear about its two diameters: moment of inertia (kg m2) and stiffness (N m/rad).
+
+    below: distance (m) of the point that stays in place from the pitch plane of its meshes, away from the
+    pinions.
+    """
+
+    inertia: float
+    stiffness: float
+    below: float = 0.0
+
+
+@dataclass(frozen=True)
+class Body:
+    """Inertia and bearing of one body.
+
+    Attributes
+    ----------
+    mass
+        kg.
+    inertia
+        About the own axis, kg m2.
+    bearing
+        Stiffness along x, y, z, N/m.
+    bearing_xy
+        Stiffness that couples x and y, N/m.
+    tilt
+        Lets a face gear rock; without it the gear stays square.
+    """
+
+    mass: float
+    inertia: float
+    bearing: tuple[float, float, float]
+    bearing_xy: float = 0.0
+    tilt: Tilt | None = None
+
+
+@dataclass(frozen=True)
+class Pinion:
+    """One pinion; `pitches` is its distribution angle in angular pitches of the face gear."""
+
+    name: str
+    role: Role
+    pitches: float
+    body: Body
+
+
+@dataclass(frozen=True)
+class FaceGear:
+    """One face gear."""
+
+    side: Side
+    body: Body
+
+    @property
+    def name(self) -> str:
+        """Name in tables and figures."""
+        return f"{self.side.value} face gear"
+
+    @property
+    def sign(self) -> float:
+        """1 for the upper gear, -1 for the lower gear, which a pinion sees rotated by 180 degrees about its
+        own axis.
+        """
+        return -1.0 if self.side is Side.LOWER else 1.0
+
+
+class Kinematics(Protocol):
+    """Deflection of the meshes by motions of the bodies, and arms at which mesh forces turn the bodies."""
+
+    @property
+    def name(self) -> str:
+        """Name that a config gives to these kinematics."""
+
+    @property
+    def flanks_apart(self) -> bool:
+        """Whether each flank is a contact with a normal and a gap of its own, or both flanks of a mesh share
+        one line of action.
+        """
+
+    @property
+    def follows_rotation(self) -> bool:
+        """Whether the teeth of a lower face gear that is alone pass the pinions the other way round."""
+
+    def require(self, layout: "Layout") -> None:
+        """Raise InvalidInput for radii that do not fit the teeth.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout to check.
+        """
+
+    def arm(self, radius: float, pressure_angle: float) -> float:
+        """Return the torque over the mesh force that balances it.
+
+        Parameters
+        ----------
+        radius : float
+            Radius that a layout gives to a body, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
+
+    def mesh_radius(self, layout: "Layout") -> float:
+        """Return the distance of the meshes from the face gears' axis.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        float
+            m.
+        """
+
+    def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
+        """Return the radius that a layout gives to a face gear with a base radius.
+
+        Parameters
+        ----------
+        base_radius : float
+            Base radius, m.
+        pressure_angle : float
+            Pressure angle, rad.
+
+        Returns
+        -------
+        float
+            m.
+        """
+
+    def flank_rows(self, layout: "Layout") -> Array:
+        """Return the derivative of the flanks' deflections by the DOF.
+
+        Parameters
+        ----------
+        layout : Layout
+            The layout.
+
+        Returns
+        -------
+        (2 meshes, dof) array
+            Drive flanks first; m/m, and m/rad for rotations.
+        """
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Bodies and mesh geometry, in m and rad. Bodies are ordered pinions, then gears, as in equation (1).
+
+    Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
+    `kinematics` says what `pinion_radius` and `gear_radius` are. What follows from the fields is kept; its
+    arrays are only read.
+    """
+
+    pinions: tuple[Pinion, ...]
+    gears: tuple[FaceGear, ...]
+    pinion_teeth: int
+    gear_teeth: int
+    pressure_angle: float
+    pinion_radius: float
+    gear_radius: float
+    kinematics: Kinematics
+
+    def __post_init__(self) -> None:
+        if not self.pinions:
+            raise InvalidInput("pinions", [], "at least one pinion")
+        if not self.gears or len({gear.side for gear in self.gears}) != len(self.gears):
+            raise InvalidInput("face gears", [g.side.value for g in self.gears], "lower, upper or both")
+        names = [pinion.name for pinion in self.pinions]
+        if len(set(names)) != len(names):
+            raise InvalidInput("pinions", names, "names that differ from pinion to pinion")
+        self.kinematics.require(self)
+
+    @cached_property
+    def pinion_arm(self) -> float:
+        """Torque on a pinion over the mesh force that balances it, m: the base radius, as teeth have it."""
+        return self.kinematics.arm(self.pinion_radius, self.pressure_angle)
+
+    @cached_property
+    def gear_arm(self) -> float:
+        """Torque on a face gear over the mesh force that balances it, m."""
+        return self.kinematics.arm(self.gear_radius, self.pressure_angle)
+
+    @cached_property
+    def mesh_radius(self) -> float:
+        """Distance of the meshes from the face gears' axis, m: m N2 / 2, as teeth have it."""
+        return self.kinematics.mesh_radius(self)
+
+    @cached_property
+    def base_pitch(self) -> float:
+        """Way along the line of action in a mesh period, m."""
+        return 2.0 * np.pi * self.pinion_arm / self.pinion_teeth
+
+    @cached_property
+    def tilting(self) -> tuple[int, ...]:
+        """The gears that may rock."""
+        return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
+
+    def tilt_distance(self, gear: int) -> float:
+        """Return the distance from the pinions' axes to the point that a gear tilts about.
+
+        Parameters
+        ----------
+        gear : int
+            Number of the gear.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        tilt = self.gears[gear].body.tilt
+        pitch_radius = self.pinion_arm / float(np.cos(self.pressure_angle))
+        return pitch_radius + (0.0 if tilt is None else tilt.below)
+
+    @cached_property
+    def first_tilts(self) -> dict[int, int]:
+        """Index among the degrees of freedom of the first of two tilts, for every gear that may rock."""
+        return {g: DOF_PER_BODY * len(self.bodies) + 2 * k for k, g in enumerate(self.tilting)}
+
+    @cached_property
+    def output(self) -> int:
+        """The gear that gives the power out: the upper one, else the only one."""
+        sides = [gear.side for gear in self.gears]
+        return sides.index(Side.UPPER) if Side.UPPER in sides else 0
+
+    @cached_property
+    def dof(self) -> int:
+        """Degrees of freedom: 4 a body, then the two tilts of every gear that may rock."""
+        return DOF_PER_BODY * len(self.bodies) + 2 * len(self.tilting)
+
+    @property
+    def spins(self) -> slice:
+        """Slice of the degrees of freedom with the rotation of every body about its own axis."""
+        return slice(3, DOF_PER_BODY * len(self.bodies), DOF_PER_BODY)
+
+    @cached_property
+    def bodies(self) -> tuple[Body, ...]:
+        """All bodies in the order of the degrees of freedom."""
+        return (*(pinion.body for pinion in self.pinions), *(gear.body for gear in self.gears))
+
+    @cached_property
+    def body_names(self) -> tuple[str, ...]:
+        """Names of the bodies in the same order."""
+        return (*(pinion.name for pinion in self.pinions), *(gear.name for gear in self.gears))
+
+    @cached_property
+    def dof_names(self) -> tuple[str, ...]:
+        """Names of the degrees of freedom, ``body:letter``."""
+        names = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
+        tilts = [f"{self.gears[g].name}:{letter}" for g in self.tilting for letter in TILT_LETTERS]
+        return (*names, *tilts)
+
+    @cached_property
+    def meshes(self) -> tuple[tuple[int, int], ...]:
+        """(pinion, gear) of each mesh, each counted from 0 in its own list."""
+        return tuple((i, g) for g in range(len(self.gears)) for i in range(len(self.pinions)))
+
+    @cached_property
+    def contacts(self) -> int:
+        """Number of contacts that move by themselves: both flanks of every mesh, which share one line of
+        action and are one contact in equation (13) as printed. Drive flanks come first.
+        """
+        return len(self.meshes) * (2 if self.kinematics.flanks_apart else 1)
+
+    @cached_property
+    def mesh_names(self) -> tuple[str, ...]:
+        """`pinion/side` of each mesh."""
+        return tuple(f"{self.pinions[i].name}/{self.gears[g].side.value}" for i, g in self.meshes)
+
+    @cached_property
+    def angles(self) -> Array:
+        """Distribution angles, shape (pinions,), rad."""
+        return 2.0 * np.pi * np.array([pinion.pitches for pinion in self.pinions]) / self.gear_teeth
+
+    @cached_property
+    def pitches_from_first(self) -> Array:
+        """Distribution angles counted from the first pinion, shape (pinions,), pitches of the face gear."""
+        return np.array([pinion.pitches - self.pinions[0].pitches for pinion in self.pinions])
+
+    def half_turned(self, gear: int) -> bool:
+        """Whether a gear meets a pinion half a turn of the pinion away from the reference mesh.
+
+        The reference is the first pinion's mesh with the upper gear, or with the only gear.
+
+        Parameters
+        ----------
+        gear : int
+            Number of the gear.
+
+        Returns
+        -------
+        bool
+            True for the lower of two gears.
+        """
+        return len(self.gears) > 1 and self.gears[gear].side is Side.LOWER
+
+    def mesh_index(self, pinion: int, side: Side) -> int:
+        """Return the position of a mesh in `meshes`.
+
+        Parameters
+        ----------
+        pinion : int
+            Number of the pinion.
+        side : Side
+            Side of the face gear.
+
+        Returns
+        -------
+        int
+            Index of the mesh.
+
+        Raises
+        ------
+        KeyError
+            If the layout has no such gear.
+        """
+        sides = [gear.side for gear in self.gears]
+        if side not in sides:
+            raise KeyError(side)
+        return sides.index(side) * len(self.pinions) + pinion
+
+
+class PhaseConvention(StrEnum):
+    """`geometric`: the half turn counts for every pinion; `printed`: for the first only, equation (11)."""
+
+    GEOMETRIC = "geometric"
+    AS_PRINTED = "printed"
+
+
+def mesh_phases(layout: Layout, convention: PhaseConvention, clocking: Array | None = None) -> Array:
+    """Return the lag of each mesh behind the reference.
+
+    The reference is the first pinion's mesh with the upper gear, or with the only gear. The upper gear's
+    teeth pass the pinions in the order of their angles, counted from the first pinion: equation (7). The
+    other side of a pinion is half a turn of it away, and turned by `clocking`. Where the lower gear is alone
+    its teeth come round the other way. Equation (13) as printed knows no sense of rotation.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    convention : PhaseConvention
+        For which pinions the half turn counts.
+    clocking : (pinions,) array or None
+        Lower rim ahead of the upper, pitches; 0 if None.
+
+    Returns
+    -------
+    (meshes,) array
+        Mesh periods within [0, 1).
+    """
+    upper_first = (
+        any(gear.side is Side.UPPER for gear in layout.gears) or not layout.kinematics.follows_rotation
+    )
+    rim_clocking = np.zeros(len(layout.pinions)) if clocking is None else clocking
+    lags = layout.pitches_from_first * (1.0 if upper_first else -1.0)
+    phases = np.empty(len(layout.meshes))
+    for row, (i, g) in enumerate(layout.meshes):
+        lag = lags[i]
+        if layout.half_turned(g):
+            if convention is PhaseConvention.GEOMETRIC or i == 0:
+                lag += 0.5 * layout.pinion_teeth
+            lag -= rim_clocking[i]
+        phases[row] = np.mod(lag, 1.0)
+    return phases

@@ -1,0 +1,360 @@
+"""The linear part of a machine: bodies, bearings, mesh directions and their matrices."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from typing import Protocol
+
+import numpy as np
+
+from facegear.arrays import AnyArray, Array, Integers, Mask
+from facegear.machine.layout import DOF_PER_BODY, Layout, Tilt
+
+
+@dataclass(frozen=True, eq=False)
+class Spin:
+    """Matrices that rotation adds, for a speed of the pinions of 1 rad/s; each (n, n), SI units.
+
+    Attributes
+    ----------
+    gyroscopic
+        G, skew-symmetric, force by velocity.
+    circulatory
+        N, force by displacement, from damping that turns with a body.
+    centrifugal
+        P, symmetric, force by displacement for the square of the speed.
+    """
+
+    gyroscopic: Array
+    circulatory: Array
+    centrifugal: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Rings:
+    """Bearings with clearance, R of them.
+
+    Attributes
+    ----------
+    body : (R,)
+        Index in the order of the bodies.
+    stiffness : (R,)
+        Beyond the clearance, N/m.
+    clearance : (R,)
+        To each side, m.
+    """
+
+    body: Integers
+    stiffness: Array
+    clearance: Array
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """n coordinates; m flanks; SI units.
+
+    Attributes
+    ----------
+    labels : (n,)
+        `body:letter`. The coordinates of the layout come first, as it orders them.
+    mass, stiffness : (n, n)
+        Symmetric; stiffness holds all bearings, those with clearance as if they had none.
+    rows : (m, n)
+        Derivative of the flanks' deflections by the coordinates, drive flanks first.
+    torques : (n,)
+        Those that the flanks hold in balance.
+    forces : (n,)
+        All other external loads.
+    lengths : (n,)
+        Length (m) that one unit of a coordinate counts as: 1 for a displacement, an arm for a rotation.
+    translations : (bodies, 3)
+        Which coordinates are x, y, z of each body.
+    mass_damping, bearing_damping
+        Factors of M (1/s) and K (s) in equation (21).
+    dampers : (n, n)
+        All other damping, N s/m.
+    rings
+        Bearings with clearance.
+    spin
+        What turning bodies add, None for nothing.
+    slopes : (2, meshes, n)
+        Of the height W of the rim below each mesh, towards the teeth, by the coordinates of gears that bend:
+        dW/dr, 1/m, and dW/dphi round the axis, m for a metre; None for rigid gears.
+    """
+
+    labels: tuple[str, ...]
+    mass: Array
+    stiffness: Array
+    rows: Array
+    torques: Array
+    forces: Array
+    lengths: Array
+    translations: Integers
+    mass_damping: float
+    bearing_damping: float
+    dampers: Array
+    rings: Rings
+    spin: Spin | None = field(default=None)
+    slopes: Array | None = field(default=None)
+
+    @property
+    def size(self) -> int:
+        """The number n of coordinates."""
+        return len(self.labels)
+
+    @property
+    def loads(self) -> Array:
+        """Torques and forces (n,)."""
+        return self.torques + self.forces
+
+    @property
+    def damping(self) -> Array:
+        """C without gyroscopic terms, (n, n), N s/m."""
+        return self.mass_damping * self.mass + self.bearing_damping * self.stiffness + self.dampers
+
+    @cached_property
+    def masses(self) -> Array | None:
+        """The diagonal (n,) of a mass matrix that has no other entries, else None."""
+        diagonal = np.diagonal(self.mass)
+        return diagonal.copy() if np.count_nonzero(self.mass) == np.count_nonzero(diagonal) else None
+
+    @cached_property
+    def stiffness_without_rings(self) -> Array:
+        """Stiffness (n, n) without the bearings that have clearance."""
+        stiffness = self.stiffness.copy()
+        for pair, spring in zip(self.ring_coordinates, self.rings.stiffness, strict=True):
+            stiffness[pair, pair] -= spring
+        return stiffness
+
+    @property
+    def ring_coordinates(self) -> Integers:
+        """Indices of the coordinates x and y of each bearing with clearance, (R, 2)."""
+        return self.translations[self.rings.body, :2]
+
+    def momentum(self, velocities: AnyArray) -> AnyArray:
+        """Return M times vectors.
+
+        Parameters
+        ----------
+        velocities : (n, ...) array
+            m/s and rad/s.
+
+        Returns
+        -------
+        (n, ...) array
+            kg m/s and kg m2/s.
+        """
+        if self.masses is None:
+            return self.mass @ velocities
+        return self.masses.reshape(-1, *(1,) * (velocities.ndim - 1)) * velocities
+
+    def over_all(self, rows: Array) -> Array:
+        """Extend rows over the coordinates of the layout to all coordinates, with zeros.
+
+        Parameters
+        ----------
+        rows : (..., dof) array
+            Any unit.
+
+        Returns
+        -------
+        (..., n) array
+            In the same unit.
+        """
+        added_count = self.size - rows.shape[-1]
+        return np.concatenate([rows, np.zeros((*rows.shape[:-1], added_count))], axis=-1)
+
+    def with_slopes(self, meshes: Mask, added_slopes: Array) -> Array:
+        """Return `slopes` with columns of more coordinates.
+
+        Parameters
+        ----------
+        meshes : (meshes,) array of bool
+            The meshes that these coordinates move.
+        added_slopes : (2, meshes of a gear, k) array
+            Slopes by k more coordinates below these meshes, 1/m and m/m.
+
+        Returns
+        -------
+        (2, meshes, n + k) array
+            In the units of `slopes`, 1/m and m/m.
+        """
+        slopes = np.zeros((2, meshes.size, self.size + added_slopes.shape[2]))
+        if self.slopes is not None:
+            slopes[:, :, : self.size] = self.slopes
+        slopes[:, meshes, self.size :] = added_slopes
+        return slopes
+
+    def of_body(self, name: str) -> Integers:
+        """Return which coordinates belong to a body.
+
+        Parameters
+        ----------
+        name : str
+            Name of the body.
+
+        Returns
+        -------
+        array of int, shape (coordinates,)
+            Indices.
+        """
+        owners = [label.rpartition(":")[0] for label in self.labels]
+        return np.flatnonzero(np.array(owners) == name)
+
+
+class Bodies(Protocol):
+    """Function that adds to the linear model of rigid masses on springs."""
+
+    def __call__(self, base_model: LinearModel) -> LinearModel:
+        """Return the model with coordinates added behind its own, or with other matrices."""
+
+
+def mass_diagonal(layout: Layout) -> Array:
+    """Return the diagonal of the mass matrix M: m, m, m, I for each body, then the tilts' inertias.
+
+    Parameters
+    ----------
+    layout : Layout
+        The layout.
+
+    Returns
+    -------
+    (dof,) array
+        kg and kg m2.
+    """
+    bodies = [value for body in layout.bodies for value in (*3 * (body.mass,), body.inertia)]
+    return np.array(bodies + [value for tilt in _tilts(layout) for value in 2 * (tilt.inertia,)])
+
+
+def bearing_diagonal(layout: Layout) -> Array:
+    """Return the diagonal of the bearing stiffness K: k_x, k_y, k_z, 0 for each body, then the tilts.
+
+    Parameters
+    ----------
+    layout : Layout
+        The layout.
+
+    Returns
+    -------
+    (dof,) array
+        N/m and N m/rad.
+    """
+    bodies = [value for body in layout.bodies for value in (*body.bearing, 0.0)]
+    return np.array(bodies + [value for tilt in _tilts(layout) for value in 2 * (tilt.stiffness,)])
+
+
+def bearing_matrix(layout: Layout) -> Array:
+    """Return the bearing stiffness K with the cross-coupling of x and y.
+
+    Parameters
+    ----------
+    layout : Layout
+        The layout.
+
+    Returns
+    -------
+    (dof, dof) array
+        N/m and N m/rad.
+    """
+    matrix = np.diag(bearing_diagonal(layout))
+    for k, body in enumerate(layout.bodies):
+        x = DOF_PER_BODY * k
+        matrix[x, x + 1] = matrix[x + 1, x] = body.bearing_xy
+    return matrix
+
+
+def flank_jacobian(layout: Layout) -> Array:
+    """Return the derivative of the flanks' deflections by the DOF.
+
+    The deflection along the line of action is this times q, minus the transmission error. A pinion's x is
+    tangential to the face gear and its y is along the face gear's axis.
+
+    Parameters
+    ----------
+    layout : Layout
+        The layout.
+
+    Returns
+    -------
+    (2 meshes, dof) array
+        Drive flanks, then back flanks; m/m, and m/rad for rotations.
+    """
+    return layout.kinematics.flank_rows(layout)
+
+
+def _tilts(layout: Layout) -> list[Tilt]:
+    return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]
+
+
+def lumped_model(
+    layout: Layout,
+    torques: Array | None = None,
+    forces: Array | None = None,
+    damping: tuple[float, float] = (0.0, 0.0),
+    clearance: Array | None = None,
+) -> LinearModel:
+    """Return the linear part of a layout; what is left out is zero.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    torques : (bodies,) array or None
+        Torques on the bodies, N m.
+    forces : (bodies, 3) array or None
+        Forces on the bodies along x, y, z, N.
+    damping : tuple[float, float]
+        Factors of the masses (1/s) and of the bearings (s).
+    clearance : (pinions,) array or None
+        Radial clearance of the bearings, m.
+
+    Returns
+    -------
+    LinearModel
+        SI units.
+    """
+    alone = _alone(layout)
+    turning, external_forces = np.zeros((2, layout.dof))
+    turning[layout.spins] = 0.0 if torques is None else torques
+    external_forces[alone.translations] = 0.0 if forces is None else forces
+    return replace(
+        alone,
+        torques=turning,
+        forces=external_forces,
+        mass_damping=damping[0],
+        bearing_damping=damping[1],
+        rings=_rings(layout, np.zeros(len(layout.pinions)) if clearance is None else clearance),
+    )
+
+
+@lru_cache(maxsize=16)
+def _alone(layout: Layout) -> LinearModel:
+    """Return the model without loads, damping and clearance, which all machines of a layout share."""
+    zeros = np.zeros(layout.dof)
+    return LinearModel(
+        labels=layout.dof_names,
+        mass=np.diag(mass_diagonal(layout)),
+        stiffness=bearing_matrix(layout),
+        rows=flank_jacobian(layout),
+        torques=zeros,
+        forces=zeros,
+        lengths=_lengths(layout),
+        translations=DOF_PER_BODY * np.arange(len(layout.bodies))[:, None] + np.arange(3),
+        mass_damping=0.0,
+        bearing_damping=0.0,
+        dampers=np.zeros((layout.dof, layout.dof)),
+        rings=_rings(layout, np.zeros(len(layout.pinions))),
+    )
+
+
+def _rings(layout: Layout, clearance: Array) -> Rings:
+    body = np.flatnonzero(clearance > 0.0)
+    return Rings(body, np.array([layout.pinions[i].body.bearing[0] for i in body]), clearance[body])
+
+
+def _lengths(layout: Layout) -> Array:
+    """Return the length of a unit of each coordinate: turns count at the mesh, tilts at the mesh radius."""
+    lengths = np.ones(layout.dof)
+    radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
+    lengths[layout.spins] = radii
+    lengths[DOF_PER_BODY * len(layout.bodies) :] = layout.mesh_radius
+    return lengths

@@ -1,0 +1,399 @@
+"""Lumped model of a transmission with everything that drives it."""
+
+from dataclasses import dataclass, fields, replace
+from enum import StrEnum
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from facegear.arrays import Array, Integers, Mask
+from facegear.by_content import kept_by_content
+from facegear.errors import InvalidInput
+from facegear.harmonics import Harmonics
+from facegear.machine.disturbances import (
+    Excitation,
+    MeshFriction,
+    friction_rows,
+    rigid_rotation,
+    without_rigid_rotation,
+)
+from facegear.machine.drive_line import DriveLine
+from facegear.machine.imperfections import Imperfections, perfect
+from facegear.machine.layout import Layout, PhaseConvention, Role, mesh_phases
+from facegear.machine.linear_model import Bodies, LinearModel, lumped_model
+from facegear.meshing.force_table import ForceTable
+from facegear.meshing.law import MeshLaw
+from facegear.number_format import count_noun
+
+TORQUE_BALANCE = 1e-9
+"""Sum of all tangential forces, over the sum of their sizes, up to which torques count as balanced."""
+
+
+class OpenFlanks(StrEnum):
+    """Mesh damping where flanks are apart: `always` acting as in equation (20), or `contact_only`.
+
+    In contact the damper may pull flanks together that are about to part. `push_only` cuts the force of a
+    contact, spring and damper together, at zero. `mesh_deflection` is the classical definition: one damper
+    for each mesh acts on the deflection of its drive flank at all times (Kahraman and Singh 1990), where
+    `always` gives half of the damper to each of the two flanks.
+    """
+
+    ALWAYS = "always"
+    CONTACT_ONLY = "contact_only"
+    PUSH_ONLY = "push_only"
+    MESH_DEFLECTION = "mesh_deflection"
+
+    @property
+    def is_damped_when_open(self) -> bool:
+        """Whether dampers act on open flanks, too."""
+        return self in (OpenFlanks.ALWAYS, OpenFlanks.MESH_DEFLECTION)
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Mesh damping (N s/m), mass damping lambda (1/s) and bearing damping beta (s) of equation (21)."""
+
+    mesh: float
+    mass: float
+    bearing: float
+    open_flanks: OpenFlanks = OpenFlanks.ALWAYS
+
+
+@dataclass(frozen=True, eq=False)
+class FlankTables:
+    """Load-dependent forces of the flanks in a face gear's meshes over the reference's mesh cycle, each as
+    those of a drive flank: the back flank is the drive flank of the pair in a mirror.
+    """
+
+    drive: ForceTable
+    back: ForceTable
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """Lumped model of a transmission with everything that drives it.
+
+    Attributes
+    ----------
+    layout
+        Bodies and mesh geometry.
+    torques : (bodies,)
+        Torques on the bodies, N m.
+    stiffness
+        Stiffness of the reference mesh over a mesh cycle, N/m.
+    error
+        Transmission error e(t) of the reference mesh, a Fourier series in m.
+    half_backlash : (meshes,)
+        Half the backlash of each mesh, m.
+    damping, phase_convention
+        Damping of bodies, bearings and meshes; how meshes lag.
+    error_lags : (meshes,)
+        Lag of the error in mesh periods. If None, each mesh lags by its stiffness phase.
+    imperfections
+        Errors of single meshes and bodies; none by default.
+    forces : (bodies, 3)
+        External forces on the bodies along x, y, z, N; none by default.
+    law
+        Law of all contacts, as facegear.machine.flanks.mesh_contacts orders them. If None, force =
+        stiffness * compression. With a law, `stiffness` is only its scale.
+    tables
+        Force tables of the flanks at each gear, from which the law is made where it depends on the load.
+    friction
+        Friction of the meshes. It disturbs the motion, and does nothing at rest.
+    bodies
+        Function that makes more of the bodies than rigid masses on springs.
+    softening : (meshes, 2, 2)
+        Compliance in series with the teeth of each mesh, m/N: motion of the drive and the back flank (rows)
+        by a unit force on either (columns); none by default. Motion takes its diagonal alone, after
+        `loaded_modes.machine_in_motion` has attached coordinates for the rest.
+    drive_line
+        Shafts of pinions that bend, and turning masses behind torsional springs.
+    directions
+        Function that turns the forces of the meshes away from the normals of the ideal contact; none by
+        default.
+    excitations
+        Periodic torques beside the mean torques; without effect at rest.
+    """
+
+    layout: Layout
+    torques: Array
+    stiffness: Harmonics
+    error: Harmonics
+    half_backlash: Array
+    damping: Damping
+    phase_convention: PhaseConvention = PhaseConvention.GEOMETRIC
+    error_lags: Array | None = None
+    imperfections: Imperfections = None  # type: ignore[assignment]
+    forces: Array = None  # type: ignore[assignment]
+    law: MeshLaw | None = None
+    tables: tuple[FlankTables, ...] | None = None
+    friction: MeshFriction | None = None
+    bodies: Bodies | None = None
+    softening: Array | None = None
+    drive_line: DriveLine | None = None
+    directions: Bodies | None = None
+    excitations: tuple[Excitation, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.imperfections is None:
+            object.__setattr__(self, "imperfections", perfect(self.layout))
+        if self.forces is None:
+            object.__setattr__(self, "forces", np.zeros((len(self.layout.bodies), 3)))
+        require_balance(self.layout, self.torques)
+        meshes = len(self.layout.meshes)
+        for quantity, values in (
+            ("lags of the transmission error", self.error_lags),
+            ("half backlashes", self.half_backlash),
+            ("errors of the meshes", self.imperfections.error),
+            ("softening of the meshes", self.softening),
+        ):
+            if values is not None and len(values) != meshes:
+                raise InvalidInput(
+                    quantity, count_noun(len(values), "mesh", "meshes"), f"one for each of {meshes}"
+                )
+        minimum = self.stiffness.minimum
+        if minimum <= 0.0:
+            raise InvalidInput(
+                "mesh stiffness", f"{minimum:.3g} N/m", "positive everywhere in the mesh cycle"
+            )
+
+    @cached_property
+    def linear(self) -> LinearModel:
+        """Masses, bearings, loads and the directions of the contacts."""
+        with_shafts = self.lumped_model if self.drive_line is None else self.drive_line(self.lumped_model)
+        whole = with_shafts if self.bodies is None else self.bodies(with_shafts)
+        return whole if self.directions is None else self.directions(whole)
+
+    @cached_property
+    def lumped_model(self) -> LinearModel:
+        """Linear model of the layout alone: rigid bodies on springs."""
+        damping = (self.damping.mass, self.damping.bearing)
+        return lumped_model(
+            self.layout, self.torques, self.forces, damping, self.imperfections.bearing_clearance
+        )
+
+    @cached_property
+    def without_errors(self) -> "Machine":
+        """Machine without backlash, constant errors and slow errors; its bearing clearances are 1 m or 0.
+
+        Machines that differ in these errors alone share one object, so that all that does not depend on them
+        is computed once.
+        """
+        imperfections, rest = self.imperfections, tuple([getattr(self, name) for name in _WITHOUT_ERRORS])
+        return _machine_without_errors(
+            rest,
+            imperfections.stiffness,
+            imperfections.clocking,
+            imperfections.series,
+            imperfections.bearing_clearance > 0.0,
+        )
+
+    @cached_property
+    def static_machine(self) -> "Machine":
+        """Machine without its drive line where static results with it follow from those without it, else this
+        machine.
+        """
+        line = self.drive_line
+        if line is None or not line.static_from_layout(self.lumped_model):
+            return self
+        return replace(self, drive_line=None)
+
+    @property
+    def torque_coordinates(self) -> Integers:
+        """Index of the coordinate that the torque of each body turns, (bodies,)."""
+        if self.drive_line is not None:
+            return self.drive_line.torque_coordinates()
+        return np.arange(self.lumped_model.size)[self.layout.spins]
+
+    @cached_property
+    def mesh_stiffness(self) -> tuple[Harmonics, ...]:
+        """Stiffness of each mesh over the reference's mesh cycle with its factor and its softening, N/m."""
+        series_of_teeth = [self.stiffness.scale(float(factor)) for factor in self.imperfections.stiffness]
+        if self.own_softening is None:
+            return tuple(series_of_teeth)
+        return tuple(
+            series.add_compliance(float(soft))
+            for series, soft in zip(series_of_teeth, self.own_softening, strict=True)
+        )
+
+    @property
+    def own_softening(self) -> Array | None:
+        """Compliance in series with a flank under its own force, (meshes,), m/N; both flanks have the same.
+
+        Motion takes this part of `softening` alone, see `loaded_modes.machine_in_motion`.
+        """
+        return None if self.softening is None else self.softening[:, 0, 0]
+
+    @property
+    def mean_stiffness(self) -> Array:
+        """Mean stiffness of each mesh, (meshes,), N/m."""
+        return np.array([series.mean for series in self.mesh_stiffness])
+
+    @property
+    def constant_stiffness(self) -> bool:
+        """Whether the force of every contact is proportional to how far it is pressed in."""
+        return self.law is None and self.tables is None
+
+    @property
+    def pushes(self) -> Array:
+        """Directions (rows, n) of all forces beside those of the flanks: external ones, and friction."""
+        linear = self.linear
+        pushes = [np.zeros((0, linear.size))]
+        if linear.forces.any():
+            pushes.append(linear.forces[None] / np.linalg.norm(linear.forces))
+        if self.friction is not None:
+            pushes.append(linear.over_all(friction_rows(self.layout)).reshape(-1, linear.size))
+        for excitation in self.excitations:
+            force = self.straining_torque(excitation.body)
+            if (size := float(np.linalg.norm(force))) > 0.0:
+                pushes.append(force[None] / size)
+        return np.concatenate(pushes)
+
+    def straining_torque(self, body: int) -> Array:
+        """Return the force of a unit torque on a body, without what turns all bodies together.
+
+        Parameters
+        ----------
+        body : int
+            Number of the body in the layout.
+
+        Returns
+        -------
+        (n,) array
+            N and N m for 1 N m.
+        """
+        torque = np.zeros(self.linear.size)
+        torque[self.torque_coordinates[body]] = 1.0
+        rotation = rigid_rotation(self.layout, self.linear, self.drive_line)
+        return without_rigid_rotation(torque, self.linear, rotation)
+
+    @cached_property
+    def phases(self) -> Array:
+        """Stiffness phase of each mesh in mesh periods, shape (meshes,)."""
+        return mesh_phases(self.layout, self.phase_convention, self.imperfections.clocking)
+
+    @property
+    def error_phases(self) -> Array:
+        """Transmission error phase of each mesh in mesh periods, shape (meshes,)."""
+        return self.phases if self.error_lags is None else self.error_lags
+
+
+_WITHOUT_ERRORS = tuple(
+    [part.name for part in fields(Machine) if part.name not in ("half_backlash", "imperfections")]
+)
+"""Names of the fields that are the same in `Machine.without_errors`."""
+
+
+@kept_by_content(8)
+def _machine_without_errors(
+    rest: tuple[Any, ...],
+    stiffness: Array,
+    clocking: Array,
+    series: dict[int, Harmonics],
+    with_clearance: Mask,
+) -> Machine:
+    """Return the machine with the fields of `_WITHOUT_ERRORS`, without backlash and with clearances of 1
+    m.
+    """
+    field_values = dict(zip(_WITHOUT_ERRORS, rest, strict=True))
+    flaws = replace(
+        perfect(field_values["layout"]),
+        stiffness=stiffness,
+        clocking=clocking,
+        series=series,
+        bearing_clearance=np.where(with_clearance, 1.0, 0.0),
+    )
+    return Machine(**field_values, half_backlash=np.zeros(stiffness.size), imperfections=flaws)
+
+
+def mesh_frequency(layout: Layout, speed_rpm: float) -> float:
+    """Return the mesh frequency at a pinion speed.
+
+    Parameters
+    ----------
+    layout : Layout
+        Tooth numbers.
+    speed_rpm : float
+        Speed of the pinions, rpm.
+
+    Returns
+    -------
+    float
+        Hz.
+    """
+    return layout.pinion_teeth * speed_rpm / 60.0
+
+
+def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> Array:
+    """Return the torque on each pinion: inputs drive, tail pinions take a share of the sum, idlers have none.
+
+    Parameters
+    ----------
+    layout : Layout
+        Roles of the pinions.
+    per_input : float
+        Torque on each input pinion, N m.
+    tail_share : float
+        Torque of all tail pinions together, as a fraction of the sum of the input torques.
+
+    Returns
+    -------
+    (pinions,) array
+        N m.
+    """
+    roles = [pinion.role for pinion in layout.pinions]
+    inputs, tails = roles.count(Role.INPUT), roles.count(Role.TAIL)
+    each_tail = -tail_share * inputs * per_input / tails if tails else 0.0
+    value = {Role.INPUT: per_input, Role.TAIL: each_tail, Role.IDLER: 0.0}
+    return np.array([value[role] for role in roles])
+
+
+def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0.0) -> Array:
+    """Return the torques on all bodies with the output face gear in static balance.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    on_pinions : (pinions,) array
+        Torques on the pinions, N m.
+    on_other_gear : float
+        Torque on the face gear that is not the output, where there are two, N m.
+
+    Returns
+    -------
+    (bodies,) array
+        N m.
+    """
+    on_gears = np.full(len(layout.gears), float(on_other_gear))
+    on_gears[layout.output] = 0.0
+    on_gears[layout.output] = -on_pinions.sum() * layout.gear_radius / layout.pinion_radius - on_gears.sum()
+    return np.concatenate([on_pinions, on_gears])
+
+
+def require_balance(layout: Layout, torques: Array) -> None:
+    """Raise InvalidInput unless the torques are in balance for the rigid rotation.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    torques : (bodies,) array
+        Torques on all bodies, N m.
+
+    Raises
+    ------
+    InvalidInput
+        If the excess at the mesh is above TORQUE_BALANCE of the sum of the tangential forces.
+    """
+    pinions = len(layout.pinions)
+    tangential = np.concatenate(
+        [torques[:pinions] / layout.pinion_radius, torques[pinions:] / layout.gear_radius]
+    )
+    excess = float(tangential.sum())
+    if abs(excess) > TORQUE_BALANCE * np.abs(tangential).sum():
+        requirement = (
+            "0, as torques must balance: sum of pinion torques / r_pinion + sum of gear torques / r_gear"
+        )
+        raise InvalidInput("torques", f"{excess:.6g} N in excess at the mesh", requirement)

@@ -1,0 +1,233 @@
+"""Natural frequencies, shapes and names of modes with the mean mesh stiffness, equations (23), (24)."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+import scipy.linalg
+
+from facegear.arrays import AnyArray, Array
+from facegear.errors import NotConverged
+from facegear.machine.layout import DOF_LETTERS, TILT_LETTERS, Layout, Role
+from facegear.machine.linear_model import LinearModel
+
+EQUAL = 1e-8
+"""Difference of neighbouring frequencies, over the largest of all, up to which they count as equal."""
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Frequencies in Hz, shape (n,), ascending; shapes (n, n) by column with unit modal mass. Of turning
+    bodies shapes are complex, their largest entry real: displacements are the real part of shape e^(i w t).
+
+    `groups` holds runs of equal frequencies as (start, stop); shapes within a run are one basis of many.
+    """
+
+    frequencies: Array
+    shapes: AnyArray
+    groups: tuple[tuple[int, int], ...]
+
+
+def drive_flanks(layout: Layout, linear: LinearModel, mesh_stiffness: float) -> Array:
+    """Return the stiffness matrix of the meshes with every drive flank closed.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    linear : LinearModel
+        Linear model with n coordinates.
+    mesh_stiffness : float
+        Stiffness of each mesh, N/m.
+
+    Returns
+    -------
+    (n, n) array
+        N/m.
+    """
+    rows = linear.rows[: len(layout.meshes)]
+    return np.asarray(mesh_stiffness * rows.T @ rows)
+
+
+def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
+    """Compute all undamped modes.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Bodies and bearings.
+    meshes : (n, n) array
+        Stiffness matrix of the meshes, N/m.
+    speed : float
+        Speed of the pinions, rad/s.
+
+    Returns
+    -------
+    Modes
+        Frequencies in Hz.
+
+    Raises
+    ------
+    NotConverged
+        If the machine has no position to vibrate about at the speed.
+    """
+    stiffness = linear.stiffness + meshes
+    if linear.spin is not None and speed != 0.0:
+        return _turning(linear, stiffness, speed)
+    if linear.masses is None:
+        omega_squared, shapes = scipy.linalg.eigh(stiffness, linear.mass)
+    else:
+        root = np.sqrt(linear.masses)
+        omega_squared, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
+        shapes = vectors / root[:, None]
+    frequencies = np.sqrt(_stable(omega_squared, speed)) / (2.0 * np.pi)
+    return Modes(frequencies, shapes, _equal_runs(frequencies))
+
+
+def _stable(omega_squared: Array, speed: float) -> Array:
+    """Ascending squared frequencies with those that are rounding as zero. Raises NotConverged if one is
+    negative.
+    """
+    noise = omega_squared.size * np.finfo(float).eps * omega_squared[-1]
+    omega_squared = np.where(np.abs(omega_squared) < 10.0 * noise, 0.0, omega_squared)
+    if omega_squared[0] < 0.0:
+        problem = (
+            f"the stiffness is not positive, as little as {omega_squared[0]:.3g} 1/s2 in its softest motion"
+        )
+        raise NotConverged("modes", f"{speed:.6g} rad/s", problem)
+    return omega_squared
+
+
+def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
+    """Modes of turning bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
+
+    With u = K^(1/2) x and v = x' this is (u, v)' = S (u, v), S = [[0, K^(1/2)], [-K^(1/2), -G]], which is
+    skew-symmetric: all motions are harmonic, with complex shapes (Meirovitch 1974).
+    """
+    assert linear.spin is not None
+    inverse = np.linalg.inv(np.linalg.cholesky(linear.mass))
+    whole = stiffness + speed**2 * linear.spin.centrifugal
+    omega_squared, vectors = scipy.linalg.eigh(inverse @ whole @ inverse.T)
+    omega_squared = _stable(omega_squared, speed)
+    size, half = linear.size, (vectors * np.sqrt(omega_squared)) @ vectors.T
+    gyroscopic = speed * inverse @ linear.spin.gyroscopic @ inverse.T
+    system = np.block([[np.zeros_like(half), half], [-half, -gyroscopic]])
+    speeds, states = scipy.linalg.eigh(-1j * system)
+    speeds, velocities = speeds[size:], states[size:, size:]
+    speeds[speeds < 10.0 * size * np.finfo(float).eps * speeds[-1]] = 0.0
+    # Kinetic and potential energy together are those of unit modal mass at rest.
+    shapes = -1j * np.sqrt(2.0) * velocities
+    rigid_count = np.count_nonzero(speeds == 0.0)
+    shapes[:, :rigid_count] = vectors[:, :rigid_count]
+    shapes = inverse.T @ shapes
+    largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
+    frequencies = speeds / (2.0 * np.pi)
+    return Modes(frequencies, shapes * np.abs(largest) / largest, _equal_runs(frequencies))
+
+
+def _equal_runs(frequencies: Array) -> tuple[tuple[int, int], ...]:
+    """Split ascending frequencies into runs that agree to rounding."""
+    gaps = np.diff(frequencies) > EQUAL * frequencies[-1]
+    edges = [0, *(np.flatnonzero(gaps) + 1).tolist(), frequencies.size]
+    return tuple(itertools.pairwise(edges))
+
+
+ENERGY_FRACTION = 0.01
+"""A part takes part in a mode if it holds at least this share of the kinetic energy."""
+AMPLITUDE_FRACTION = 0.01
+"""A motion is named if its amplitude (a rotation: at the mesh) is this share of the largest in the mode."""
+
+
+class ModeClass(StrEnum):
+    """Classes of section 3.1."""
+
+    RIGID = "rigid body"
+    PINION = "pinion"
+    GEAR = "face gear"
+    PINION_AND_GEAR = "pinion coupled face gear"
+
+
+@dataclass(frozen=True)
+class ModeName:
+    """Class, symbols as `input, idler T-R; face gear T(y)`, fraction of the kinetic energy in the pinions."""
+
+    mode_class: ModeClass
+    symbols: str
+    pinion_energy_fraction: float
+
+
+def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeName, ...]:
+    """Name each mode by the bodies that move in it.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and mesh geometry.
+    linear : LinearModel
+        Linear model of the machine.
+    modes : Modes
+        Its modes.
+
+    Returns
+    -------
+    tuple of ModeName
+        One name for each mode, in the order of the frequencies.
+    """
+    names: list[ModeName] = []
+    for start, stop in modes.groups:
+        name = _name(layout, linear, modes.frequencies[start], modes.shapes[:, start:stop])
+        names += [name] * (stop - start)
+    return tuple(names)
+
+
+def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) -> ModeName:
+    energy = np.real(shapes.conj() * linear.momentum(shapes)).sum(axis=1)
+    pinions = np.concatenate([linear.of_body(pinion.name) for pinion in layout.pinions])
+    pinion_fraction = float(energy[pinions].sum() / energy.sum())
+    if frequency == 0.0:
+        mode_class = ModeClass.RIGID
+    elif pinion_fraction >= 1.0 - ENERGY_FRACTION:
+        mode_class = ModeClass.PINION
+    elif pinion_fraction <= ENERGY_FRACTION:
+        mode_class = ModeClass.GEAR
+    else:
+        mode_class = ModeClass.PINION_AND_GEAR
+    squared = (np.abs(shapes) ** 2).sum(axis=1)
+    return ModeName(
+        mode_class, _symbols(layout, linear.labels, np.sqrt(squared) * linear.lengths), pinion_fraction
+    )
+
+
+def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
+    """Who moves and how, from the amplitudes of all DOF as lengths, shape (dof,)."""
+    letters_of_body: dict[str, set[str]] = {name: set() for name in layout.body_names}
+    for label in np.array(labels)[amplitudes > AMPLITUDE_FRACTION * amplitudes.max()]:
+        body, _, letter = label.rpartition(":")
+        letters_of_body[body].add(letter)
+    parts: dict[str, list[str]] = {}
+    for role in Role:
+        names = [pinion.name for pinion in layout.pinions if pinion.role is role]
+        if motion := _motion(set().union(*(letters_of_body[name] for name in names))):
+            parts.setdefault(motion, []).append(role.value)
+    if motion := _motion(set().union(*(letters_of_body[gear.name] for gear in layout.gears))):
+        parts.setdefault(f"{motion} ", []).append("face gear")
+    return "; ".join(f"{', '.join(who)} {motion.strip()}" for motion, who in parts.items())
+
+
+def _motion(moves: set[str]) -> str:
+    """`T-R-A-tilt` from the letters of the coordinates that move; a single direction of translation is named,
+    and so is what is neither a motion nor a tilt of the rigid body, up to its first blank.
+    """
+    letters = []
+    if moves & {"x", "y"}:
+        letters.append("T" if {"x", "y"} <= moves else "T(x)" if "x" in moves else "T(y)")
+    if "theta" in moves:
+        letters.append("R")
+    if "z" in moves:
+        letters.append("A")
+    if moves & set(TILT_LETTERS):
+        letters.append("tilt")
+    elastic_letters = {letter.split()[0] for letter in moves - {*DOF_LETTERS, *TILT_LETTERS}}
+    return "-".join([*letters, *sorted(elastic_letters)])

@@ -1,0 +1,219 @@
+"""Pose of every mesh of a machine from the displacements and tilts of its bodies, to first order.
+
+A pose is what the pair of a mesh meets as assembly errors. The frame of a mesh has x, y, z along s x, z and
+-s y of the machine at the pinion: x along its tangent, y along the gears' axis, z outwards along the pinion,
+and s = 1 for the upper, -1 for the lower gear. Pinions tilt about the middle of their faces, gears about a
+point on their axis. The line of action's part of a displacement is what the meshes' deflections hold already:
+it moves no path.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.machine.layout import DOF_PER_BODY, TILT_LETTERS, Layout
+from facegear.machine.linear_model import LinearModel
+from facegear.teeth.design import AssemblyErrors
+
+PARTS = ("offset", "axial_shift", "shaft_angle_error", "outward")
+"""Parts of a pose, in the order of rows."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPoses:
+    """Poses of all meshes, each (..., meshes), m and rad, as the drive flanks of their own gears meet them.
+
+    outward: shift of the pinion along its axis, away from the gears'.
+    """
+
+    offset: Array
+    axial_shift: Array
+    shaft_angle_error: Array
+    outward: Array
+
+    def errors(self, mesh: int, back: bool = False) -> AssemblyErrors:
+        """Return the assembly errors that a flank of a mesh meets, as errors of a drive flank; for a single
+        pose of every mesh.
+
+        Parameters
+        ----------
+        mesh : int
+            Index of the mesh.
+        back : bool
+            Whether it is the back flank.
+
+        Returns
+        -------
+        AssemblyErrors
+            m and rad.
+        """
+        offset = float(self.offset[mesh])
+        return AssemblyErrors(
+            offset=-offset if back else offset,
+            shaft_angle_error=float(self.shaft_angle_error[mesh]),
+            axial_shift=float(self.axial_shift[mesh]),
+        )
+
+
+def mesh_poses(linear: LinearModel, layout: Layout, mean_radius: float, displacements: Array) -> MeshPoses:
+    """Return the poses at displacements of the linear model's coordinates.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    layout : Layout
+        Bodies and mesh geometry.
+    mean_radius : float
+        Position of the middle of the pinion's face on its axis, m.
+    displacements : (..., n) array
+        m and rad.
+
+    Returns
+    -------
+    MeshPoses
+        Each part (..., meshes), m and rad.
+    """
+    return MeshPoses(*(displacements @ part.T for part in pose_rows(linear, layout, mean_radius)))
+
+
+def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
+    """Return the derivatives of PARTS by the coordinates.
+
+    Tilts of a pinion count where the model has coordinates `tilt_x`, `tilt_y` of it, in the machine's frame
+    at the pinion. Coordinates of gears that bend lift the teeth, a shift along the axis, and lean them with
+    the rim below the mesh: by its slope along the radius about the tangent, by that round the axis about the
+    line through the pitch point that is parallel to the pinion's axis, which is an offset as well.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    layout : Layout
+        Bodies and mesh geometry.
+    mean_radius : float
+        Position of the middle of the pinion's face on its axis, m.
+
+    Returns
+    -------
+    (4, meshes, n) array
+        m and rad for a unit of each coordinate.
+    """
+    offset, shift, angle, outward = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
+    number_of_label = {label: number for number, label in enumerate(linear.labels)}
+    for mesh, (i, g) in enumerate(layout.meshes):
+        side, at = layout.gears[g].sign, layout.angles[i]
+        tangent = np.array([np.cos(at), np.sin(at)])
+        away = np.array([np.sin(at), -np.cos(at)])
+        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
+        offset[mesh, pinion], shift[mesh, pinion + 1], outward[mesh, pinion + 2] = side, -side, 1.0
+        offset[mesh, gear : gear + 2] = -side * tangent
+        shift[mesh, gear + 2] = side
+        outward[mesh, gear : gear + 2] = -away
+        leaning, yawing = (
+            number_of_label.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS
+        )
+        if leaning is not None and yawing is not None:
+            angle[mesh, leaning] = side
+            offset[mesh, yawing] = -side * mean_radius
+        if g in layout.first_tilts:
+            tilts = slice(layout.first_tilts[g], layout.first_tilts[g] + 2)
+            height = side * layout.tilt_distance(g)
+            shift[mesh, tilts] = -side * mean_radius * tangent
+            angle[mesh, tilts] = -side * tangent
+            offset[mesh, tilts] = -side * height * away
+            outward[mesh, tilts] = height * tangent
+    _bending(linear, layout, shift)
+    angle += leaning_rows(linear, layout)
+    if linear.slopes is not None:
+        sides = np.array([[layout.gears[g].sign] for _, g in layout.meshes])
+        pitch_radius = layout.pinion_arm / np.cos(layout.pressure_angle)
+        offset += sides * pitch_radius / mean_radius * linear.slopes[1]
+    return rows
+
+
+def leaning_rows(linear: LinearModel, layout: Layout) -> Array:
+    """Return the part of the error of the shaft angle that the slopes of rims that bend make.
+
+    Parameters
+    ----------
+    linear : LinearModel
+        Linear model of the machine.
+    layout : Layout
+        Bodies and mesh geometry.
+
+    Returns
+    -------
+    (meshes, n) array
+        rad for a unit of each coordinate.
+    """
+    if linear.slopes is None:
+        return np.zeros((len(layout.meshes), linear.size))
+    return -linear.slopes[0]
+
+
+def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
+    """Add the lift of the teeth by coordinates of gears that bend, from the flanks' deflections, to
+    `shift`.
+    """
+    gears = {gear.name for gear in layout.gears}
+    elastic_coordinates = [
+        number
+        for number, label in enumerate(linear.labels)
+        if number >= layout.dof and label.rpartition(":")[0] in gears
+    ]
+    meshes = len(layout.meshes)
+    separating_motion = 0.5 * (
+        linear.rows[:meshes, elastic_coordinates] + linear.rows[meshes : 2 * meshes, elastic_coordinates]
+    )
+    shift[:, elastic_coordinates] = -separating_motion / np.sin(layout.pressure_angle)
+
+
+@dataclass(frozen=True, eq=False)
+class ForceDirections:
+    """Directions of the flanks' forces by the pose, beside the motion along the ideal normal.
+
+    Attributes
+    ----------
+    layout
+        Layout of the machine.
+    mean_radius
+        Position of the middle of the pinion's face on its axis, m.
+    slopes : (2 meshes, parts)
+        Derivatives of the deflections by the parts of a pose, drive flanks first; m/m and m/rad.
+    lever
+        Lever of the ideal contact for an error of the shaft angle, m/rad: rows of a model have it of bodies
+        that tilt, but not of rims that bend.
+    """
+
+    layout: Layout
+    mean_radius: float
+    slopes: Array
+    lever: float = 0.0
+
+    def __call__(self, base_model: LinearModel) -> LinearModel:
+        """Return the model with these directions."""
+        leaning = self.lever * leaning_rows(base_model, self.layout)
+        added_rows = self.added_flank_rows(base_model) + np.concatenate([leaning, leaning])
+        return replace(base_model, rows=base_model.rows + added_rows)
+
+    def added_flank_rows(self, model: LinearModel) -> Array:
+        """Return what the directions add to the rows of the ideal contact.
+
+        A mesh turns no pinion about a diameter: the middle of its face takes the force.
+
+        Parameters
+        ----------
+        model : LinearModel
+            Linear model of the machine.
+
+        Returns
+        -------
+        (2 meshes, n) array
+            m for a unit of each coordinate.
+        """
+        parts = pose_rows(model, self.layout, self.mean_radius)
+        tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
+        parts[:, :, np.isin(model.labels, tilts)] = 0.0
+        return np.asarray(np.einsum("fp,pfn->fn", self.slopes, np.concatenate([parts, parts], axis=1)))

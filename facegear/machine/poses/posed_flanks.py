@@ -1,0 +1,363 @@
+"""Flanks of all meshes at a pose: energy, force, law and reactions."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array, Integers
+from facegear.errors import NotConverged
+from facegear.machine.machine import Machine
+from facegear.machine.poses.mesh_poses import PARTS, MeshPoses
+from facegear.machine.poses.surface import PoseSurface
+from facegear.teeth.conjugate import ConjugateContact, PairNumbers, conjugate_slopes, contact_at
+from facegear.teeth.design import AssemblyErrors
+
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(12)
+"""Points and weights of Gauss's rule between two torques of the surface; the integrand is an exponential of a
+cubic.
+"""
+
+
+@dataclass(frozen=True)
+class MeshEnergy:
+    """A mesh at a force (N), all averaged over the mesh cycle.
+
+    Attributes
+    ----------
+    force
+        Along the line of action, N.
+    approach
+        x, m.
+    energy
+        U, J.
+    by_path
+        G_y, J/m.
+    by_angle
+        G_g, J/rad.
+    """
+
+    force: float
+    approach: float
+    energy: float
+    by_path: float
+    by_angle: float
+
+    def with_stiffness_factor(self, factor: float) -> "MeshEnergy":
+        """Return the energy of teeth that are so many times as stiff, at the same force.
+
+        Parameters
+        ----------
+        factor : float
+            Factor on the stiffness, dimensionless.
+
+        Returns
+        -------
+        MeshEnergy
+            N, m and J.
+        """
+        scaled_parts = (part / factor for part in (self.approach, self.energy, self.by_path, self.by_angle))
+        return MeshEnergy(self.force, *scaled_parts)
+
+
+def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) -> MeshEnergy:
+    """Return the energy of a mesh under a torque.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    torque : float
+        Torque on the pinion, N m.
+    path : float
+        Unloaded path, m.
+    angle : float
+        Error of the shaft angle, rad.
+
+    Returns
+    -------
+    MeshEnergy
+        N, m and J; zeros without a torque.
+    """
+    if torque <= 0.0:
+        return MeshEnergy(0.0, 0.0, 0.0, 0.0, 0.0)
+    base, knots = surface.pair.pinion_base_radius, np.log(surface.nodes.torques)
+    stiffness_logs, last = surface.stiffness_logs(path, angle), float(np.log(torque))
+    lightest = min(last, float(knots[0]))
+    slope = stiffness_logs @ surface.torque_weights(knots[0], 1)
+    logs = stiffness_logs[:, 0] + (lightest - knots[0]) * slope
+    parts = _light(lightest, logs, slope)
+    if last > knots[0]:
+        parts += _above(surface, stiffness_logs, np.append(knots[knots < last], last))
+        logs = stiffness_logs @ surface.torque_weights(last)
+    complementary, by_path, by_angle = parts / base**2
+    force = torque / base
+    approach = force / float(np.exp(logs[0]))
+    return MeshEnergy(force, approach, force * approach - complementary, float(by_path), float(by_angle))
+
+
+def linear_energy(surface: PoseSurface, load: float, torque: float, path: float, angle: float) -> MeshEnergy:
+    """Return the energy of a mesh whose stiffness does not depend on what it carries.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    load : float
+        Torque on the pinion at which the stiffness is taken, N m.
+    torque : float
+        Torque on the pinion, N m.
+    path : float
+        Unloaded path, m.
+    angle : float
+        Error of the shaft angle, rad.
+
+    Returns
+    -------
+    MeshEnergy
+        N, m and J.
+    """
+    log, by_path, by_angle = surface.stiffness_logs(path, angle) @ surface.torque_weights(float(np.log(load)))
+    force = torque / surface.pair.pinion_base_radius
+    approach = force / float(np.exp(log))
+    energy = 0.5 * force * approach
+    return MeshEnergy(force, approach, energy, float(-energy * by_path), float(-energy * by_angle))
+
+
+def _light(last: float, logs: Array, slope: Array) -> Array:
+    """Return G and its derivatives (3,), for a base radius of 1 m, of loads up to the logarithm `last` of a
+    torque.
+
+    logs, slope (3,): logarithm of the stiffness there and its derivatives by path and angle, and their slopes
+    over the logarithm of the torque.
+    """
+    whole = np.exp(2.0 * last - logs[0]) / (2.0 - slope[0])
+    return np.asarray(whole * np.array([1.0, *(slope[1:] / (2.0 - slope[0]) - logs[1:])]))
+
+
+def _above(surface: PoseSurface, stiffness_logs: Array, ends: Array) -> Array:
+    """Return G and its derivatives (3,) of loads from the first to the last of logarithms `ends` of torques,
+    between nodes.
+
+    stiffness_logs: as `PoseSurface.stiffness_logs` has it.
+    """
+    half = 0.5 * np.diff(ends)[:, None]
+    at = ends[:-1, None] + half * (POINTS + 1.0)
+    log, by_path, by_angle = np.moveaxis(surface.torque_weights(at) @ stiffness_logs.T, -1, 0)
+    weights = half * WEIGHTS * np.exp(2.0 * at - log)
+    return np.array([weights.sum(), -(weights * by_path).sum(), -(weights * by_angle).sum()])
+
+
+def unloaded_contacts(
+    surface: PoseSurface, poses: MeshPoses, names: tuple[str, ...]
+) -> list[ConjugateContact]:
+    """Return the unloaded contact of all drive flanks, then all back flanks.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    poses : MeshPoses
+        Poses of the meshes.
+    names : tuple of str
+        Names of the meshes.
+
+    Returns
+    -------
+    list of ConjugateContact
+        2 meshes entries, in m and rad.
+
+    Raises
+    ------
+    NotConverged
+        If the flanks of a mesh do not face each other.
+    """
+    contacts = []
+    for back in (False, True):
+        for mesh, name in enumerate(names):
+            errors = poses.errors(mesh, back)
+            contact = contact_at(surface.pair, errors)
+            if contact is None:
+                pose_text = (
+                    f"offset {1e6 * errors.offset:.4g} um, axial shift {1e6 * errors.axial_shift:.4g} um"
+                )
+                raise NotConverged(
+                    "operating pose", f"mesh {name}", f"no flanks face each other at {pose_text}"
+                )
+            contacts.append(contact)
+    return contacts
+
+
+def closing_beyond(
+    machine: Machine, surface: PoseSurface, poses: MeshPoses, contacts: list[ConjugateContact]
+) -> Array:
+    """Return the exact transmission error of every flank less the part that its deflection has.
+
+    Both are counted from the flank as assembled, which closes by nothing where no flanks face each other.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+    poses : MeshPoses
+        Poses of the meshes.
+    contacts : list of ConjugateContact
+        Unloaded contacts of `unloaded_contacts`.
+
+    Returns
+    -------
+    (2 meshes,) array
+        m.
+    """
+    pair, meshes = surface.pair, len(machine.layout.meshes)
+    closure = np.zeros(2 * meshes)
+    for flank, contact in enumerate(contacts):
+        mesh, back = flank % meshes, flank >= meshes
+        nominal = assembly_errors(machine, surface, mesh, back)
+        at_rest = contact_at(pair, nominal)
+        if at_rest is None:
+            continue
+        first = ideal_slopes(pair) @ (_three(poses.errors(mesh, back)) - _three(nominal))
+        closure[flank] = contact.transmission_error - at_rest.transmission_error - first
+    return closure
+
+
+def flank_reactions(
+    surface: PoseSurface,
+    poses: MeshPoses,
+    contacts: list[ConjugateContact],
+    energies: list[MeshEnergy],
+    loaded_flanks: Integers,
+) -> Array:
+    """Return the derivatives of the energy of every flank by its errors, over its force.
+
+    For a flank that does not carry it is the limit at no force: the normal of the unloaded contact.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    poses : MeshPoses
+        Poses of the meshes.
+    contacts : list of ConjugateContact
+        Unloaded contacts of `unloaded_contacts`.
+    energies : list of MeshEnergy
+        Energy of each mesh.
+    loaded_flanks : (meshes,) array of int
+        Index of the flank of each mesh that carries.
+
+    Returns
+    -------
+    (2 meshes, 3) array
+        By offset and axial shift, m/m, and error of the shaft angle, m/rad.
+    """
+    meshes = len(energies)
+    reactions = np.zeros((2 * meshes, 3))
+    for flank, contact in enumerate(contacts):
+        energy = energies[flank % meshes]
+        slopes = conjugate_slopes(surface.pair, poses.errors(flank % meshes, flank >= meshes), contact)
+        reactions[flank] = slopes.transmission_error
+        if flank == loaded_flanks[flank % meshes] and energy.force > 0.0:
+            by_angle = np.array([0.0, 0.0, energy.by_angle])
+            reactions[flank] -= (energy.by_path * slopes.path + by_angle) / energy.force
+    return reactions
+
+
+def force_slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
+    """Return the slopes of the forces of all flanks as `ForceDirections` has them.
+
+    A back flank meets an offset as the opposite one.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        Contact over the pose.
+    reactions : (2 meshes, 3) array
+        Derivatives of `flank_reactions`, m/m and m/rad.
+    meshes : int
+        Number of meshes.
+
+    Returns
+    -------
+    (2 meshes, parts) array
+        m/m and m/rad.
+    """
+    slopes = np.zeros((2 * meshes, len(PARTS)))
+    slopes[:, :3] = reactions - ideal_slopes(surface.pair)
+    slopes[meshes:, 0] *= -1.0
+    return slopes
+
+
+def ideal_slopes(pair: PairNumbers) -> Array:
+    """Return the part of an offset, an axial shift and an error of the shaft angle that deflections hold.
+
+    Parameters
+    ----------
+    pair : PairNumbers
+        Numbers of the pair.
+
+    Returns
+    -------
+    (3,) array
+        m/m, m/m and m/rad.
+    """
+    cosine, sine = np.cos(pair.pressure_angle), np.sin(pair.pressure_angle)
+    return np.array([cosine, -sine, -sine * (pair.gear_base_radius / cosine - pair.mean_radius)])
+
+
+def assembly_errors(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> AssemblyErrors:
+    """Return the assembly errors that a flank meets without any motion, those of the pair's own assembly.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+    mesh : int
+        Index of the mesh.
+    back : bool
+        Whether it is the back flank.
+
+    Returns
+    -------
+    AssemblyErrors
+        m and rad.
+    """
+    side = machine.layout.gears[machine.layout.meshes[mesh][1]].sign
+    nominal = surface.nominal
+    return replace(
+        nominal,
+        offset=(-side if back else side) * nominal.offset,
+        shaft_angle_error=side * nominal.shaft_angle_error,
+    )
+
+
+def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> tuple[float, float]:
+    """Return unloaded path and error of the shaft angle of a flank as assembled, without any motion.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    surface : PoseSurface
+        Contact over the pose.
+    mesh : int
+        Index of the mesh.
+    back : bool
+        Whether it is the back flank.
+
+    Returns
+    -------
+    pair of float
+        m and rad.
+    """
+    errors = assembly_errors(machine, surface, mesh, back)
+    contact = contact_at(surface.pair, errors)
+    assert contact is not None
+    return contact.y, errors.shaft_angle_error
+
+
+def _three(errors: AssemblyErrors) -> Array:
+    return np.array([errors.offset, errors.axial_shift, errors.shaft_angle_error])

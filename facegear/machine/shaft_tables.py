@@ -1,0 +1,234 @@
+"""Loads of the bearings of pinions' shafts, from the forces and moments of the pinions on their shafts."""
+
+from collections.abc import Mapping
+from string import ascii_uppercase
+
+import numpy as np
+import pandas as pd
+import scipy.linalg
+
+from facegear.arrays import Array
+from facegear.machine.drive_line import DriveLine, TurningMass
+from facegear.machine.machine import Machine
+from facegear.machine.statics import Equilibria, bearing_forces
+from facegear.parts.shafts import Shaft, deflections
+
+
+def bearing_names(line: DriveLine) -> list[tuple[int, str]]:
+    """Return pinion and letter of every bearing of a shaft, by pinions.
+
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+
+    Returns
+    -------
+    list of tuple of int and str
+        Number of the pinion, and letter; A is the first bearing that the config lists.
+    """
+    return [
+        (pinion, ascii_uppercase[number])
+        for pinion, seat in sorted(line.seats.items())
+        for number in range(len(seat.shaft.reactions))
+    ]
+
+
+def shaft_bearing_loads(line: DriveLine, forces: Array, moments: Mapping[int, Array] | None = None) -> Array:
+    """Return the loads of the shafts on their bearings.
+
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+    forces : (K, bodies, 3) array
+        Forces of the bodies on what they sit on, N.
+    moments : mapping of int to (K, 2) array, or None
+        Moments about x and y by the numbers of pinions, N m.
+
+    Returns
+    -------
+    (K, bearings, 5) array
+        x, y, z, tilt_x, tilt_y in N and N m, in the order of `bearing_names`.
+    """
+    loads = [np.zeros((len(forces), 0, 5))]
+    for pinion, seat in sorted(line.seats.items()):
+        about = (moments or {}).get(pinion, np.zeros((len(forces), 2)))
+        loads.append(seat.shaft.bearing_loads(np.concatenate([forces[:, pinion], about], axis=1)))
+    return np.concatenate(loads, axis=1)
+
+
+MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
+"""Names of the five motions of a shaft at its pinion."""
+STATIONS = 25
+"""Even stations from end to end at which a deflected shaft is listed, beside steps, bearings and pinion."""
+
+
+def stiffness_table(line: DriveLine) -> pd.DataFrame:
+    """Return the stiffness of the pinions' shafts.
+
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+
+    Returns
+    -------
+    pd.DataFrame
+        Five rows a pinion with a shaft: columns pinion, motion, then its stiffness by MOTION_NAMES.
+    """
+    rows = [
+        (line.layout.pinions[pinion].name, motion, *row)
+        for pinion, seat in sorted(line.seats.items())
+        for motion, row in zip(MOTION_NAMES, seat.shaft.stiffness, strict=True)
+    ]
+    return pd.DataFrame(rows, columns=["pinion", "motion", *MOTION_NAMES])
+
+
+def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.DataFrame:
+    """Return stiffness and static displacement of each pinion on a shaft.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+    at_rest : Equilibria
+        Equilibrium under the mean torques.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a pinion with a shaft: stiffness without moments along x, y, z, N/m, and displacement under
+        the mean torques: x_um, y_um, z_um, tilt_x_urad, tilt_y_urad.
+    """
+    forces = bearing_forces(machine, at_rest)[0]
+    rows = []
+    for pinion, seat in sorted(line.seats.items()):
+        square = 1.0 / np.diagonal(seat.shaft.compliance)[:3]
+        displacement = seat.shaft.compliance[:, :3] @ forces[pinion]
+        rows.append((line.layout.pinions[pinion].name, *square, *(1e6 * displacement)))
+    stiffness = [f"stiffness_{axis}_n_per_m" for axis in "xyz"]
+    return pd.DataFrame(
+        rows, columns=["pinion", *stiffness, "x_um", "y_um", "z_um", "tilt_x_urad", "tilt_y_urad"]
+    )
+
+
+def deflection_table(
+    machine: Machine, line: DriveLine, at_rest: Equilibria, shafts: Mapping[int, Shaft]
+) -> pd.DataFrame:
+    """Return the deflection along each shaft under the mean torques.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+    at_rest : Equilibria
+        Equilibrium under the mean torques.
+    shafts : Mapping of int to Shaft
+        Shafts by the numbers of their pinions.
+
+    Returns
+    -------
+    pd.DataFrame
+        Rows along each shaft: pinion, at_mm from its beginning, x_um and y_um.
+    """
+    forces = bearing_forces(machine, at_rest)[0]
+    rows = []
+    for pinion, shaft in sorted(shafts.items()):
+        at = _stations(shaft)
+        displacements = deflections(shaft, at)[:, :2, :3] @ forces[pinion]
+        name = line.layout.pinions[pinion].name
+        rows += [(name, *row) for row in np.column_stack([1e3 * at, 1e6 * displacements]).tolist()]
+    return pd.DataFrame(rows, columns=["pinion", "at_mm", "x_um", "y_um"])
+
+
+def _stations(shaft: Shaft) -> Array:
+    ends = np.cumsum([segment.length for segment in shaft.segments])
+    bearing_positions = [bearing.position for bearing in shaft.bearings]
+    return np.unique(
+        np.round([*np.linspace(0.0, ends[-1], STATIONS), *ends, *bearing_positions, shaft.pinion], 9)
+    )
+
+
+def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.DataFrame:
+    """Return the load of each shaft on its bearings under the mean torques.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+    at_rest : Equilibria
+        Equilibrium under the mean torques.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a bearing: pinion, bearing, x_n, y_n, z_n, tilt_x_n_m, tilt_y_n_m, radial_n.
+    """
+    loads = shaft_bearing_loads(line, bearing_forces(machine, at_rest))[0]
+    rows = [
+        (line.layout.pinions[pinion].name, letter, *load, np.hypot(*load[:2]))
+        for (pinion, letter), load in zip(bearing_names(line), loads, strict=True)
+    ]
+    columns = ("pinion", "bearing", "x_n", "y_n", "z_n", "tilt_x_n_m", "tilt_y_n_m", "radial_n")
+    return pd.DataFrame(rows, columns=list(columns))
+
+
+def torsion_table(machine: Machine, line: DriveLine) -> pd.DataFrame:
+    """Return torque and twist of the torsional springs.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    line : DriveLine
+        Its drive line.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a turning mass: body, mass, inertia_kg_m2, stiffness_n_m_per_rad, torque_n_m of its spring,
+        twist_deg of it, windup_deg of it and of all before it, and frequency_hz of the chain by itself, the
+        body free.
+    """
+    rows = []
+    for body, _, chain in line.chains():
+        torque, windup = float(machine.torques[body]), 0.0
+        for mass, frequency in zip(chain, chain_frequencies(line, body, chain), strict=True):
+            twist = float(np.degrees(torque / mass.stiffness))
+            windup += twist
+            name = line.layout.body_names[body]
+            rows.append((name, mass.name, mass.inertia, mass.stiffness, torque, twist, windup, frequency))
+    columns = ("inertia_kg_m2", "stiffness_n_m_per_rad", "torque_n_m", "twist_deg", "windup_deg")
+    return pd.DataFrame(rows, columns=["body", "mass", *columns, "frequency_hz"])
+
+
+def chain_frequencies(line: DriveLine, body: int, chain: tuple[TurningMass, ...]) -> Array:
+    """Return the natural frequencies of a body and its chain in the open, without the zero.
+
+    Parameters
+    ----------
+    line : DriveLine
+        The drive line.
+    body : int
+        Number of the body in the layout.
+    chain : tuple of TurningMass
+        Turning masses of the chain, from the body outwards.
+
+    Returns
+    -------
+    (masses,) array
+        Hz.
+    """
+    inertias = np.array([line.layout.bodies[body].inertia, *(mass.inertia for mass in chain)])
+    stiffness = np.zeros((inertias.size, inertias.size))
+    for number, mass in enumerate(chain):
+        stiffness[number : number + 2, number : number + 2] += mass.stiffness * np.array([[1, -1], [-1, 1]])
+    omega_squared = scipy.linalg.eigh(stiffness, np.diag(inertias), eigvals_only=True)
+    return np.asarray(np.sqrt(omega_squared[1:]) / (2.0 * np.pi))

@@ -1,0 +1,177 @@
+"""Face gears that bend, at rest: the whole influence between flanks, in as few coordinates as it needs.
+
+At rest nothing but the flanks loads a body, so that forces F on the flanks of a gear move all of them by A F
+against their forces, with A the static compliance of all orders. A = R R^T, with two columns in R for each
+mesh of the gear, is the answer of as many coordinates with unit stiffness and rows R. Which modes are kept
+for motion does not matter. Where meshes stand in their poses, the slopes of the rim below each count as well,
+and with two more columns in R for each mesh the moments that are conjugate to them.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.machine.elastic_coordinates import flank_rows, rim_slopes
+from facegear.machine.elastic_gears import ElasticGears, append_block
+from facegear.machine.layout import Layout
+from facegear.machine.linear_model import LinearModel
+from facegear.machine.machine import Machine
+from facegear.parts.reduced_body import ReducedBody
+
+RANK_TOLERANCE = 1e-10
+"""Part of the largest singular value below which a direction of the flanks is that of others."""
+
+
+def at_rest(machine: Machine) -> Machine:
+    """Return the machine for static questions alone, with the full static compliance between any two meshes.
+
+    The masses of its coordinates beyond the lumped ones only scale them.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    Machine
+        Its gears are StaticGears if they were ElasticGears.
+    """
+    machine = machine.static_machine
+    if not isinstance(machine.bodies, ElasticGears):
+        return machine
+    with_slopes = machine.directions is not None
+    return replace(machine, bodies=StaticGears(machine.bodies, with_slopes), softening=None)
+
+
+@dataclass(frozen=True, eq=False)
+class StaticGears:
+    """Gears of `elastic` by their static compliance alone.
+
+    Attributes
+    ----------
+    elastic : ElasticGears
+        The gears with their modes.
+    with_slopes : bool
+        Whether the slopes of the rims have coordinates, too.
+    """
+
+    elastic: ElasticGears
+    with_slopes: bool = False
+
+    def __call__(self, base_model: LinearModel) -> LinearModel:
+        """Return the model with the coordinates of every gear behind its own."""
+        model, layout = base_model, self.elastic.layout
+        for gear, body in self.elastic.bodies.items():
+            meshes = np.array([g == gear for _, g in layout.meshes])
+            if self.with_slopes:
+                gear_rows, slopes = posed_rows(body, layout, gear)
+                lengths = np.abs(np.concatenate([gear_rows, layout.gear_radius * slopes[0], slopes[1]])).max(
+                    axis=0
+                )
+            else:
+                gear_rows, slopes = static_rows(body, layout, gear), None
+                lengths = np.abs(gear_rows).max(axis=0)
+            rows = np.zeros((len(model.rows), gear_rows.shape[1]))
+            rows[np.tile(meshes, 2)] = gear_rows
+            mass = append_block(model.mass, np.diag(lengths**2))
+            zeros = np.zeros(lengths.size)
+            model = replace(
+                model,
+                labels=(
+                    *model.labels,
+                    *(f"{layout.gears[gear].name}:bent {n + 1}" for n in range(zeros.size)),
+                ),
+                mass=mass,
+                stiffness=append_block(model.stiffness, np.eye(zeros.size)),
+                rows=np.hstack([model.rows, rows]),
+                torques=np.append(model.torques, zeros),
+                forces=np.append(model.forces, zeros),
+                lengths=np.append(model.lengths, lengths),
+                dampers=append_block(model.dampers, np.diag(zeros)),
+                slopes=None if slopes is None else model.with_slopes(meshes, slopes),
+            )
+        return model
+
+
+def static_rows(body: ReducedBody, layout: Layout, gear: int) -> Array:
+    """Return R of A = R R^T, the static compliance between the flanks of a gear.
+
+    Every order counts as two modes with unit stiffness that have its compliance.
+
+    Parameters
+    ----------
+    body : ReducedBody
+        The gear's reduced body.
+    layout : Layout
+        Bodies and mesh geometry.
+    gear : int
+        Number of the gear.
+
+    Returns
+    -------
+    (2 meshes of the gear, p) array
+        Drive flanks first; A is in m/N.
+    """
+    sizes, vectors = np.linalg.eigh(body.static)
+    shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
+    shapes[0] = np.diag(np.sqrt(np.diagonal(body.static[0])))  # along the axis or round it, never both
+    return _condense_columns(_waves(shapes, np.array([0.0, 1.0]), layout, gear)[0])
+
+
+def posed_rows(body: ReducedBody, layout: Layout, gear: int) -> tuple[Array, Array]:
+    """Return R of the flanks as `static_rows`, and of the slopes below all meshes of the gear.
+
+    Parameters
+    ----------
+    body : ReducedBody
+        The gear's reduced body.
+    layout : Layout
+        Bodies and mesh geometry.
+    gear : int
+        Number of the gear.
+
+    Returns
+    -------
+    pair of arrays
+        R of the flanks (2 meshes of the gear, p), and of the slopes (2, meshes, p): along the radius over the
+        gear radius, and round the axis. R R^T of the flanks is in m/N.
+    """
+    whole = body.compliance_with_slope(layout.gear_radius)
+    whole[0, 1, [0, 2]] = whole[0, [0, 2], 1] = 0.0  # along the axis or round it, never both
+    sizes, vectors = np.linalg.eigh(whole)
+    shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
+    flanks, slopes = _waves(shapes, np.abs(vectors[0, 1]).round(), layout, gear)
+    columns = _condense_columns(np.concatenate([flanks, *slopes]))
+    radial, around = np.split(columns[len(flanks) :], 2)
+    return columns[: len(flanks)], np.stack([radial / layout.gear_radius, around])
+
+
+def _waves(shapes: Array, turning: Array, layout: Layout, gear: int) -> tuple[Array, Array]:
+    """Return motions of the flanks, and slopes below the meshes, by waves of all orders with unit stiffness.
+
+    shapes (orders, i, k): W_p, V_p and the slopes, each by k waves of every order; turning (k,): which waves
+    of order 0 go round the axis. The slopes are empty where `shapes` has none.
+    """
+    count = shapes.shape[2]
+    orders = np.repeat(np.arange(len(shapes)), count)
+    axial, around, *slope = shapes.transpose(1, 0, 2).reshape(-1, orders.size)
+    round_axis = np.where(orders == 0, np.tile(turning, len(shapes)), 0.0)
+    flanks, slopes = [], []
+    for part in (0, 1):
+        has_wave, parts = orders >= part, np.full(orders.size, part)  # order 0 has no sine
+        sign, angles = layout.gears[gear].sign, layout.angles
+        rows = flank_rows(orders, parts, axial, around, round_axis, sign, angles, layout.pressure_angle)
+        flanks.append(rows[:, has_wave])
+        slopes += [
+            rim_slopes(orders, parts, axial, radial, round_axis, angles)[..., has_wave] for radial in slope
+        ]
+    return np.concatenate(flanks, axis=1), np.concatenate(slopes, axis=2) if slopes else np.zeros((0, 0, 0))
+
+
+def _condense_columns(rows: Array) -> Array:
+    """Return R with as many columns as R R^T of the rows needs."""
+    left, values, _ = np.linalg.svd(rows, full_matrices=False)
+    is_significant = values > RANK_TOLERANCE * values.max()
+    return np.asarray(left[:, is_significant] * values[is_significant])

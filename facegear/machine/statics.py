@@ -1,0 +1,369 @@
+"""Static equilibrium under torque, with every force and moment in balance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import NotConverged
+from facegear.harmonics import stack_series, stacked_values
+from facegear.machine.block_statics import has_blocks, has_kernel, settle_all, static_springs, static_unknowns
+from facegear.machine.dense_statics import RESIDUAL, Contacts, dense_equilibrium
+from facegear.machine.flank_errors import constant_errors, error_series, slow_errors
+from facegear.machine.flanks import flank_gaps, flank_law, line_law
+from facegear.machine.machine import Machine
+from facegear.meshing.law import LawAtPhases, MeshLaw
+
+EPSILON = float(np.finfo(float).eps)
+"""Rounding unit of double precision."""
+ROUNDING_FACTOR = 32.0
+"""Roundings of the largest terms of a sum that its result may be off by."""
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Force out of balance on the bodies at K positions, moments divided by their arms.
+
+    Attributes
+    ----------
+    residual : (K,) array
+        The largest, over the largest applied or mesh force.
+    rounding : (K,) array
+        The part that rounding explains by the size of the numbers that cancel, over the same force.
+    """
+
+    residual: Array
+    rounding: Array
+
+    def require(self, limit: float, names: list[str]) -> None:
+        """Raise NotConverged for the worst position whose residual is above the limit and rounding.
+
+        Parameters
+        ----------
+        limit : float
+            Largest residual, relative.
+        names : list of str
+            Name of each position for the message.
+
+        Raises
+        ------
+        NotConverged
+            If the residual of a position is above the limit and its rounding.
+        """
+        over = self.residual - limit - self.rounding
+        if (over <= 0.0).all():
+            return
+        worst = int(np.argmax(np.where(np.isnan(over), np.inf, over)))
+        limit_with_rounding = limit + self.rounding[worst]
+        problem = (
+            f"forces and moments out of balance by {self.residual[worst]:.2e} over {limit_with_rounding:.0e}"
+        )
+        raise NotConverged("static equilibrium", names[worst], problem)
+
+
+def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Array, gaps: Array) -> Balance:
+    """Compute the balance of bearings, contacts and torques on every body.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    displacements : (K, dof) array
+        m and rad.
+    forces : (K, F) array
+        Contact forces, N.
+    stiffness : (K, F) array
+        Stiffness of the contacts, N/m, by which rounding of the forces is judged.
+    gaps : (K, F) array
+        Gaps of the contacts, m, for the same purpose.
+
+    Returns
+    -------
+    Balance
+        Relative to the largest applied or mesh force.
+
+    References
+    ----------
+    contacts are both flanks of every mesh, or every mesh as one with a force of either sign.
+    """
+    linear = machine.linear
+    rows, arms, loads = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
+    left_over = bearing_loads(machine, displacements) + forces @ rows - loads
+    size = np.maximum(np.abs(loads / arms).max(), np.abs(forces).max(axis=1))
+    size = np.where(size > 0.0, size, 1.0)
+    motion_sizes = np.abs(displacements)
+    force_sizes = stiffness * (motion_sizes @ np.abs(rows).T + np.abs(gaps))
+    terms = motion_sizes @ np.abs(linear.stiffness) + force_sizes @ np.abs(rows)
+    return Balance(
+        residual=np.abs(left_over / arms).max(axis=1) / size,
+        rounding=ROUNDING_FACTOR * EPSILON * (terms / arms).max(axis=1) / size,
+    )
+
+
+def bearing_loads(machine: Machine, displacements: Array) -> Array:
+    """Return the force or moment of every degree of freedom on its bearing, beyond any clearance.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    displacements : (K, dof) array
+        m and rad.
+
+    Returns
+    -------
+    (K, dof) array
+        N and N m.
+    """
+    linear = machine.linear
+    loads = displacements @ machine.without_errors.linear.stiffness_without_rings
+    rings, at = linear.rings, linear.ring_coordinates
+    ring_displacements = displacements[:, at]
+    distance = np.maximum(np.hypot(ring_displacements[..., 0], ring_displacements[..., 1]), rings.clearance)
+    beyond = np.maximum(1.0 - rings.clearance / distance, 0.0)
+    loads[:, at] += ring_displacements * beyond[..., None] * rings.stiffness[:, None]
+    return np.asarray(loads)
+
+
+TOLERANCE = 1e-13
+"""Largest force out of balance, over the largest force, at which the compiled solver ends; dimensionless."""
+RESIDUAL_LIMIT = 1e-12
+"""Largest force out of balance, over the largest force, that a result of `settle` may have beyond rounding.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """Displacements (dof,), mesh deflections (meshes,) in m and rad, elastic mesh forces (meshes,) in N.
+
+    A mesh's force is that of its drive flank less that of its back flank, its deflection the tangential
+    part. `residual` is the largest force or moment (at its arm) on a body out of balance, over the largest
+    applied or mesh force.
+    """
+
+    displacements: Array
+    deflections: Array
+    forces: Array
+    residual: float
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibria:
+    """K positions: displacements (K, dof) in m and rad, flank_forces (K, 2 meshes) in N, drive flanks first.
+
+    deflections (K, meshes): tangential, m. residual (K,): as in Equilibrium.
+    """
+
+    displacements: Array
+    deflections: Array
+    flank_forces: Array
+    residual: Array
+
+    @property
+    def forces(self) -> Array:
+        """Force that each mesh transmits, drive flank less back flank, (K, meshes), N."""
+        drive, back = np.split(self.flank_forces, 2, axis=1)
+        return drive - back
+
+
+def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilibrium:
+    """Compute the static equilibrium at one position of the mesh cycle, or with mean stiffness and no e(t).
+
+    A body that is free inside its backlash is left at one of its possible positions.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    cycles : float or None
+        Mesh cycles from the start, periods; None for the mean stiffness without e(t).
+
+    Returns
+    -------
+    Equilibrium
+        m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance.
+    """
+    if machine.layout.kinematics.flanks_apart:
+        at_rest = mean_equilibrium(machine) if cycles is None else equilibria(machine, np.array([cycles]))
+        return Equilibrium(
+            at_rest.displacements[0], at_rest.deflections[0], at_rest.forces[0], float(at_rest.residual[0])
+        )
+    return _line_equilibrium(machine, cycles)
+
+
+def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
+    """Return the equilibrium of meshes whose two flanks share one line of action."""
+    law = line_law(machine)
+    law = law.mean() if cycles is None else law.at_phase(cycles)
+    error = np.zeros(law.contacts) if cycles is None else machine.error(cycles - machine.error_phases)
+    half = machine.half_backlash
+    # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
+    lengths = np.ones(machine.linear.size)
+    lengths[machine.layout.spins] = machine.layout.pinion_radius
+    contacts = Contacts(law, error, -half, half)
+    displacements, deflections, forces = dense_equilibrium(machine.linear, contacts, lengths)
+    gaps = machine.half_backlash + np.abs(deflections)
+    force_balance = balance(machine, displacements[None], forces[None], law.steepest[None], gaps[None])
+    force_balance.require(RESIDUAL, ["mean stiffness" if cycles is None else f"mesh position {cycles:.4f}"])
+    return Equilibrium(displacements, deflections, forces, float(force_balance.residual[0]))
+
+
+def equilibria(machine: Machine, cycles: Array) -> Equilibria:
+    """Compute the static equilibrium at given mesh positions, with all errors.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    cycles : (K,) array
+        Mesh cycles from the start, periods.
+
+    Returns
+    -------
+    Equilibria
+        m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance at a position.
+    """
+    errors = constant_errors(machine) + stacked_values(stack_series(error_series(machine)), cycles)
+    if machine.imperfections.any_slow:
+        errors += slow_errors(machine, cycles)
+    return settle(machine, flank_law(machine), cycles, errors, [f"mesh position {at:.4f}" for at in cycles])
+
+
+def mean_equilibrium(machine: Machine) -> Equilibria:
+    """Compute the static equilibrium with the mean law and constant errors alone.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+
+    Returns
+    -------
+    Equilibria
+        One position, in m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance.
+    """
+    law, errors = flank_law(machine).mean(), constant_errors(machine)[None]
+    return settle(machine, law, np.zeros(1), errors, ["mean stiffness"])
+
+
+def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: list[str]) -> Equilibria:
+    """Compute static equilibria with given laws and errors of the flanks.
+
+    Where every pinion has a bearing of its own and the law has a kernel, the compiled solver takes all
+    positions together.
+
+    Parameters
+    ----------
+    machine : Machine
+        A machine whose meshes have two flanks each.
+    law : MeshLaw
+        Law of the flanks.
+    cycles : (K,) array
+        Positions at which the law is taken, mesh periods.
+    errors : (K, 2 meshes) array
+        Errors of the flanks, m.
+    names : list of str
+        Name of each position for messages.
+
+    Returns
+    -------
+    Equilibria
+        m, rad and N.
+
+    Raises
+    ------
+    NotConverged
+        If forces and moments stay out of balance at a position.
+    """
+    law_at_positions, gaps = law.statics_law(cycles), errors + flank_gaps(machine)
+    if has_blocks(machine.static_machine) and has_kernel(law_at_positions):
+        displacements, forces = _by_blocks(machine.static_machine, law_at_positions, gaps)
+        if machine.drive_line is not None and machine.static_machine is not machine:
+            displacements = machine.drive_line.extend_displacements(machine.lumped_model, displacements)
+    else:
+        displacements, forces = _one_by_one(machine, law, cycles, gaps)
+    force_balance = balance(machine, displacements, forces, law_at_positions.stiffness, gaps)
+    force_balance.require(RESIDUAL_LIMIT, names)
+    drive, back = np.split(displacements @ machine.linear.rows.T - errors, 2, axis=1)
+    return Equilibria(displacements, 0.5 * (drive - back), forces, force_balance.residual)
+
+
+def _by_blocks(machine: Machine, law: LawAtPhases, gaps: Array) -> tuple[Array, Array]:
+    """Return displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
+    coordinates, scale = static_unknowns(machine)
+    springs, start = static_springs(machine), np.zeros(coordinates.size)
+    solution, forces, _ = settle_all(springs, law, gaps, TOLERANCE, start)
+    displacements = np.zeros((len(gaps), machine.linear.size))
+    np.add.at(displacements.T, coordinates, (solution * scale).T)
+    return displacements, forces
+
+
+def _one_by_one(machine: Machine, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
+    """Return displacements (K, dof) and flank forces (K, flanks) by dense algebra."""
+    linear, never = machine.linear, np.full(gaps.shape[1], -np.inf)
+    solutions = [
+        dense_equilibrium(linear, Contacts(law.at_phase(at), 0.0 * gap, never, gap), linear.lengths)
+        for at, gap in zip(cycles, gaps, strict=True)
+    ]
+    return np.array([solution[0] for solution in solutions]), np.array(
+        [solution[2] for solution in solutions]
+    )
+
+
+def static_bearing_forces(machine: Machine) -> Array:
+    """Return the force of every body on its bearing at rest under the mean torques.
+
+    Mean stiffness and constant errors, with either kinematics.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    (bodies, 3) array
+        Along x, y, z, N.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
+    """
+    if machine.layout.kinematics.flanks_apart:
+        return bearing_forces(machine, mean_equilibrium(machine))[0]
+    forces = bearing_loads(machine, static_equilibrium(machine).displacements[None])
+    return forces[0, machine.linear.translations]
+
+
+def bearing_forces(machine: Machine, at_rest: Equilibria) -> Array:
+    """Return the force of every body on its bearing at K equilibria.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    at_rest : Equilibria
+        Its equilibria.
+
+    Returns
+    -------
+    (K, bodies, 3) array
+        Along x, y, z, N.
+    """
+    return bearing_loads(machine, at_rest.displacements)[:, machine.linear.translations]

@@ -1,1 +1,0 @@
-"""Structured hexahedral meshes of both bodies on the exact surfaces."""

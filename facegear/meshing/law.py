@@ -1,0 +1,210 @@
+"""Interface of a contact's force for statics, dynamics, tangents and load sharing."""
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from facegear.arrays import Array, Integers
+
+
+class LawAtPhases(Protocol):
+    """A law of M contacts at K phases: its field `stiffness` (K, M) bounds the slopes, N/m."""
+
+    @property
+    def stiffness(self) -> Array:
+        """Bounds of the slopes (K, M), N/m."""
+
+
+class MeshLaw(Protocol):
+    """Elastic forces of M contacts.
+
+    A force depends on the phase in the mesh period and on how far the contact is pressed in beyond its edge;
+    it is zero, and begins with slope zero or more, at the edge. Where the two flanks of a mesh share one line
+    of action they are one contact, which is pressed in by a negative amount on its back flank: the law is odd
+    there. The arguments of the methods:
+
+    - cycles (K,): mesh periods since the start;
+    - beyond (..., K, M): how far each contact is pressed in, m; forces in N, slopes in N/m.
+    """
+
+    @property
+    def contacts(self) -> int:
+        """The number M of contacts."""
+
+    @property
+    def breaks(self) -> Array:
+        """Phases from 0 to 1, in mesh periods, between which the law is smooth in the phase; (0,) where it is
+        smooth throughout.
+        """
+
+    @property
+    def levels(self) -> Array:
+        """Amounts (L, M) at which the pieces of the law begin, m, rising. The first row is zero, the edge."""
+
+    @property
+    def straight(self) -> bool:
+        """Whether the force is linear in the amount between two levels."""
+
+    @property
+    def steepest(self) -> Array:
+        """Bound (M,) of the slope over phase and amount, N/m."""
+
+    @property
+    def harmonic_fractions(self) -> Array:
+        """Largest fraction (H + 1,) of the slope's bound that each harmonic of the phase makes up."""
+
+    def force(self, cycles: Array, beyond: Array) -> Array:
+        """Return the forces of the contacts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m.
+
+        Returns
+        -------
+        (..., K, M) array
+            N.
+        """
+
+    def slope(self, cycles: Array, beyond: Array) -> Array:
+        """Return the derivatives of the forces by the amounts.
+
+        Parameters
+        ----------
+        cycles : (K,) array
+            Mesh periods since the start.
+        beyond : (..., K, M) array
+            Compression of the contacts, m.
+
+        Returns
+        -------
+        (..., K, M) array
+            N/m; zero where nothing is pressed in.
+        """
+
+    def mean(self) -> "MeshLaw":
+        """Return the law averaged over the mesh period at fixed amounts.
+
+        Returns
+        -------
+        MeshLaw
+            A law that does not depend on the phase.
+        """
+
+    def at_phase(self, cycle: float) -> "MeshLaw":
+        """Return the law at one phase, whatever the phase.
+
+        Parameters
+        ----------
+        cycle : float
+            Mesh periods since the start.
+
+        Returns
+        -------
+        MeshLaw
+            A law that does not depend on the phase.
+        """
+
+    def statics_law(self, cycles: Array) -> LawAtPhases:
+        """Evaluate the law at some phases for statics.
+
+        Laws of `facegear.meshing.law` have a kernel. With any other, statics evaluates the forces
+        of the law itself, position by position.
+
+        Parameters
+        ----------
+        cycles : Array
+            Mesh periods since the start (K,), dimensionless.
+
+        Returns
+        -------
+        Held
+            The law at these phases.
+        """
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Its arrays and numbers by the names that the integrator's function for this law takes."""
+
+    @property
+    def kernel_law(self) -> Any:
+        """The law for the integrator's kernels: one of `Law` in facegear/_kernels/src/motion/laws/all.hpp."""
+
+
+def past_levels(law: MeshLaw, beyond: Array) -> Array:
+    """Return how often contacts are pressed in past the last level of a law.
+
+    Parameters
+    ----------
+    law : MeshLaw
+        The law.
+    beyond : (K, M) array
+        Compression of the contacts, m.
+
+    Returns
+    -------
+    (M,) array
+        Fraction of the K rows, relative; 0 for a law that is straight.
+    """
+    if law.straight:
+        return np.zeros(law.contacts)
+    return np.asarray((np.abs(beyond) > law.levels[-1]).mean(axis=0))
+
+
+def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
+    """Return how far contacts are pressed in: above `upper`, or below `lower` as a negative amount.
+
+    A contact with lower >= upper is never open; both directions count from `upper`.
+
+    Parameters
+    ----------
+    deflections : (..., M) array
+        Deflections, m.
+    lower : (M,) array
+        Lower edges, m; minus infinity for a contact that only pushes.
+    upper : (M,) array
+        Upper edges, m.
+
+    Returns
+    -------
+    (..., M) array
+        Compression, m.
+    """
+    lower = np.where(lower >= upper, upper, lower)
+    inside = np.maximum(deflections, lower)
+    np.minimum(inside, upper, out=inside)
+    return np.subtract(deflections, inside, out=inside)
+
+
+class LinearHeld(NamedTuple):
+    """Stiffness (K, M) in N/m of M contacts at K phases."""
+
+    stiffness: Array
+
+
+class LoadDependentHeld(NamedTuple):
+    """Load-dependent law of M contacts at K phases.
+
+    Attributes
+    ----------
+    stiffness : (K, M)
+        Bounds of the slopes, N/m.
+    cosine, sine : (K, harmonics + 1)
+        Of the multiples of the phases.
+    table : (kinds, levels, harmonics + 1, 2, 4)
+        Series of the cubics' coefficients, sine part first, by powers of the amount since the level, N and m.
+    levels : (kinds, levels)
+        Amounts at which the cubics begin, m.
+    kind : (M,)
+        Row of the table of each contact.
+    """
+
+    stiffness: Array
+    cosine: Array
+    sine: Array
+    table: Array
+    levels: Array
+    kind: Integers

@@ -1,0 +1,352 @@
+"""Mesh stiffness k(t) from the contact analysis or from given harmonics, with its tables."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput
+from facegear.harmonics import LEVELS, Fit, Harmonics, fit_harmonics
+from facegear.meshing.stiffness_curve import LoadTable, load_table, peak_to_peak, unloaded_series
+from facegear.meshing.stiffness_request import StiffnessRequest
+from facegear.number_format import format_number
+
+HARMONICS_COLUMNS = ("order", "sin_n_per_m", "cos_n_per_m", "amplitude_n_per_m")
+"""First columns of harmonics_table()."""
+
+
+def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> pd.DataFrame:
+    """Return the orders of a series with the errors of the fit it comes from.
+
+    Parameters
+    ----------
+    series : Harmonics
+        The series, N/m.
+    fit : Fit or None
+        Its fit, None if the series was given.
+    scale : float
+        Factor on the errors, dimensionless.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row an order, N/m; zero errors without a fit.
+    """
+    orders = np.arange(series.order + 1)
+    zeros = np.zeros(orders.size)
+    truncation = zeros if fit is None else scale * fit.truncation[orders]
+    sampling = zeros if fit is None else scale * fit.sampling[orders]
+    return pd.DataFrame(
+        {
+            "order": orders,
+            "sin_n_per_m": series.sine,
+            "cos_n_per_m": series.cosine,
+            "amplitude_n_per_m": series.amplitudes,
+            "truncation_error_n_per_m": truncation,
+            "sampling_error_n_per_m": sampling,
+        }
+    )
+
+
+def with_unloaded_error(table: pd.DataFrame, series: Harmonics, truncation: float) -> pd.DataFrame:
+    """Add the pair's unloaded transmission error to a harmonics table, order by order.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table of harmonics_table().
+    series : Harmonics
+        Unloaded transmission error, m.
+    truncation : float
+        Error of its cut, m.
+
+    Returns
+    -------
+    pd.DataFrame
+        The table with columns e_sin_um, e_cos_um, e_peak_to_peak_um and e_truncation_error_um.
+    """
+    orders = table["order"].to_numpy()
+    return table.assign(
+        e_sin_um=1e6 * series.sine[orders],
+        e_cos_um=1e6 * series.cosine[orders],
+        e_peak_to_peak_um=1e6 * peak_to_peak(series),
+        e_truncation_error_um=1e6 * truncation,
+    )
+
+
+def unloaded_error(table: pd.DataFrame) -> Harmonics | None:
+    """Return the unloaded transmission error of a harmonics table.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Table with the columns of with_unloaded_error().
+
+    Returns
+    -------
+    Harmonics or None
+        m; None where k was given without contact.
+    """
+    if "e_sin_um" not in table:
+        return None
+    error_table = table[["order", "e_sin_um", "e_cos_um"]].set_axis(
+        ["order", "sin_n_per_m", "cos_n_per_m"], axis=1
+    )
+    return series_of(error_table).scale(1e-6)
+
+
+def curve_table(positions: Array, samples: Array, series: Harmonics) -> pd.DataFrame:
+    """Return the curve over a pitch and its cut series.
+
+    Parameters
+    ----------
+    positions : (p,) array
+        Positions, periods.
+    samples : (p,) array
+        Stiffness at the positions, N/m.
+    series : Harmonics
+        The cut series, N/m.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns position, k_n_per_m, k_series_n_per_m.
+    """
+    return pd.DataFrame({"position": positions, "k_n_per_m": samples, "k_series_n_per_m": series(positions)})
+
+
+def load_dependence(table: LoadTable) -> pd.DataFrame:
+    """Return mean, extremes and first harmonics of both stiffnesses at each torque solved.
+
+    Parameters
+    ----------
+    table : LoadTable
+        Stiffness over position and torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row a definition and torque, N/m.
+    """
+    rows = []
+    for definition in ("average", "local"):
+        for torque in table.torques:
+            samples = table.at(torque, definition)
+            fit = fit_harmonics(samples)
+            first, second = (*fit.series.amplitudes[1:3], np.nan)[:2]
+            needed_orders = [fit.orders_within(level) for level in LEVELS]
+            rows.append(
+                (
+                    definition,
+                    torque,
+                    samples.mean(),
+                    samples.min(),
+                    samples.max(),
+                    first,
+                    second,
+                    *needed_orders,
+                )
+            )
+    names = [f"orders_for_{100 * level:g}_percent" for level in LEVELS]
+    columns = ["definition", "torque_n_m", "mean_n_per_m", "min_n_per_m", "max_n_per_m"]
+    frame = pd.DataFrame(rows, columns=[*columns, "amplitude_1_n_per_m", "amplitude_2_n_per_m", *names])
+    return frame.astype(dict.fromkeys(names, "Int64"))
+
+
+def series_of(table: pd.DataFrame) -> Harmonics:
+    """Return the series of a table; orders left out are zero.
+
+    Parameters
+    ----------
+    table : pd.DataFrame
+        Columns order, sin_n_per_m, cos_n_per_m.
+
+    Returns
+    -------
+    Harmonics
+        N/m.
+
+    Raises
+    ------
+    ValueError
+        For orders that are not whole numbers from zero, or repeated.
+    """
+    orders = table["order"].to_numpy()
+    if (orders != np.round(orders)).any() or (orders < 0).any() or np.unique(orders).size != orders.size:
+        raise ValueError("orders must be whole numbers from 0, each once")
+    sine, cosine = np.zeros(int(orders.max()) + 1), np.zeros(int(orders.max()) + 1)
+    sine[orders.astype(int)] = table["sin_n_per_m"]
+    cosine[orders.astype(int)] = table["cos_n_per_m"]
+    return Harmonics(sine, cosine)
+
+
+CURVE_POINTS = 256
+"""Number of points in a pitch of a curve that comes from given harmonics."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffness:
+    """Tables of a mesh stiffness.
+
+    Attributes
+    ----------
+    curve : DataFrame
+        Stiffness over a pitch.
+    harmonics : DataFrame
+        Orders that are kept.
+    spectrum : DataFrame
+        All orders.
+    summary : str
+        One line for the log.
+    """
+
+    curve: pd.DataFrame
+    harmonics: pd.DataFrame
+    spectrum: pd.DataFrame
+    summary: str
+
+
+@dataclass(frozen=True, eq=False)
+class ContactCurve:
+    """k(t) at a load of the contact analysis, N/m.
+
+    Attributes
+    ----------
+    table
+        Stiffness over positions and torques that it was taken from.
+    samples, fit
+        At the positions solved, and their series, before both are scaled.
+    scale
+        Factor on both that the request asks for.
+    whole, series
+        Scaled and varied, with all orders and with those kept.
+    error, error_cut
+        Unloaded transmission error of the same orders (m), and what the cut misses of it (m).
+    """
+
+    table: LoadTable
+    samples: Array
+    fit: Fit
+    scale: float
+    whole: Harmonics
+    series: Harmonics
+    error: Harmonics
+    error_cut: float
+
+
+def curve_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> ContactCurve:
+    """Compute the stiffness curve at the requested load and its series.
+
+    Source fem_scaled multiplies the curve so that its mean is the requested one.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table of the contact analysis.
+    request : StiffnessRequest
+        Source, load and orders.
+
+    Returns
+    -------
+    ContactCurve
+        N/m and m.
+
+    Raises
+    ------
+    InvalidInput
+        For a load outside those solved, and for a variation with which k(t) is not positive throughout.
+    """
+    assert request.torque is not None
+    table = load_table(ltca)
+    samples = table.at(request.torque, request.definition)
+    fit = fit_harmonics(samples)
+    scale = 1.0
+    if request.source == "fem_scaled":
+        assert request.mean is not None
+        scale = request.mean / fit.series.mean
+    whole = fit.series.scale(scale).scale_variation(request.variation)
+    series = whole.truncate(request.order)
+    if series.minimum <= 0.0:
+        largest = _largest_variation(fit.series.truncate(request.order))
+        requirement = f"at most {largest:.4g}, so that k(t) stays positive"
+        raise InvalidInput("variation of the mesh stiffness", request.variation, requirement)
+    error, cut = unloaded_series(ltca, series.order)
+    return ContactCurve(table, samples, fit, scale, whole, series, error, cut)
+
+
+def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
+    """Return `curve_from_contact` as tables.
+
+    Beside the harmonics stand the means of both definitions at that load, scaled alike.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table of the contact analysis.
+    request : StiffnessRequest
+        Source, load and orders.
+
+    Returns
+    -------
+    Stiffness
+        N/m and um.
+
+    Raises
+    ------
+    InvalidInput
+        As `curve_from_contact`.
+    """
+    curve = curve_from_contact(ltca, request)
+    assert request.torque is not None
+    table, fit, scale, torque = curve.table, curve.fit, curve.scale, request.torque
+    scale_text = "" if scale == 1.0 else f", scaled by {scale:.4f}"
+    summary = (
+        f"{request.definition} stiffness at {torque:g} N m: mean {format_number(1e-6 * fit.series.mean)} N/um"
+        f"{scale_text}; transmission error without load {1e6 * peak_to_peak(curve.error):.3g} um peak to peak"
+    )
+    harmonics = with_unloaded_error(
+        harmonics_table(curve.series, fit, scale * request.variation), curve.error, curve.error_cut
+    ).assign(
+        mean_average_n_per_m=scale * table.at(torque, "average").mean(),
+        mean_local_n_per_m=scale * table.at(torque, "local").mean(),
+    )
+    return Stiffness(
+        curve_table(table.positions, _vary_samples(scale * curve.samples, request.variation), curve.series),
+        harmonics,
+        harmonics_table(curve.whole, fit, scale * request.variation),
+        summary,
+    )
+
+
+def stiffness_given(request: StiffnessRequest) -> Stiffness:
+    """Return the curve of the series that the config gives.
+
+    Parameters
+    ----------
+    request : StiffnessRequest
+        The series and the orders kept.
+
+    Returns
+    -------
+    Stiffness
+        N/m.
+    """
+    whole = request.given_series.scale_variation(request.variation)
+    series = whole.truncate(request.order)
+    positions = np.arange(CURVE_POINTS) / CURVE_POINTS
+    return Stiffness(
+        curve_table(positions, whole(positions), series),
+        harmonics_table(series, None),
+        harmonics_table(whole, None),
+        f"given harmonics, {series.order} kept, mean {format_number(1e-6 * series.mean)} N/um",
+    )
+
+
+def _vary_samples(samples: Array, factor: float) -> Array:
+    return samples + (factor - 1.0) * (samples - samples.mean())
+
+
+def _largest_variation(series: Harmonics) -> float:
+    """Return the factor on the variation at which the smallest value is zero."""
+    return series.mean / (series.mean - series.minimum)

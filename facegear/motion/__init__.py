@@ -1,0 +1,1 @@
+"""Time response of the lumped model: integration, steady state, stability, speed sweeps, branches."""

@@ -1,0 +1,218 @@
+"""Forces on the bearings of every body: at rest, and over the response at one speed."""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Integers, Mask
+from facegear.machine.linear_model import LinearModel
+from facegear.machine.machine import Machine
+from facegear.machine.shaft_tables import bearing_names, shaft_bearing_loads
+from facegear.machine.static_gears import at_rest
+from facegear.machine.statics import static_bearing_forces
+from facegear.motion.integrator.reduction import Reduction
+from facegear.motion.steady_state.response import SteadyState
+from facegear.motion.steady_state.simulate import Model
+from facegear.motion.steady_state.statistics import moments
+from facegear.motion.track import Track, add_ring_forces, track
+
+DIRECTIONS = ("x", "y", "z", "radial")
+"""Directions in which the bearing forces of a body are tabulated; radial is the magnitude of x and y."""
+BEARING_COLUMNS = (
+    "body",
+    "direction",
+    "static_n",
+    "mean_n",
+    "rms_n",
+    "ac_rms_n",
+    "ac_rms_interval_n",
+    "peak_n",
+    "class",
+)
+
+
+def bearing_history(model: Model, response: SteadyState) -> Array:
+    """Compute the force of every body on its bearing at each sample, see bearing_forces().
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    (K, bodies, 3) array
+        Forces along x, y, z, N.
+    """
+    return np.moveaxis(bearing_forces(model, track(response)), -1, 0)
+
+
+def bearing_forces(model: Model, motion: Track) -> Array:
+    """Compute the force of every body on its bearing: springs, their damping of equation (21), and dampers.
+
+    The force is K q + beta K q' + D q'. Mass damping acts from outside and not through a bearing. With
+    clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    motion : Track
+        Motion of the model's coordinates at K instants.
+
+    Returns
+    -------
+    (bodies, 3, K) array
+        Forces along x, y, z, N.
+    """
+    linear, maps = model.machine.linear, _bearing_maps(model.machine.without_errors, model.reduction)
+    rings = linear.rings
+    moving_parts = motion.along(maps.displacement_columns, maps.velocity_columns)
+    first = len(moving_parts) - 4 * rings.body.size
+    forces = np.zeros((maps.alone.size, motion.count))
+    forces[maps.alone] = moving_parts[:first]
+    forces = forces.reshape(*linear.translations.shape, -1)
+    if rings.body.size:
+        displacements, rates = moving_parts[first:].reshape(2, rings.body.size, 2, -1)
+        ring_properties = rings.stiffness, rings.clearance, linear.bearing_damping
+        add_ring_forces(displacements, rates, *ring_properties, rings.body, forces)
+    return forces
+
+
+class _BearingMaps(NamedTuple):
+    """Matrices that map reduced displacement and velocity to bearing forces.
+
+    `alone` (3 bodies,) marks the components on which no ring acts. The columns of displacement and velocity
+    (n, columns) give the forces of those, then displacement and velocity of each body in a ring along x and
+    y.
+    """
+
+    alone: Mask
+    displacement_columns: Array
+    velocity_columns: Array
+
+
+@lru_cache(maxsize=8)
+def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
+    linear = machine.linear
+    displacement_columns, velocity_columns = _force_matrices(linear, reduction, linear.translations.ravel())
+    in_rings = np.zeros(linear.translations.shape, dtype=bool)
+    in_rings[linear.rings.body, :2] = True
+    alone = (displacement_columns.any(axis=0) | velocity_columns.any(axis=0)) & ~in_rings.ravel()
+    rows = reduction.basis[linear.ring_coordinates.ravel()].T
+    zeros = np.zeros_like(rows)
+    return _BearingMaps(
+        alone,
+        np.concatenate([displacement_columns[:, alone], rows, zeros], axis=1),
+        np.concatenate([velocity_columns[:, alone], zeros, rows], axis=1),
+    )
+
+
+def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Integers) -> tuple[Array, Array]:
+    """Matrices (n, coordinates) that map reduced displacement and velocity to the force or moment on springs
+    and dampers along some coordinates.
+    """
+    basis = reduction.basis
+    springs = basis.T @ linear.stiffness[:, coordinates]
+    return springs, linear.bearing_damping * springs + basis.T @ linear.dampers[coordinates].T
+
+
+def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) -> Array:
+    """Compute the loads of the pinion shafts on their bearings, see shaft_bearing_loads(). Shaft mass is
+    neglected.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    response : SteadyState
+        Response.
+    forces : (K, bodies, 3) array
+        bearing_history() of the response, N.
+
+    Returns
+    -------
+    (K, bearings, 5) array
+        Forces, N, and moments, N m.
+    """
+    line = model.machine.drive_line
+    if line is None:
+        return np.zeros((len(forces), 0, 5))
+    motion = track(response)
+    linear, reduction = model.machine.linear, model.reduction
+    moments = {i: motion.along(*_force_matrices(linear, reduction, line.tilts(i))).T for i in line.tilting}
+    return shaft_bearing_loads(line, forces, moments)
+
+
+def velocities(response: SteadyState) -> Array:
+    """Compute the time derivatives of the coordinates from cubic splines through the samples.
+
+    Parameters
+    ----------
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    (K, n) array
+        Velocities, in the coordinates' unit per second (1/s).
+    """
+    identity = np.eye(response.coordinates.shape[1])
+    return track(response).along(0.0 * identity, identity).T
+
+
+def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
+    """Tabulate the bearing forces: four rows a body, along x, y, z, and the magnitude of x and y together.
+
+    Below them stand the rows of each bearing of a pinion's shaft, such as `right input bearing A`. A pinion's
+    x is tangential and y along the gears' axis, both radial for its bearing; a face gear's axis is z.
+
+    Parameters
+    ----------
+    model : Model
+        Reduced machine.
+    response : SteadyState
+        Response.
+
+    Returns
+    -------
+    DataFrame
+        BEARING_COLUMNS. `static_n`: at rest under the mean torques; `peak_n`: the largest magnitude, located
+        between the samples; `ac_rms_interval_n`: 95 % half-width, 0 for a periodic motion.
+    """
+    machine = model.machine
+    history, static_forces = bearing_history(model, response), static_bearing_forces(at_rest(machine))[None]
+    bodies = list(machine.layout.body_names)
+    if (line := machine.drive_line) is not None:
+        bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
+        shaft_forces = shaft_bearing_history(model, response, history)[..., :3]
+        history = np.concatenate([history, shaft_forces], axis=1)
+        static_forces = np.concatenate(
+            [static_forces, shaft_bearing_loads(line, static_forces)[..., :3]], axis=1
+        )
+    dynamic_forces, static = _with_radial(history), _with_radial(static_forces)[0]
+    statistics = moments(
+        dynamic_forces.reshape(len(dynamic_forces), -1), response.per_period, response.period > 0
+    )
+    names = [(body, direction) for body in bodies for direction in DIRECTIONS]
+    table = pd.DataFrame(names, columns=["body", "direction"])
+    values = (
+        static.ravel(),
+        statistics.mean,
+        statistics.rms,
+        statistics.ac_rms,
+        statistics.ac_rms_interval,
+        np.maximum(np.abs(statistics.minimum), np.abs(statistics.maximum)),
+    )
+    for column, value in zip(BEARING_COLUMNS[2:-1], values, strict=True):
+        table[column] = value
+    return table.assign(**{"class": response.label})
+
+
+def _with_radial(forces: Array) -> Array:
+    """Forces (K, bodies, 3) with their radial magnitude as a fourth."""
+    return np.concatenate([forces, np.hypot(forces[..., :1], forces[..., 1:2])], axis=-1)

@@ -1,0 +1,280 @@
+"""Special points of a branch: their kinds and the evidence for each.
+
+Folds and doublings: Seydel 2010; grazing: di Bernardo et al. 2008.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from facegear.arrays import Array, ComplexArray, Integers
+from facegear.motion.branches.points import REAL_PAIR, BranchPoint, without_neutral
+from facegear.motion.branches.segment import Segment
+
+
+class Kind(StrEnum):
+    """Kinds of special points."""
+
+    FOLD = "fold"
+    DOUBLING = "period doubling"
+    TORUS = "Neimark-Sacker"
+    BRANCH = "branch point"
+    GRAZE = "graze"
+    NEUTRAL = "neutral body"
+
+
+@dataclass(frozen=True, eq=False)
+class Special:
+    """A special point of a branch.
+
+    Attributes
+    ----------
+    kind : Kind
+        Its kind.
+    point : BranchPoint
+        The motion at it.
+    multiplier : complex
+        The critical multiplier (NaN at a graze).
+    proof : str
+        Evidence that it is a special point.
+    after : float
+        Position along the branch: index of the point before plus the fraction of the way to the next.
+    meshes : tuple of int
+        Meshes that graze.
+    edge : int
+        Edge that they graze: 1 upper, -1 lower.
+    """
+
+    kind: Kind
+    point: BranchPoint
+    multiplier: complex
+    proof: str
+    after: float
+    meshes: tuple[int, ...] = ()
+    edge: int = 0
+
+
+def evidence(
+    kind: Kind, off: float, before: BranchPoint, point: BranchPoint, after: BranchPoint
+) -> tuple[complex, str]:
+    """Return the critical multiplier of a point between two neighbours, and the evidence for its kind.
+
+    Parameters
+    ----------
+    kind : Kind
+        Kind of the point.
+    off : float
+        Distance of a graze's extremum from the edge over the length scale, dimensionless.
+    before, point, after : BranchPoint
+        The point and its neighbours.
+
+    Returns
+    -------
+    complex
+        Floquet multiplier, dimensionless.
+    str
+        Evidence.
+    """
+    if kind is Kind.GRAZE:
+        return complex(np.nan), f"an extreme lies {abs(off):.1e} length scales from the edge"
+    if kind is Kind.FOLD:
+        mu = _nearest(point.multipliers, 1.0)
+        return mu, (
+            f"the speed component of the tangent goes from {before.tangent[-1]:+.1e} to "
+            f"{after.tangent[-1]:+.1e}; multiplier {mu.real:.9f}"
+        )
+    if kind is Kind.DOUBLING:
+        mu = _nearest(point.multipliers, -1.0)
+        return mu, f"a real multiplier is {mu.real:.9f}, goes through -1"
+    if kind is Kind.BRANCH:
+        mu = _nearest(point.multipliers, 1.0)
+        parity_change = "changes" if before.parity != after.parity else "keeps"
+        return (
+            mu,
+            f"multiplier {mu.real:.9f} at a tangent with {point.tangent[-1]:+.1e}; parity {parity_change}",
+        )
+    pair = point.pairs[np.argmin(np.abs(np.abs(point.pairs) - 1.0))] if point.pairs.size else complex(np.nan)
+    return complex(pair), f"modulus {abs(pair):.9f}, angle {np.degrees(np.angle(pair)):.6f} deg"
+
+
+def _nearest(values: ComplexArray, goal: float) -> complex:
+    return complex(values[np.argmin(np.abs(values - goal))])
+
+
+NEAR_CIRCLE = 0.4
+"""Multipliers farther from the unit circle at both ends of a stretch are left out."""
+WIDEST_TURN, NARROWEST_TURN = 0.6, 0.1
+"""Angles in rad over which the matrix is interpolated: a cubic errs there by 3e-4 and 3e-7."""
+UNDAMPED = 1e-6
+"""Multipliers nearer to the circle lie on it, as far as they are known: without damping all of them do, and
+closer looks tell no more."""
+CUBIC_ERROR = 1.0 / 384.0
+"""Error of a Hermite cubic over a stretch, in the fourth power of the angle that a multiplier turns."""
+MIN_LOOKS, MAX_LOOKS = 4, 32
+"""Smallest and largest number of matrices that are interpolated in a stretch."""
+SHORTEST_LENGTH = 1e-3
+"""Shorter stretches, in length scales, are not examined: ten times the step of the slopes."""
+TRUSTED = 0.25
+"""Fraction of a multiplier's approach to the circle, beyond that at the ends, that may be an error."""
+STEEP = 3.0
+"""Ratio of a matrix slope to the chord and the other end's slope above which it belongs to a graze and
+is left out.
+"""
+
+
+def may_change(segment: Segment, low: float, high: float) -> bool:
+    """Whether a stretch is long enough, and a multiplier at its ends near enough, to pass the unit circle.
+
+    Parameters
+    ----------
+    segment : Segment
+        Stretch of a branch between two points.
+    low, high : float
+        Ends of the stretch, as fractions of the chord.
+
+    Returns
+    -------
+    bool
+        False if the stretch need not be examined.
+    """
+    closest = min(_distance(segment.at(fraction)) for fraction in (low, high))
+    return segment.length * (high - low) >= SHORTEST_LENGTH and closest <= NEAR_CIRCLE
+
+
+def is_damped(segment: Segment, low: float, high: float) -> bool:
+    """Whether an end of a stretch has no multiplier on the unit circle; undamped motions have all of them
+    there.
+
+    Parameters
+    ----------
+    segment : Segment
+        Stretch of a branch between two points.
+    low, high : float
+        Ends of the stretch, as fractions of the chord.
+
+    Returns
+    -------
+    bool
+        True if the largest distance from the circle is above UNDAMPED.
+    """
+    return max(_distance(segment.at(fraction)) for fraction in (low, high)) > UNDAMPED
+
+
+def _distance(point: BranchPoint) -> float:
+    """Distance from the unit circle of the multiplier nearest to it."""
+    return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
+
+
+def hidden_change(segment: Segment, low: float, high: float) -> float | None:
+    """Find where stability may change in a stretch although its ends do not show it.
+
+    Parameters
+    ----------
+    segment : Segment
+        Stretch of a branch between two points.
+    low, high : float
+        Ends of the stretch, as fractions of the chord.
+
+    Returns
+    -------
+    float or None
+        Position, as a fraction of the chord, to examine, or None.
+    """
+    if not may_change(segment, low, high):
+        return None
+    ends, stretch = (segment.at(low), segment.at(high)), high - low
+    neutral = ends[0].linear.neutral.shape[1]
+    distances = [_distance(point) for point in ends]
+    start, end = (segment.matrix_slope(fraction, stretch) for fraction in (low, high))
+    turn = min(_turn(point, rate, neutral) for point, rate in zip(ends, (start, end), strict=True))
+    if turn > _widest_turn(max(distances)):
+        return 0.5 * (low + high)
+    # A band in which multipliers reach the circle is at least as wide, in their angle, as they were off it.
+    count = int(np.clip(np.ceil(turn / max(max(distances), 1e-3)), MIN_LOOKS, MAX_LOOKS))
+    looks = np.arange(1, count + 1) / (count + 1.0)
+    matrices = _interpolate([point.linear.matrix for point in ends], [start, end], looks)
+    values = without_neutral(np.linalg.eigvals(matrices), neutral)
+    error = CUBIC_ERROR * turn**4
+    outside = [np.array([point.outside]) for point in ends]
+    surely, perhaps = (
+        np.concatenate([outside[0], _outside(values, margin), outside[1]]) for margin in (error, -error)
+    )
+    look = _returning(surely, perhaps)
+    if look is None:
+        look = _approaching(values, distances, looks, error)
+    return None if look is None else float(low + looks[look] * stretch)
+
+
+def _widest_turn(distance: float) -> float:
+    """Angle over which a cubic errs by half the distance of the multipliers from the circle."""
+    if distance < UNDAMPED:
+        return WIDEST_TURN
+    return float(np.clip((distance / (2.0 * CUBIC_ERROR)) ** 0.25, NARROWEST_TURN, WIDEST_TURN))
+
+
+def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
+    """Largest change of a multiplier near the unit circle, by the change (2 n, 2 n) of the matrix."""
+    values, vectors = np.linalg.eig(point.linear.matrix)
+    try:
+        multiplier_changes = np.abs(np.einsum("ij,jk,ki->i", np.linalg.inv(vectors), change, vectors))
+    except np.linalg.LinAlgError:
+        return np.inf
+    off = np.abs(values - 1.0)
+    indices = np.argsort(off)[neutral:]
+    near = indices[np.abs(np.abs(values[indices]) - 1.0) <= NEAR_CIRCLE]
+    return float(multiplier_changes[near].max(initial=0.0))
+
+
+def _interpolate(matrices: list[Array], changes: list[Array], looks: Array) -> Array:
+    """Matrices (K, 2 n, 2 n) at shares (K,) of a stretch, from those at its ends and their slopes there."""
+    step = matrices[1] - matrices[0]
+    start, end = changes
+    sizes = [float(np.linalg.norm(slope)) for slope in (start, end, step)]
+    if sizes[0] > STEEP * max(sizes[1:]):
+        start = 2.0 * step - end
+    elif sizes[1] > STEEP * max(sizes[0], sizes[2]):
+        end = 2.0 * step - start
+    t = looks[:, None, None]
+    return matrices[0] + t * (start + t * (3.0 * step - 2.0 * start - end + t * (start + end - 2.0 * step)))
+
+
+def _outside(values: ComplexArray, margin: float) -> Integers:
+    """Count multipliers (K, m) as BranchPoint.outside does, but beyond 1 + margin, shape (K, 3)."""
+    size = np.abs(values)
+    beyond, real = size > 1.0 + margin, np.abs(values.imag) <= REAL_PAIR
+    classes = (real & (values.real > 0.0), real & (values.real < 0.0), ~real & (values.imag > 0.0))
+    return np.stack([(beyond & kind).sum(axis=1) for kind in classes], axis=1)
+
+
+def _returning(surely: Integers, perhaps: Integers) -> int | None:
+    """Return the number of the first look at which a count goes against the change from end to end, or None.
+
+    `surely` and `perhaps` are the counts (K + 2, 3) outside by more than, and up to, the error of the
+    matrices.
+    """
+    for sure, possible in zip(surely.T, perhaps.T, strict=True):
+        lower, upper = sorted((sure[0], sure[-1]))
+        beyond = np.flatnonzero((sure > upper) | (possible < lower))
+        if beyond.size:
+            return int(beyond[0]) - 1
+        inner, possible = sure[1:-1], possible[1:-1]
+        if sure[-1] > sure[0]:
+            against = np.flatnonzero(np.maximum.accumulate(inner)[:-1] > possible[1:])
+        else:
+            against = np.flatnonzero(np.minimum.accumulate(possible)[:-1] < inner[1:])
+        if against.size:
+            return int(against[0])
+    return None
+
+
+def _approaching(values: ComplexArray, ends: list[float], looks: Array, error: float) -> int | None:
+    """Return the look at which multipliers come so near to the circle that they may pass it, or None.
+
+    `ends` are their distances at both ends of the stretch.
+    """
+    nearest = np.abs(np.abs(values) - 1.0).min(axis=1)
+    before = ends[0] + looks * (ends[1] - ends[0])
+    gain = before - nearest
+    doubtful = (gain > error) & (nearest < np.maximum(error, TRUSTED * gain))
+    return int(np.argmin(np.where(doubtful, nearest, np.inf))) if doubtful.any() else None

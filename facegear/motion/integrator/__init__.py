@@ -1,0 +1,1 @@
+"""A system as the compiled kernels integrate it."""

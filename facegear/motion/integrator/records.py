@@ -1,0 +1,132 @@
+"""Records of a run: polynomials of its steps, extrema, integrals."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from facegear._kernels import motion
+from facegear.arrays import Array, Integers
+
+
+class Steps(NamedTuple):
+    """Polynomials of the first S steps of a run.
+
+    starts, lengths (S,): mesh phase in the step's period and length, rad. coordinates (S, order + 1, n) and
+    deflections (S, order + 1, m): ascending powers of the phase since the start of the step; states (S, m):
+    piece of the law that each contact is in, negative on the back flank.
+    """
+
+    starts: Array
+    lengths: Array
+    coordinates: Array
+    deflections: Array
+    states: Integers
+
+
+class Extrema(NamedTuple):
+    """Deflections where they change direction.
+
+    `values` (m, 2, K) are maxima, then minima, in the order in which they are met. `counts` (m, 2) include
+    those that have not been stored.
+    """
+
+    values: Array
+    counts: Integers
+
+
+def steps_of(log: motion.Log) -> Steps:
+    """Return the steps that a run of one machine has stored.
+
+    Parameters
+    ----------
+    log : motion.Log
+        Log of the run.
+
+    Returns
+    -------
+    Steps
+        Polynomials of the steps.
+    """
+    return Steps(*(getattr(log, f"step_{name}") for name in Steps._fields))
+
+
+def extrema_of(log: motion.Log) -> Extrema:
+    """Return the extrema that a run of one machine has stored.
+
+    Parameters
+    ----------
+    log : motion.Log
+        Log of the run.
+
+    Returns
+    -------
+    Extrema
+        Deflections where they change direction.
+    """
+    return Extrema(log.turning_points, log.turning_counts)
+
+
+class Sums(NamedTuple):
+    """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
+
+    Of meshes with two flanks the first `pairs` columns hold half the difference of the deflections of the two
+    from their edges, and the difference of their forces.
+
+    Attributes
+    ----------
+    origin : (n,)
+        About which coordinates are taken.
+    level : (m,)
+        About which deflections are taken.
+    coordinates : (B, n)
+        Of y.
+    products : (B, n, n)
+        Of y y^T, of which the upper half is filled.
+    deflections, squared : (B, m)
+        Of the deflections and their squares.
+    forces : (2, m)
+        Elastic mesh force over w^2 and its magnitude.
+    minimum, maximum : (m,)
+        Extremes of the deflections.
+    pull : (m,)
+        The smallest force of spring and damper of a contact over w^2, negative where flanks are pulled
+        together, zero where they never are, at the ends and inner nodes of the steps.
+    """
+
+    origin: Array
+    level: Array
+    coordinates: Array
+    products: Array
+    deflections: Array
+    squared: Array
+    forces: Array
+    minimum: Array
+    maximum: Array
+    pull: Array
+
+
+def sums_of(log: motion.Log, number: int, n: int, m: int) -> Sums:
+    """Return the integrals and extremes of one machine of a run.
+
+    Parameters
+    ----------
+    log : motion.Log
+        Log of the run.
+    number : int
+        Index of the machine in the run.
+    n : int
+        Number of coordinates.
+    m : int
+        Number of rows of meshes, flanks and rings.
+
+    Returns
+    -------
+    Sums
+        Integrals without batches where the run was made without.
+    """
+    if not len(log.coordinates):
+        return Sums(
+            *(np.zeros(shape) for shape in ((n,), (m,), (0, n), (0, n, n), (0, m), (0, m), (2, m))),
+            *(np.zeros(m) for _ in range(3)),
+        )
+    return Sums(*(getattr(log, name)[number] for name in Sums._fields))

@@ -1,0 +1,197 @@
+"""Equations of motion for the integrator (`facegear/_kernels/src/motion`): unit masses coupled by meshes.
+
+    y'' + damping y' + omega_squared y + coupling + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
+
+x = d - upper above `upper`, d - lower below `lower`, zero between (Kahraman and Singh 1990). e and load are
+Fourier series in the mesh phase s = 2 pi t / T, the law is any of facegear.meshing. Bearings with clearance
+are rings (rings.hpp). Friction adds forces in directions of its own, which are Fourier series times the law's
+forces (friction.hpp). One degree of freedom is a case like any other.
+"""
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+
+from facegear.arrays import Array, Integers
+from facegear.harmonics import Harmonics
+from facegear.machine.disturbances import MeshFriction, flank_ratios, friction_rows
+from facegear.machine.flanks import mesh_contacts
+from facegear.machine.machine import Machine, OpenFlanks
+from facegear.meshing.law import MeshLaw
+from facegear.meshing.linear import different
+from facegear.motion.integrator.reduction import Coupling, Reduction
+
+RING_ROWS = 3
+"""Rows of a bearing with clearance: x and y of the body, and one of zeros."""
+NO_ERROR = Harmonics(np.zeros(1), np.zeros(1))
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """n coordinates and m meshes; Fourier series are (rows, 2, harmonics + 1), sine part first.
+
+    The last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros.
+
+    Attributes
+    ----------
+    mesh_jacobian : (m, n)
+        Derivative of the mesh deflections.
+    omega_squared, damping : (n,)
+        1/s2 and 1/s.
+    mesh_damping, lower, upper : (m,)
+        A mesh with lower >= upper never opens.
+    law
+        Of the meshes, without those of rings.
+    error
+        Series of the kinds of mesh that differ in phase.
+    error_kind : (m,)
+        Which of them a mesh has.
+    load : (n, 2, harmonics + 1)
+        On the coordinates.
+    damping_when_open
+        Whether mesh dampers act on open meshes too.
+    scale
+        The length that tolerances mean.
+    two_flanks
+        The m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
+    push_only
+        Spring and damper of a contact together never pull, F >= 0, damping acts in contact only.
+    ring_stiffness, ring_clearance : (R,)
+        Of the rings.
+    ring_lag
+        Damping over stiffness of the rings, s.
+    rubbing
+        Friction of the flanks, or none.
+    coupling
+        Forces that couple coordinates beside the meshes, for a mesh frequency of 1 rad/s, or None; the
+        diagonal of its dampers is in `damping` and not in them.
+    """
+
+    mesh_jacobian: Array
+    omega_squared: Array
+    damping: Array
+    mesh_damping: Array
+    lower: Array
+    upper: Array
+    law: MeshLaw
+    error: Array
+    error_kind: Integers
+    load: Array
+    damping_when_open: bool
+    scale: float
+    two_flanks: bool = False
+    push_only: bool = False
+    ring_stiffness: Array = field(default_factory=lambda: np.zeros(0))
+    ring_clearance: Array = field(default_factory=lambda: np.zeros(0))
+    ring_lag: float = 0.0
+    rubbing: "FlankRubbing | None" = None
+    coupling: Coupling | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n."""
+        return self.omega_squared.size
+
+    @property
+    def contacts(self) -> int:
+        """Number of the m rows that are meshes or flanks, and not of rings."""
+        return len(self.mesh_jacobian) - 3 * self.ring_stiffness.size
+
+    @property
+    def pairs(self) -> int:
+        """Number of meshes with two flanks."""
+        return self.contacts // 2 if self.two_flanks else 0
+
+
+@dataclass(frozen=True, eq=False)
+class FlankRubbing:
+    """Forces of friction: each of K adds `ratio` times the law's force of a flank along a direction.
+
+    flank (K,) numbers of the flanks, ratios (K, 2, harmonics + 1) Fourier series, directions (K, n).
+    """
+
+    flank: Integers
+    ratios: Array
+    directions: Array
+
+
+def machine_system(machine: Machine, reduction: Reduction) -> System:
+    """Make the equations of motion of a machine in its reduced coordinates, without runouts and pitch
+    deviations.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    reduction : Reduction
+        Its reduced coordinates.
+
+    Returns
+    -------
+    System
+        Equations of motion.
+    """
+    contacts, rings = mesh_contacts(machine), machine.linear.rings
+    zeros = 3 * rings.body.size * [0.0]
+    error, error_kind = _kinds(machine.without_errors)
+    load = np.zeros((reduction.omega_squared.size, 2, 1))
+    load[:, 1, 0] = reduction.load
+    return System(
+        mesh_jacobian=reduction.mesh_jacobian,
+        omega_squared=reduction.omega_squared,
+        damping=reduction.damping,
+        mesh_damping=np.append(contacts.damping, zeros),
+        lower=np.append(contacts.lower, np.tile([0.0, 0.0, -np.inf], rings.body.size)),
+        upper=np.append(contacts.upper, zeros),
+        law=contacts.law,
+        error=error,
+        error_kind=error_kind,
+        load=load,
+        damping_when_open=machine.damping.open_flanks.is_damped_when_open,
+        scale=length_scale(machine),
+        two_flanks=machine.layout.kinematics.flanks_apart,
+        push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,
+        ring_stiffness=rings.stiffness,
+        ring_clearance=rings.clearance,
+        ring_lag=machine.linear.bearing_damping,
+        coupling=reduction.coupling and reduction.coupling.per_speed(machine.layout.pinion_teeth),
+        rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduction),
+    )
+
+
+@lru_cache(maxsize=8)
+def _kinds(machine: Machine) -> tuple[Array, Integers]:
+    """Different series of e(t) among contacts and rings, and the kind of each; shared, must not be
+    changed.
+    """
+    return different((*mesh_contacts(machine).error, *3 * machine.linear.rings.body.size * [NO_ERROR]))
+
+
+def _rubbing(machine: Machine, friction: MeshFriction, reduction: Reduction) -> FlankRubbing:
+    """Friction of all flanks in reduced coordinates, without directions in which nothing moves."""
+    rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
+    flank, part = np.nonzero(rows.any(axis=2))
+    ratios = flank_ratios(friction.ratios, machine.phases)
+    return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduction.basis)
+
+
+def length_scale(machine: Machine) -> float:
+    """Largest of the mesh deflection under the torques, the half backlash and the error's amplitude.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    float
+        Length that tolerances refer to, m.
+    """
+    layout = machine.layout
+    forces = np.abs(machine.torques[: len(layout.pinions)]) / layout.pinion_arm
+    mean_deflection = float(forces.max()) / machine.stiffness.mean
+    return max(
+        mean_deflection, float(machine.half_backlash.max()), float(machine.error.amplitudes[1:].sum()), 1e-12
+    )

@@ -1,0 +1,1 @@
+"""Steady states of a machine at one speed."""

@@ -1,0 +1,1 @@
+"""Speed sweeps and their jumps."""

@@ -1,0 +1,1 @@
+"""Elastic parts of a machine: gear bodies, the layer of their teeth, shafts."""

@@ -1,0 +1,371 @@
+"""A gear body solved in all orders: modes with the hub held, compliance below the teeth, reduction."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from scipy.interpolate import CubicSpline
+
+from facegear.arrays import Array
+from facegear.parts.body_mesh import BodyMesh, body_mesh
+from facegear.parts.elements import Elements
+from facegear.parts.matrices import BodyMatrices, body_matrices
+from facegear.parts.modes import FIRST_TRY, OrderModes, held_solver, order_modes
+from facegear.parts.reduced_body import ReducedBody
+from facegear.parts.section import Section, section_properties
+from facegear.parts.wheel import Patch
+from facegear.sparse.matrices import Solve
+
+
+def mean_compliance(body: BodyMatrices, solve: Solve) -> Array:
+    """Return the means <W>, <V>, <W / r> by unit loads on them, hub held.
+
+    Parameters
+    ----------
+    body : BodyMatrices
+        Matrices of the body.
+    solve : Solve
+        Function of `held_solver` for an order.
+
+    Returns
+    -------
+    (3, 3) array
+        m/N for <W> and <V>; each W / r divides by m.
+    """
+    means = np.stack(body.on_teeth)
+    return np.asarray(means @ solve(means.T))
+
+
+def slope_compliance(body: BodyMatrices, solve: Solve) -> Array:
+    """Return <W>, <V>, <W / r> and the slope dW/dr by a unit moment on that slope, hub held.
+
+    Parameters
+    ----------
+    body : BodyMatrices
+        Matrices of the body.
+    solve : Solve
+        Function of `held_solver` for an order.
+
+    Returns
+    -------
+    (1, 4) array
+        1/N and rad/(N m).
+    """
+    slope = body.slope_on_teeth
+    displacements = solve(slope)
+    return np.array([[*(mean @ displacements for mean in body.on_teeth), slope @ displacements]])
+
+
+def modal_compliance(modes: OrderModes) -> Array:
+    """Return the part of `mean_compliance` that modes hold.
+
+    Parameters
+    ----------
+    modes : OrderModes
+        The modes of one order.
+
+    Returns
+    -------
+    (3, 3) array
+        m/N for <W> and <V>; each W / r divides by m.
+    """
+    return np.asarray((modes.teeth / (2.0 * np.pi * modes.frequencies) ** 2) @ modes.teeth.T)
+
+
+def over_orders(computed_orders: Sequence[int], values: Array, last: int) -> Array:
+    """Interpolate the compliances of all orders from those of some orders.
+
+    They change smoothly with the order beyond the first few: cubic splines of n times the compliance.
+
+    Parameters
+    ----------
+    computed_orders : Sequence of int
+        The n orders, ascending from 0.
+    values : (n, i, j) array
+        Their compliances, m/N or any unit.
+    last : int
+        Last order.
+
+    Returns
+    -------
+    (last + 1, i, j) array
+        In the same unit.
+    """
+    orders = np.array(computed_orders)
+    result = np.empty((last + 1, *values.shape[1:]))
+    all_orders = np.arange(last + 1)
+    scale = np.maximum(orders, 1)[:, None, None]
+    smooth = CubicSpline(orders[1:], (scale * values)[1:])
+    result[1:] = smooth(all_orders[1:]) / all_orders[1:, None, None]
+    result[0] = values[0]
+    return result
+
+
+def flank_direction(pressure_angle: float, back: bool = False) -> Array:
+    """Return axial and tangential part of a unit flank force on the upper gear.
+
+    Parameters
+    ----------
+    pressure_angle : float
+        Pressure angle, rad.
+    back : bool
+        Whether it acts on the back flank.
+
+    Returns
+    -------
+    (2,) array
+        N for 1 N.
+    """
+    tangential = np.cos(pressure_angle)
+    return np.array([-np.sin(pressure_angle), -tangential if back else tangential])
+
+
+def influence(compliances: Array, angle: float, first: Array, second: Array) -> float:
+    """Return the motion against its own force at one flank by a unit force at another, hub held.
+
+    A = sum_n Re[e^(-i n psi) a1* H_n a2], a = (P_axial, -i P_round).
+
+    Parameters
+    ----------
+    compliances : (orders, 2, 2) array
+        H_n from order 0, m/N.
+    angle : float
+        Angle of the first flank past the second, rad.
+    first : (2,) array
+        Axial and tangential part of a unit force on the first flank, dimensionless.
+    second : (2,) array
+        The parts of a unit force on the second flank, dimensionless.
+
+    Returns
+    -------
+    float
+        m/N.
+    """
+    orders = np.arange(len(compliances))
+    a1, a2 = (np.array([axial, -1j * tangential]) for axial, tangential in (first, second))
+    terms = np.einsum("i,nij,j->n", a1.conj(), compliances, a2)
+    return float(np.real(np.exp(-1j * orders * angle) * terms).sum())
+
+
+STATIC_ORDERS = 60
+"""Largest order in a local load; those above add 2e-4 of a mesh's own compliance."""
+SMOOTH = 8
+"""Order up to which every compliance is computed; beyond, every order that is GROWTH times the one before."""
+GROWTH = 1.2
+"""Ratio of the orders beyond SMOOTH at which compliances are computed."""
+COARSE = (1, 25.0)
+"""Elements across the thinnest wall and refinement at corners of the mesh by which errors are estimated."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedBody:
+    """Modes and compliances of a body with its hub held.
+
+    Attributes
+    ----------
+    section, mesh, elements
+        Section, mesh and elements from which it was computed.
+    orders
+        Modes of the orders 0, 1, 2, ...
+    compliances : (orders, 3, 3)
+        Compliance of the means <W>, <V> and <W / r> below the teeth, from order 0 up to the last that a
+        load needs.
+    slopes : (orders, 1, 4)
+        <W>, <V>, <W / r> and slope dW/dr by a unit moment on that slope, 1/N and rad/(N m).
+    changes
+        Relative change (m,) of the frequencies of every order from a coarser mesh.
+    """
+
+    section: Section
+    mesh: BodyMesh
+    elements: Elements
+    orders: tuple[OrderModes, ...]
+    compliances: Array
+    slopes: Array
+    changes: tuple[Array, ...]
+
+    def static(self, patch: Patch) -> Array:
+        """Return the compliances H_n with the hub held.
+
+        Parameters
+        ----------
+        patch : Patch
+            Area on which a mesh presses.
+
+        Returns
+        -------
+        (orders, 2, 2) array
+            m/N.
+        """
+        return np.stack([patch.compliance(order, below) for order, below in enumerate(self.compliances)])
+
+    def leaning(self, patch: Patch) -> Array:
+        """Return W_p, V_p and slope by a unit moment on the slope, hub held.
+
+        Parameters
+        ----------
+        patch : Patch
+            Area on which a mesh presses.
+
+        Returns
+        -------
+        (orders, 3) array
+            1/N and rad/(N m).
+        """
+        return np.stack([patch.leaning(order, below[0]) for order, below in enumerate(self.slopes)])
+
+    def modal(self, patch: Patch) -> Array:
+        """Return the part of `static` that the modes hold.
+
+        Parameters
+        ----------
+        patch : Patch
+            Area on which a mesh presses.
+
+        Returns
+        -------
+        (orders, 2, 2) array
+            m/N.
+        """
+        result = np.zeros((len(self.compliances), 2, 2))
+        for modes in self.orders[: len(result)]:
+            result[modes.order] = patch.compliance(modes.order, modal_compliance(modes))
+        return result
+
+
+def solve_body(section: Section, max_frequency: float, last_order: int, teeth: int) -> SolvedBody:
+    """Compute modes and static compliances of a body.
+
+    Parameters
+    ----------
+    section : Section
+        The section.
+    max_frequency : float
+        Highest frequency of the modes, Hz.
+    last_order : int
+        Last order of the modes.
+    teeth : int
+        Number of teeth, from which follow the waves that a discrete ring can tell apart.
+
+    Returns
+    -------
+    SolvedBody
+        SI units.
+
+    Raises
+    ------
+    InvalidInput
+        If the section cannot be meshed.
+    NotConverged
+        If the modes are not found.
+    """
+    last_static = min(STATIC_ORDERS, (teeth - 1) // 2)
+    last_order = min(last_order, last_static)
+    mesh = body_mesh(section)
+    body = body_matrices(section, mesh)
+    modes: list[OrderModes] = []
+    compliances, slopes = {}, {}
+    for order in sorted({*range(last_order + 1), *sampled_orders(last_static)}):
+        solve = held_solver(body, order)
+        if order <= last_order:
+            expected_count = modes[-1].frequencies.size if modes else FIRST_TRY
+            modes.append(order_modes(body, order, max_frequency, solve, expected_count))
+        if order <= last_static:
+            compliances[order] = mean_compliance(body, solve)
+            slopes[order] = slope_compliance(body, solve)
+    return SolvedBody(
+        section=section,
+        mesh=mesh,
+        elements=body.elements,
+        orders=tuple(modes),
+        compliances=over_orders(tuple(compliances), np.stack(list(compliances.values())), last_static),
+        slopes=over_orders(tuple(slopes), np.stack(list(slopes.values())), last_static),
+        changes=_changes(section, modes),
+    )
+
+
+def sampled_orders(last: int) -> list[int]:
+    """Return the orders at which compliances are computed.
+
+    Parameters
+    ----------
+    last : int
+        Last order.
+
+    Returns
+    -------
+    list of int
+        From 0 to `last`.
+    """
+    orders = list(range(min(SMOOTH, last) + 1))
+    while orders[-1] < last:
+        orders.append(min(max(orders[-1] + 1, round(GROWTH * orders[-1])), last))
+    return orders
+
+
+def _changes(section: Section, fine: list[OrderModes]) -> tuple[Array, ...]:
+    """Return the relative change of the frequencies of each order from a coarser mesh."""
+    coarse = body_matrices(section, body_mesh(section, *COARSE))
+    changes = []
+    for modes in fine:
+        count = modes.frequencies.size
+        if not count:
+            changes.append(np.zeros(0))
+            continue
+        coarse_frequencies = order_modes(coarse, modes.order, np.inf, expected_count=count - 1).frequencies
+        changes.append(np.abs(coarse_frequencies - modes.frequencies) / modes.frequencies)
+    return tuple(changes)
+
+
+def reduced_body(
+    body: SolvedBody, patch: Patch, damping_ratio: float, stiffness_damping: float = 0.0
+) -> ReducedBody:
+    """Return the modes of a body and its static compliance below a mesh.
+
+    Parameters
+    ----------
+    body : SolvedBody
+        The solved body.
+    patch : Patch
+        Area on which a mesh presses.
+    damping_ratio : float
+        Damping ratio of every mode.
+    stiffness_damping : float
+        beta of D = beta K, s.
+
+    Returns
+    -------
+    ReducedBody
+        SI units.
+    """
+    orders = body.orders
+    order = np.concatenate([np.full(modes.frequencies.size, modes.order) for modes in orders])
+    zero = orders[0]
+    mass, _, _, moment = section_properties(body.section)
+    return ReducedBody(
+        order=order,
+        frequency=np.concatenate([modes.frequencies for modes in orders]),
+        coriolis=_blocks([modes.coriolis for modes in orders]),
+        stiffening=_blocks([modes.stress - modes.centrifugal for modes in orders]),
+        mesh=np.concatenate([patch.rows(modes.order, modes.teeth) for modes in orders], axis=1),
+        hub=np.concatenate([modes.hub for modes in orders], axis=1),
+        hub_spin=np.concatenate([modes.hub_spin for modes in orders]),
+        round=np.concatenate([np.round(zero.torsional), np.zeros(order.size - zero.frequencies.size)]),
+        static=body.static(patch),
+        damping_ratio=np.array(damping_ratio),
+        pitch_height=np.array(patch.height),
+        slope=np.concatenate([patch.factor(modes.order) * modes.slope for modes in orders]),
+        leaning=body.leaning(patch),
+        mass=np.array(mass),
+        moment=np.array(moment),
+        stiffness_damping=np.array(stiffness_damping),
+    )
+
+
+def _blocks(matrices: list[Array]) -> Array:
+    """Matrices along the diagonal; those without entries take no room."""
+    size = sum(len(matrix) for matrix in matrices)
+    return np.asarray(scipy.linalg.block_diag(*(m for m in matrices if m.size), np.zeros((0, 0)))).reshape(
+        size, size
+    )

@@ -1,0 +1,252 @@
+"""Section of a wheel from its hub, web and rim, the size of its mesh, and the patch that a mesh presses
+on."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput
+from facegear.parts.section import COINCIDENCE, distinct, thinnest
+
+
+@dataclass(frozen=True)
+class Hub:
+    """Rectangle from the bore to `outer_radius`, from height `back` to `front`."""
+
+    bore_radius: float
+    outer_radius: float
+    back: float
+    front: float
+
+
+@dataclass(frozen=True)
+class Web:
+    """Straight conical web from hub to rim.
+
+    Thicknesses are axial, at the hub and at the rim. `offset` is the height of its middle plane at the rim;
+    `slope` is how much that plane rises for each metre outwards, the tangent of the cone angle.
+    """
+
+    hub_thickness: float
+    rim_thickness: float
+    offset: float
+    slope: float
+
+
+@dataclass(frozen=True)
+class Rim:
+    """Rectangle from `inner_radius` to `outer_radius`, from height `back` to `front`, where the teeth are."""
+
+    inner_radius: float
+    outer_radius: float
+    back: float
+    front: float
+
+
+def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
+    """Return the corners of hub, web and rim.
+
+    Parameters
+    ----------
+    hub : Hub
+        The hub.
+    web : Web
+        The web.
+    rim : Rim
+        The rim.
+
+    Returns
+    -------
+    (n, 2) array
+        r and height, anticlockwise, m.
+
+    Raises
+    ------
+    InvalidInput
+        If they do not make one body: see `require_wheel`.
+    """
+    require_wheel(hub, web, rim)
+    (low_in, high_in), (low_out, high_out) = web_ends(hub, web, rim)
+    points = [
+        (hub.bore_radius, hub.back),
+        (hub.outer_radius, hub.back),
+        (hub.outer_radius, low_in),
+        (rim.inner_radius, low_out),
+        (rim.inner_radius, rim.back),
+        (rim.outer_radius, rim.back),
+        (rim.outer_radius, rim.front),
+        (rim.inner_radius, rim.front),
+        (rim.inner_radius, high_out),
+        (hub.outer_radius, high_in),
+        (hub.outer_radius, hub.front),
+        (hub.bore_radius, hub.front),
+    ]
+    return distinct(np.array(points))
+
+
+def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return lower and upper height of the web at the hub, and at the rim.
+
+    Parameters
+    ----------
+    hub : Hub
+        The hub.
+    web : Web
+        The web.
+    rim : Rim
+        The rim.
+
+    Returns
+    -------
+    pair of pairs of float
+        m.
+    """
+    middle = web.offset - web.slope * (rim.inner_radius - hub.outer_radius)
+    at_hub = (middle - 0.5 * web.hub_thickness, middle + 0.5 * web.hub_thickness)
+    at_rim = (web.offset - 0.5 * web.rim_thickness, web.offset + 0.5 * web.rim_thickness)
+    return at_hub, at_rim
+
+
+def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
+    """Raise InvalidInput unless the hub lies inside the rim and the web ends on both.
+
+    Parameters
+    ----------
+    hub : Hub
+        The hub.
+    web : Web
+        The web.
+    rim : Rim
+        The rim.
+    """
+    if hub.outer_radius >= rim.inner_radius:
+        limit = f"below `inner radius of the rim`, {1e3 * rim.inner_radius:g} mm"
+        raise InvalidInput("outer radius of the hub", 1e3 * hub.outer_radius, limit)
+    if hub.bore_radius >= hub.outer_radius:
+        limit = f"below `outer radius of the hub`, {1e3 * hub.outer_radius:g} mm"
+        raise InvalidInput("bore radius of the hub", 1e3 * hub.bore_radius, limit)
+    at_hub, at_rim = web_ends(hub, web, rim)
+    for part, body, (low, high) in (("hub", hub, at_hub), ("rim", rim, at_rim)):
+        if body.back >= body.front:
+            raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * body.front:g} mm")
+        if low < body.back - COINCIDENCE or high > body.front + COINCIDENCE:
+            limit = (
+                f"such that the web, {1e3 * low:.4g} to {1e3 * high:.4g} mm at the {part}, stays between the "
+                f"{part}'s faces, {1e3 * body.back:g} and {1e3 * body.front:g} mm"
+            )
+            raise InvalidInput("offset of the web", 1e3 * web.offset, limit)
+
+
+ACROSS = 2
+"""Elements across the thinnest wall."""
+LARGEST = 6_000
+"""Elements that a section may take, those at its corners left out."""
+
+
+def require_meshable(corners: Array, across: int = ACROSS) -> None:
+    """Raise InvalidInput for a section so thin that its mesh would have more elements than LARGEST.
+
+    Parameters
+    ----------
+    corners : (n, 2) array
+        Corners of the section, m.
+    across : int
+        Number of elements across the thinnest wall.
+    """
+    size = thinnest(corners) / across
+    next_corners = np.roll(corners, -1, axis=0)
+    area = abs(0.5 * float(np.sum(corners[:, 0] * next_corners[:, 1] - corners[:, 1] * next_corners[:, 0])))
+    if area > LARGEST * size**2:
+        min_thickness_mm = 1e3 * across * np.sqrt(area / LARGEST)
+        requirement = (
+            f"at least {min_thickness_mm:.3g} mm beside an area of {1e6 * area:.4g} mm2, to be meshed"
+        )
+        raise InvalidInput("thinnest wall of the section", float(f"{1e3 * size * across:.4g}"), requirement)
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Area on which a mesh presses on the body.
+
+    Attributes
+    ----------
+    height
+        Height of the pitch plane over height 0, m.
+    half_width
+        Half width of the raised cosine along the ring, rad.
+    """
+
+    height: float
+    half_width: float
+
+    def factor(self, order: int) -> float:
+        """Return c_n: the part of a wave of order n that the patch feels.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+
+        Returns
+        -------
+        float
+            Dimensionless, a factor.
+        """
+        angle = order * self.half_width
+        if abs(angle - np.pi) < 1e-6:
+            return 0.5
+        return float(np.sinc(angle / np.pi) / (1.0 - (angle / np.pi) ** 2))
+
+    def rows(self, order: int, teeth: Array) -> Array:
+        """Return W_p and V_p from the means below the teeth.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+        teeth : (3, ...) array
+            <W>, <V> (m) and <W / r> (m/m).
+
+        Returns
+        -------
+        (2, ...) array
+            m.
+        """
+        lever = order * self.height
+        return self.factor(order) * (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, lever]]) @ teeth)
+
+    def leaning(self, order: int, responses: Array) -> Array:
+        """Return W_p, V_p and slope by a unit moment on the slope.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+        responses : (4,) array
+            <W>, <V>, <W / r> and slope by a unit moment on the slope, 1/N and rad/(N m).
+
+        Returns
+        -------
+        (3,) array
+            1/N and rad/(N m).
+        """
+        factor = self.factor(order)
+        return factor * np.append(self.rows(order, responses[:3]), factor * responses[3])
+
+    def compliance(self, order: int, below: Array) -> Array:
+        """Return H_n: motions W_p and V_p by unit loads on them.
+
+        Parameters
+        ----------
+        order : int
+            The order n.
+        below : (3, 3) array
+            Compliance of the means <W>, <V> and <W / r>, m/N.
+
+        Returns
+        -------
+        (2, 2) array
+            m/N.
+        """
+        return self.rows(order, self.rows(order, below).T)

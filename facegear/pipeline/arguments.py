@@ -1,0 +1,384 @@
+"""Arguments of stages: what depends on the case, and plain values as the objects that annotations name."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, get_args, get_type_hints
+
+from facegear.build.notes import turns
+from facegear.build.tooth_pair import contact_setup
+from facegear.pipeline.asked import (
+    BODIES,
+    CONTACT,
+    DUTY_POINTS,
+    LOADING,
+    PAIR_SECTIONS,
+    friction,
+    machine,
+    single_teeth,
+)
+from facegear.pipeline.stage import Case, Wildcards
+from facegear.quantities import is_contact_quantity
+from facegear.schema.changes import GAPS, moves_pair, without
+from facegear.schema.tolerances import Design, Tolerances, chunks
+
+
+def typed_arguments(function: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Convert plain config values to the sections that a function's annotations ask for.
+
+    The values are those of a config that was validated. This is where plain values, as Snakemake hands them
+    from process to process, become objects again.
+
+    Parameters
+    ----------
+    function : Callable[..., Any]
+        Function whose annotations are read.
+    values : Mapping[str, Any]
+        Plain values by argument name.
+
+    Returns
+    -------
+    dict[str, Any]
+        The values; a mapping becomes a section where the annotation is a class with `of_config`.
+    """
+    hints = get_type_hints(function)
+    return {name: _section_of(hints.get(name), value) for name, value in values.items()}
+
+
+def _section_of(kind: Any, value: Any) -> Any:
+    """Return a mapping as the section that an annotation names, any other value as it is."""
+    if isinstance(value, Mapping):
+        for candidate in (kind, *get_args(kind)):
+            if hasattr(candidate, "of_config"):
+                return candidate.of_config(value)
+    return value
+
+
+def load_sharing_options(case: Case) -> Any:
+    """Return section load_sharing without the limit that only the report's verdict needs.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    Any
+        Plain values of the section.
+    """
+    return without(case.values["load_sharing"], "required_k_gamma")
+
+
+def turning_errors(case: Case) -> bool:
+    """Whether meshes are geometric, and runouts, pitch deviations, unlike teeth or torques excite them.
+
+    A pitch deviation counts if it is a cumulative one, a torque if it is periodic.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    if not machine(case) or case.values["transmission"]["mesh_kinematics"] != "geometric":
+        return False
+    section = case.values["transmission"]
+    return turns(section) or single_teeth(case) or bool(section["excitations"])
+
+
+def duty_torques(case: Case) -> list[float]:
+    """Return the torques of the duty cycle at which the machine stands on the load-sharing map.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list of float
+        N m in each mesh of an input, rising, each once: DUTY_POINTS of them where there are more.
+    """
+    section = case.values["strength"]
+    torques = sorted({load["torque_n_m"] for load in section["duty"] if load["hours"] > 0}) if section else []
+    if len(torques) <= DUTY_POINTS:
+        return torques
+    return [torques[i * (len(torques) - 1) // (DUTY_POINTS - 1)] for i in range(DUTY_POINTS)]
+
+
+def sweep_chunks(case: Case) -> list[Wildcards]:
+    """Return the chunks of the sweep, direction by direction.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list[Wildcards]
+        `direction` and `number` of each chunk.
+    """
+    sweep = case.values["dynamics"]["sweep"]
+    numbers = range(sweep["chunks"])
+    return [{"direction": name, "number": str(n)} for name in sweep["directions"] for n in numbers]
+
+
+def random_starts(case: Case) -> list[Wildcards]:
+    """Return the speeds at which random starts are made, by number.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list[Wildcards]
+        `number` of each speed.
+    """
+    speeds = case.values["branches"]["explore"]["speeds_rpm"]
+    return [{"number": str(number)} for number in range(max(len(speeds), 1))]
+
+
+def tolerance_chunks(design: "Design") -> Callable[[Case], list[Wildcards]]:
+    """Return a function that lists the chunks of a design of samples.
+
+    Parameters
+    ----------
+    design : 'Design'
+        `samples` or `indices`.
+
+    Returns
+    -------
+    Callable[[Case], list[Wildcards]]
+        Function of the case that returns `design`, `first` and `last` of each chunk, the numbers of its
+        samples.
+    """
+
+    def wildcards_of_chunks(case: Case) -> list[Wildcards]:
+        section = Tolerances.of_config(case.values["tolerances"])
+        sample_ranges = chunks(section, design)
+        return [{"design": design, "first": str(first), "last": str(last)} for first, last in sample_ranges]
+
+    return wildcards_of_chunks
+
+
+def islands(case: Case) -> list[Wildcards]:
+    """Return the islands of a search by their seeds.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list[Wildcards]
+        `seed` of each island.
+    """
+    return [{"seed": str(seed)} for seed in case.values["search"]["seeds"]]
+
+
+def both_bodies(case: Case) -> list[Wildcards]:
+    """Return wildcards for the pinion and for the face gear.
+
+    Parameters
+    ----------
+    case : Case
+        The case, without effect.
+
+    Returns
+    -------
+    list[Wildcards]
+        `body` of each.
+    """
+    return [{"body": body} for body in BODIES]
+
+
+def config_name(case: Case) -> str:
+    """Return the name of the config, which the points of its studies share.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    str
+        The name.
+    """
+    return str(case.values["case"]).partition("/")[0]
+
+
+def without_gaps(case: Case) -> Any:
+    """Return section tooth_pair without keys that move no node: cases that differ in gaps share their
+    compliance.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    Any
+        Plain values of the section.
+    """
+    section: Any = case.values["tooth_pair"]
+    for key in GAPS:
+        section = without(section, key)
+    return section
+
+
+def without_loads(case: Case) -> Any:
+    """Return section contact without LOADING, so that cases that differ in loads share their compliance.
+
+    Its cuts along the face are those that the contact ellipse of a crowned pair needs.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    Any
+        Plain values of the section.
+    """
+    section = {key: value for key, value in case.values["contact"].items() if key not in LOADING}
+    pinion, gear = (case.values["tooth_pair"][body] for body in BODIES)
+    modifications = (pinion, gear and gear["modifications"])
+    has_grids = any(body and body["flanks"]["grids"] for body in (pinion, gear))
+    if not has_grids and not any(
+        modification and modification["lead_crowning"]["amount_um"] for modification in modifications
+    ):
+        return section
+    plan = contact_setup(**typed_arguments(contact_setup, {key: case.values[key] for key in CONTACT})).plan
+    return {**section, "refinement": {**section["refinement"], "width": plan.refinement.width}}
+
+
+def gears_met(case: Case) -> list[str]:
+    """Return the face gears of the machine, as `geometry.flank_errors` names them: one alone is the upper.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    list[str]
+        `upper`, or `upper` and `lower`.
+    """
+    machine: Any = case.values["transmission"]
+    return ["upper"] if machine is None or len(machine["face_gears"]) == 1 else ["upper", "lower"]
+
+
+def sampled_contact(case: Case) -> bool:
+    """Whether samples have a contact analysis of their own: asked for, or a cause moves the tooth pair.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    section = case.values["tolerances"]
+    return section is not None and (section["tooth_contact"] or moves_pair(_causes(section)))
+
+
+def lubricated_samples(case: Case) -> dict[str, Any] | None:
+    """Return sections lubrication and tooth_pair where samples of tolerances are lubricated.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    dict[str, Any] | None
+        Plain values of both sections by name, None without section lubrication.
+    """
+    if case.values["lubrication"] is None:
+        return None
+    return {key: case.values[key] for key in ("lubrication", "tooth_pair")}
+
+
+def stored_rubbing(case: Case) -> bool:
+    """Whether samples take friction from the stored contact, because they have no contact of their own.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    return friction(case) and not sampled_contact(case)
+
+
+def searched_contact(case: Case) -> bool:
+    """Whether designs have a contact analysis of their own.
+
+    They have one where a variable, or a cause of a percentile, moves the tooth pair, or where an objective
+    needs a quantity of the contact.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+
+    Returns
+    -------
+    bool
+        True if so.
+    """
+    section = case.values["search"]
+    if section is None:
+        return False
+    goals = [*section["objectives"], *section["constraints"]]
+    robust = any(goal["percentile"] is not None for goal in goals)
+    keys = [key for variable in section["variables"] for key in variable["sets"]]
+    needs_contact = any(
+        is_contact_quantity(text) for goal in goals for text in (*goal["largest_of"], *goal["smallest_of"])
+    )
+    return needs_contact or moves_pair(keys) or (robust and moves_pair(_causes(case.values["tolerances"])))
+
+
+def pair_where(has_contact: Callable[[Case], bool]) -> Callable[[Case], dict[str, Any] | None]:
+    """Return a function that gives the sections of the tooth pair where machines among many are put into
+    contact.
+
+    Parameters
+    ----------
+    has_contact : Callable[[Case], bool]
+        Condition of the case.
+
+    Returns
+    -------
+    Callable[[Case], dict[str, Any] | None]
+        Function of the case that returns plain values of PAIR_SECTIONS by name, None where the condition
+        fails.
+    """
+
+    def sections(case: Case) -> dict[str, Any] | None:
+        return {key: case.values[key] for key in PAIR_SECTIONS} if has_contact(case) else None
+
+    return sections
+
+
+def _causes(section: Mapping[str, Any] | None) -> list[str]:
+    return [key for cause in (section or {}).get("causes", ()) for key in cause["moves"]]

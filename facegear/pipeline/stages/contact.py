@@ -1,0 +1,387 @@
+"""Stages of loaded contact: contact, its studies, single teeth, mesh law, stiffness."""
+
+from collections.abc import Mapping, Sequence
+from math import lcm
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Arrays
+from facegear.bodies import BODIES, Body
+from facegear.build.plans import contact_plan, stiffness_request
+from facegear.build.tooth_pair import ToothPair, pair, pair_design, single_teeth
+from facegear.contact.analysis import ContactAnalysis, contact_analysis
+from facegear.contact.gear_flank import contact_model, from_arrays
+from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
+from facegear.contact.options import ContactOptions
+from facegear.contact.pattern import FILLET_CONTACT
+from facegear.contact.position import LoadedPosition
+from facegear.contact.summary import StudiedContact, study_table
+from facegear.contact.teeth import ContactSide
+from facegear.contact.tooth_errors import loaded_curves, located_range, orders, pair_gaps, unloaded_errors
+from facegear.errors import FacegearError
+from facegear.meshing.fitted_law import FlankContacts, fitted_tables, law_arrays, law_torques, level_table
+from facegear.meshing.stiffness_curve import load_table
+from facegear.meshing.stiffness_request import StiffnessRequest
+from facegear.meshing.stiffness_source import load_dependence as table_of
+from facegear.meshing.stiffness_source import stiffness_from_contact, stiffness_given
+from facegear.number_format import count_noun, format_number
+from facegear.pipeline.outcome import Outcome
+from facegear.schema.contact import Contact
+from facegear.schema.stiffness import MeshStiffness
+from facegear.teeth.placement import FLANKS, distinct_pairs, pair_at
+
+
+def contact(
+    pinion: Arrays,
+    face_gear: Arrays,
+    tooth_pair: ToothPair,
+    contact: Contact,
+) -> Outcome:
+    """Solve the loaded tooth contact at every position and torque.
+
+    All parts but `by_flank` and `loads` belong to the drive flank of the upper gear. The other flanks are
+    solved where assembly errors make them differ from it, on the same compliances.
+
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`.
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
+    """
+    teeth, plan = pair(tooth_pair), contact_plan(contact)
+    flanks = from_arrays(pinion), from_arrays(face_gear)
+    analysis = contact_analysis(teeth.design, teeth.materials, flanks, plan)
+    return Outcome(contents(analysis), _mean_stiffness(analysis.ltca[0]))
+
+
+def contents(analysis: ContactAnalysis) -> dict[str, Any]:
+    """Return the parts of stage contact.
+
+    Parameters
+    ----------
+    analysis : ContactAnalysis
+        Solved contact of all flanks that differ.
+
+    Returns
+    -------
+    dict[str, Any]
+        Tables `ltca`, `by_torque` and `by_flank`, arrays `pressure` and `loads`.
+    """
+    return {
+        "ltca": analysis.ltca[0],
+        "by_torque": analysis.by_torque[0],
+        "by_flank": analysis.by_flank,
+        "pressure": analysis.pressure[0],
+        "loads": analysis.loads,
+    }
+
+
+def _mean_stiffness(table: pd.DataFrame) -> str:
+    """Mean stiffness, or why there is none, and the share of the fillets from FILLET_CONTACT on."""
+    mean, row = table["k_average_n_per_m"].mean(skipna=False), table.loc[table["fillet_share"].idxmax()]
+    text = f"mean stiffness {format_number(1e-6 * mean)} N/um"
+    if np.isnan(mean):
+        depth = table["interference_um"].max()
+        text = f"no mean stiffness as the teeth interfere, by {depth:.3g} um along the line of action"
+    if row["fillet_share"] < FILLET_CONTACT:
+        return text
+    fillet_text = f"{100 * row['fillet_share']:.2g} % of the torque at {row['torque_n_m']:g} N m"
+    return f"{text}, fillets carry up to {fillet_text}, kept out of pressure and root stress"
+
+
+def contact_studies(
+    points: Sequence[Sequence[str]],
+    pair: Sequence[Mapping[str, Any]],
+    ltca: Sequence[pd.DataFrame],
+    by_torque: Sequence[pd.DataFrame],
+    pressure: Sequence[Arrays],
+) -> Outcome:
+    """Collect the contact of the studies' cases side by side.
+
+    Parameters
+    ----------
+    points : Sequence[Sequence[str]]
+        Study, point and label of each case, the machine itself first.
+    pair : Sequence[Mapping[str, Any]]
+        Record `pair` of stage geometry of each case.
+    ltca : Sequence[pd.DataFrame]
+        Table of stage contact of each case.
+    by_torque : Sequence[pd.DataFrame]
+        Table of stage contact of each case.
+    pressure : Sequence[Arrays]
+        Arrays of stage contact of each case.
+
+    Returns
+    -------
+    Outcome
+        `table`, a row for each case and torque.
+    """
+    cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
+    table = study_table(cases)
+    shift = table.loc[table["path_shift_mm"].abs().idxmax()]
+    largest = f"{shift['path_shift_mm']:.2f} mm ({shift['label']})"
+    return Outcome(
+        {"table": table}, f"{count_noun(len(cases) - 1, 'case')}; largest shift of the contact path {largest}"
+    )
+
+
+ORDERS = 6
+
+
+def tooth_errors(
+    pinion: Arrays, face_gear: Arrays, loads: Arrays, tooth_pair: ToothPair, torque: float
+) -> Outcome:
+    """Compute how teeth that deviate from the others of their gear disturb the mesh over the hunting cycle.
+
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    loads : Arrays
+        Arrays `loads` of stage contact.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    torque : float
+        Torque on the pinion, N m.
+
+    Returns
+    -------
+    Outcome
+        Arrays `curves`: what the teeth of each gear add to the transmission error under the torque, over one
+        of its turns. Table `orders`: amplitudes of the first orders of either gear, with and without load.
+
+    Raises
+    ------
+    NotConverged
+        Where contact does not converge.
+    """
+    sides: dict[Body, ContactSide] = {
+        "pinion": from_arrays(pinion).side,
+        "face_gear": from_arrays(face_gear).side,
+    }
+    design = pair_design(tooth_pair)
+    curves: dict[str, Array] = {}
+    for number, side in enumerate(FLANKS):
+        teeth = single_teeth(tooth_pair, side)
+        flank_pair = pair_at(design, "upper", side)
+        if side == "back":  # seen in a mirror, teeth come into mesh the other way round
+            teeth = {body: (tooth_indices[0], *tooth_indices[:0:-1]) for body, tooth_indices in teeth.items()}
+        variant = int(loads["flank_variant"][0, number])
+        curve_by_body = loaded_curves(flank_pair, sides, loads, torque, teeth, variant)
+        curves |= {f"{body}_{side}_m": curve_by_body[body] for body in BODIES}
+    teeth = single_teeth(tooth_pair, "drive")
+    turns = [len(tooth_indices) if len(set(tooth_indices)) > 1 else 1 for tooth_indices in teeth.values()]
+    positions = np.unique(loads["position"])
+    unloaded_curve = unloaded_errors(pair_gaps(design, positions), teeth, lcm(*turns))
+    peak_to_peak, left = located_range(design, teeth, unloaded_curve)
+    table = pd.DataFrame(
+        [
+            {"body": body, "order": order + 1, "unloaded_um": 1e6 * free, "loaded_um": 1e6 * loaded_amplitude}
+            for body in BODIES
+            if len(set(teeth[body])) > 1
+            for order, (free, loaded_amplitude) in enumerate(
+                zip(
+                    orders(unloaded_curve, len(teeth[body]), ORDERS),
+                    _curve_orders(curves[f"{body}_drive_m"]),
+                    strict=True,
+                )
+            )
+        ],
+        columns=["body", "order", "unloaded_um", "loaded_um"],
+    )
+    loaded_range = sum(np.ptp(curves[f"{body}_drive_m"]) for body in BODIES)
+    summary = (
+        f"tooth to tooth {1e6 * peak_to_peak:.4g} um (within {1e6 * left:.1g}) without load over "
+        f"{count_noun(len(unloaded_curve), 'mesh cycle')}, {1e6 * loaded_range:.3g} um at {torque:g} N m"
+    )
+    return Outcome({"curves": curves, "orders": table}, summary)
+
+
+def _curve_orders(curve: Array) -> Array:
+    return (2.0 * np.abs(np.fft.rfft(curve)) / curve.size)[1 : ORDERS + 1]
+
+
+DEFAULT = ContactOptions()
+
+
+def mesh_law(
+    pinion: Arrays,
+    face_gear: Arrays,
+    ltca: pd.DataFrame,
+    tooth_pair: ToothPair,
+    contact: Contact,
+    mesh_stiffness: MeshStiffness,
+) -> Outcome:
+    """Compute the load-dependent mesh law of every flank that errors make differ from the others.
+
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    ltca : pd.DataFrame
+        Table of stage contact, which decides by how much source fem_scaled scales.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    contact : Contact
+        Section `contact` of the config.
+    mesh_stiffness : MeshStiffness
+        Section `mesh_stiffness` of the config.
+
+    Returns
+    -------
+    Outcome
+        Arrays `law` and table `levels`.
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
+    FacegearError
+        Where teeth interfere.
+    """
+    plan = contact_plan(contact)
+    request = stiffness_request(mesh_stiffness)
+    design = pair(tooth_pair).design
+    model = contact_model(design, from_arrays(pinion), from_arrays(face_gear))
+    different, numbers = distinct_pairs(design)
+    scale = _scale(ltca, request)
+    largest = plan.torques[-1] / scale
+    contacts = [
+        flank_contacts(model.of(variant), plan.positions, largest, plan.options) for variant in different
+    ]
+    tables, errors = fitted_tables(contacts, request.order)
+    tables = [table.scale(scale) for table in tables]
+    levels = level_table(tables, errors, numbers, design.pinion_base_radius)
+    rms, largest = (100.0 * max(getattr(error, name) for error in errors) for name in ("rms", "largest"))
+    summary = (
+        f"{count_noun(tables[0].levels.size - 1, 'level')} up to {1e6 * tables[0].levels[-1]:.3g} um, "
+        f"{tables[0].forces.shape[2] - 1} orders, times {scale:.4f}; against contact between the levels "
+        f"{rms:.2g} % rms, {largest:.2g} % at most of the largest mean force"
+    )
+    return Outcome({"law": law_arrays(tables, numbers), "levels": levels}, summary)
+
+
+def flank_contacts(
+    model: ContactModel, positions: int, largest: float, options: ContactOptions = DEFAULT
+) -> FlankContacts:
+    """Solve the contact of a flank over a pitch, for a law up to the largest torque.
+
+    Parameters
+    ----------
+    model : ContactModel
+        Contact model of the flank.
+    positions : int
+        Number of even positions of a pitch.
+    largest : float
+        Largest torque of the law, N m.
+    options : ContactOptions
+        Options of the contact solver.
+
+    Returns
+    -------
+    FlankContacts
+        Forces (torques,) in N, approach in m and local stiffness in N/m (torques, positions).
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
+    FacegearError
+        Where teeth interfere.
+    """
+    torques = law_torques(largest)
+    contacts = loaded_contact(model, even_positions(positions), torques, options)
+    if any(np.isnan(contact.k_average) for contact in contacts):
+        raise FacegearError("mesh law: there is none, as the teeth interfere")
+
+    def by_torque(values: list[float]) -> np.ndarray:
+        return np.array(values).reshape(positions, len(torques)).T
+
+    def approach(contact: LoadedPosition) -> float:
+        return contact.ste - contact.unloaded_error
+
+    return FlankContacts(
+        np.array(torques) / model.design.pinion_base_radius,
+        by_torque([approach(contact) for contact in contacts]),
+        by_torque([contact.k_local for contact in contacts]),
+    )
+
+
+def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
+    """Factor of source fem_scaled on forces and slopes, equal to the factor of stage stiffness on k."""
+    if request.source != "fem_scaled":
+        return 1.0
+    assert request.mean is not None
+    assert request.torque is not None
+    return request.mean / float(load_table(ltca).at(request.torque, request.definition).mean())
+
+
+def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -> Outcome:
+    """Compute the mesh stiffness over a pitch, from the contact table or from the config's harmonics.
+
+    Parameters
+    ----------
+    mesh_stiffness : MeshStiffness
+        Section `mesh_stiffness` of the config.
+    ltca : pd.DataFrame or None
+        Table `ltca` of stage contact, None for the harmonics of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `tvms`, `harmonics` and `spectrum`.
+
+    Raises
+    ------
+    ConfigError
+        For a load outside those solved and for a k(t) that is not positive throughout.
+    """
+    request = stiffness_request(mesh_stiffness)
+    result = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request)
+    content = {
+        "tvms": result.curve,
+        "harmonics": result.harmonics,
+        "spectrum": result.spectrum,
+    }
+    return Outcome(content, result.summary)
+
+
+def load_dependence(ltca: pd.DataFrame) -> Outcome:
+    """Compute mean and variation of the mesh stiffness at every torque.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+
+    Returns
+    -------
+    Outcome
+        `table`.
+    """
+    table = table_of(load_table(ltca))
+    means = table.loc[table["definition"] == "average", "mean_n_per_m"]
+    least, largest = (format_number(1e-6 * mean) for mean in (means.min(), means.max()))
+    summary = f"mean average stiffness {least} to {largest} N/um over the torques solved"
+    return Outcome({"table": table}, summary)

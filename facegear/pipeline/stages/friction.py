@@ -1,0 +1,314 @@
+"""Stages of friction: loss, heat and film of the pair, and of the machine."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Arrays
+from facegear.build.lubrication import contacts_of, limits_of, lubrication_of, map_speeds
+from facegear.build.machine import MachineInputs
+from facegear.build.tooth_pair import ToothPair, pair
+from facegear.errors import ConfigError
+from facegear.lubrication import machine_loss as losses
+from facegear.lubrication.assessment import (
+    by_torque_table,
+    excitation_table,
+    limit_table,
+    local_arrays,
+    map_table,
+    position_table,
+)
+from facegear.lubrication.columns import FRICTION_STUDY_COLUMNS
+from facegear.lubrication.machine_loss import LoadedPair, MeshLoads
+from facegear.lubrication.machine_tables import (
+    MachineState,
+    body_heat_table,
+    machine_loss_table,
+    mesh_loss_table,
+)
+from facegear.machine.machine import Machine
+from facegear.machine.ratings import compute_ratings, mesh_table
+from facegear.motion.response_tables import losses_in_motion
+from facegear.number_format import count_noun
+from facegear.pipeline.outcome import Outcome
+from facegear.schema.lubrication import LubricationSection
+from facegear.schema.strength import Strength
+
+
+def lubrication(
+    ltca: pd.DataFrame,
+    pressure: Arrays,
+    tooth_pair: ToothPair,
+    lubrication: LubricationSection | None,
+    speed_rpm: float,
+) -> Outcome:
+    """Compute sliding, loss, heat, film and scuffing from stored contact.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    lubrication : LubricationSection or None
+        Section `lubrication` of the config, None if it has none.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `by_torque`, `positions`, `limits`, `map` and `excitation`, arrays `local`.
+
+    Raises
+    ------
+    ConfigError
+        Without section lubrication.
+    TooHot
+        Where a body passes the oil's flash point.
+    NotConverged
+        Where bulk temperatures do not settle.
+    """
+    section = lubrication_section(lubrication)
+    pair_under_load = loaded_pair(ltca, pressure, section, tooth_pair)
+    limits, speed = limits_of(section), speed_rpm * pi / 30
+    states = pair_under_load.states(speed)
+    table = by_torque_table(pair_under_load, states, speed, limits)
+    content = {
+        "by_torque": table,
+        "positions": position_table(pair_under_load, states),
+        "limits": limit_table(pair_under_load, states),
+        "map": map_table(pair_under_load, map_speeds(section, speed_rpm)),
+        "local": local_arrays(pair_under_load, states, speed),
+        "excitation": excitation_table(pair_under_load, states, pair(tooth_pair).design),
+    }
+    last = table.iloc[-1]
+    summary = (
+        f"mesh efficiency {last['efficiency']:.4f} at {last['torque_n_m']:g} N m and {speed_rpm:g} rpm, "
+        f"contact up to {last['contact_temperature_c']:.0f} C ({last['friction_model']} friction)"
+    )
+    return Outcome(content, summary)
+
+
+def lubrication_section(section: LubricationSection | None) -> LubricationSection:
+    """Return section `lubrication`, or refuse a config without it.
+
+    Parameters
+    ----------
+    section : LubricationSection or None
+        The section, None if the config has none.
+
+    Returns
+    -------
+    LubricationSection
+        The section.
+
+    Raises
+    ------
+    ConfigError
+        Without section lubrication.
+    """
+    if section is None:
+        raise ConfigError("lubrication", None, "given, for friction and heat")
+    return section
+
+
+def loaded_pair(
+    ltca: pd.DataFrame,
+    pressure: Arrays,
+    section: LubricationSection,
+    tooth_pair: ToothPair,
+) -> LoadedPair:
+    """Return the stored contact of the pair with its sliding, by torque.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+    section : LubricationSection
+        Section `lubrication` of the config.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+
+    Returns
+    -------
+    LoadedPair
+        The loaded and lubricated pair.
+    """
+    return LoadedPair(contacts_of(ltca, pressure, tooth_pair), lubrication_of(section, tooth_pair))
+
+
+def friction_studies(
+    points: Sequence[Sequence[str]], meshes: Sequence[pd.DataFrame], machine: Sequence[pd.DataFrame]
+) -> Outcome:
+    """Collect loss, temperature and film of the studies' cases side by side.
+
+    Parameters
+    ----------
+    points : Sequence[Sequence[str]]
+        Study, point and label of each case, the machine itself first.
+    meshes : Sequence[pd.DataFrame]
+        Table `meshes` of stage machine_loss of each case.
+    machine : Sequence[pd.DataFrame]
+        Table `machine` of stage machine_loss of each case.
+
+    Returns
+    -------
+    Outcome
+        `table`, a row for each case at its nominal load: loss of the machine, and its hottest mesh.
+    """
+    rows = []
+    for point, by_mesh, whole in zip(points, meshes, machine, strict=True):
+        nominal = whole[whole["bin"] == 0].iloc[0]
+        at_rest = by_mesh[by_mesh["bin"] == 0]
+        hottest = at_rest.loc[at_rest["contact_temperature_c"].idxmax()]
+        of_machine = [nominal[key] for key in ("speed_rpm", "power_in_w", "loss_w", "loss_percent")]
+        of_mesh = [hottest[key] for key in ("mesh", "contact_temperature_c", "scuffing_safety")]
+        is_within_torques = bool(at_rest["within_torques_solved"].all())
+        rows.append((*point, *of_machine, *of_mesh, at_rest["smallest_film_ratio"].min(), is_within_torques))
+    table = pd.DataFrame(rows, columns=list(FRICTION_STUDY_COLUMNS))
+    min_loss, max_loss = table["loss_percent"].min(), table["loss_percent"].max()
+    return Outcome(
+        {"table": table},
+        f"{count_noun(len(table) - 1, 'case')}; loss from {min_loss:.3f} to {max_loss:.3f} %",
+    )
+
+
+def machine_loss(
+    ltca: pd.DataFrame,
+    pressure: Arrays,
+    inputs: MachineInputs,
+    duty_loads: pd.DataFrame | None = None,
+    response: pd.DataFrame | None = None,
+    *,
+    tooth_pair: ToothPair,
+    lubrication: LubricationSection | None,
+    strength: Strength | None,
+    speed_rpm: float,
+) -> Outcome:
+    """Compute loss and heat at the nominal load at rest and in every bin of the duty cycle.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+    inputs : MachineInputs
+        What the machine is built from.
+    duty_loads : pd.DataFrame or None
+        Table of stage duty_loads, where the loads of the duty cycle are the machine's.
+    response : pd.DataFrame or None
+        Table of stage dynamics_response, where friction acts on the motion.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    lubrication : LubricationSection or None
+        Section `lubrication` of the config, None if it has none.
+    strength : Strength or None
+        Section `strength` of the config, None if it has none.
+    speed_rpm : float
+        Nominal speed of the pinions, rpm.
+
+    Returns
+    -------
+    Outcome
+        Tables `meshes`, `bodies` and `machine`.
+
+    Raises
+    ------
+    ConfigError
+        Without section lubrication.
+    TooHot
+        Where a body passes the oil's flash point.
+    NotConverged
+        Where bulk temperatures do not settle.
+    """
+    section = lubrication_section(lubrication)
+    pair_under_load = loaded_pair(ltca, pressure, section, tooth_pair)
+    states = list(_states(pair_under_load, replace(inputs, friction=None), duty_loads, strength, speed_rpm))
+    content = {
+        "meshes": mesh_loss_table(states, pair_under_load.lubrication, limits_of(section)),
+        "bodies": body_heat_table(states, pair_under_load.lubrication),
+        "machine": machine_loss_table(states),
+    }
+    if inputs.friction is not None and response is not None:
+        rest = content["meshes"]["bin"] == 0
+        losses_by_mesh = losses_in_motion(inputs.build(), response, speed_rpm)
+        content["meshes"].loc[rest, "loss_in_motion_w"] = (
+            content["meshes"].loc[rest, "mesh"].map(losses_by_mesh)
+        )
+    whole, hottest = content["machine"].iloc[0], content["meshes"]["contact_temperature_c"].max()
+    beyond = content["meshes"].loc[~content["meshes"]["within_torques_solved"], "bin"].unique()
+    summary = (
+        f"the machine loses {whole['loss_w']:.0f} W, {whole['loss_percent']:.3f} % of its power; "
+        f"contact up to {hottest:.0f} C"
+    )
+    if beyond.size:
+        bins = ", ".join(str(number) for number in beyond)
+        summary = f"{summary}; bins with loads outside the torques of the contact analysis: {bins}"
+    return Outcome(content, summary)
+
+
+def _states(
+    pair_under_load: LoadedPair,
+    inputs: MachineInputs,
+    duty_loads: pd.DataFrame | None,
+    strength: Strength | None,
+    speed_rpm: float,
+) -> Iterator[MachineState]:
+    """The machine at its nominal load at rest, then in every bin of its duty cycle."""
+    machine = inputs.build()
+    table = mesh_table(machine, speed_rpm)
+    table = table[table["flank"] != "open"]
+    torque = table["pinion_torque_n_m"].abs().to_numpy()
+    names = table["mesh"].tolist(), table["flank"].tolist()
+    yield _state(pair_under_load, machine, (0, np.nan, speed_rpm), names, torque, torque)
+    if duty_loads is None or strength is None:
+        return
+    for number, load in enumerate(strength.duty, start=1):
+        rows = duty_loads[duty_loads["bin"] == number]
+        machine = inputs.at_torque(load.torque_n_m).build()
+        arm = machine.layout.pinion_arm
+        mean = arm * rows["mean_force_n"].to_numpy()
+        peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()
+        names = rows["mesh"].tolist(), rows["flank"].tolist()
+        yield _state(pair_under_load, machine, (number, load.hours, load.speed_rpm), names, mean, peak)
+
+
+def _state(
+    pair_under_load: LoadedPair,
+    machine: Machine,
+    key: tuple[int, float, float],
+    names: tuple[list[str], list[str]],
+    torque: Array,
+    peak: Array,
+) -> MachineState:
+    layout = machine.layout
+    number, hours, speed_rpm = key
+    of = [layout.meshes[layout.mesh_names.index(name)] for name in names[0]]
+    loads = MeshLoads(
+        pinion=np.array([i for i, _ in of]),
+        gear=np.array([g for _, g in of]),
+        torque=torque,
+        peak=np.maximum(peak, torque),
+        pinions=len(layout.pinions),
+        bodies=len(layout.bodies),
+    )
+    return MachineState(
+        bin=number,
+        hours=hours,
+        speed_rpm=speed_rpm,
+        power_in=compute_ratings(machine, speed_rpm).power_in,
+        meshes=names[0],
+        flanks=names[1],
+        bodies=layout.body_names,
+        loads=loads,
+        losses=losses.machine_loss(pair_under_load, loads, speed_rpm * pi / 30),
+    )

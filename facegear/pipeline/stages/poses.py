@@ -1,0 +1,317 @@
+"""Stages of poses: contact over pose, and where forces put the teeth."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import AnyArray, Array, Arrays
+from facegear.bodies import BODIES
+from facegear.build.plans import contact_plan
+from facegear.build.tooth_pair import ToothPair, pair
+from facegear.contact.analysis import PosedContact, met_contacts, posed_contacts
+from facegear.contact.gear_flank import GearFlank, from_arrays
+from facegear.contact.nodal_loads import REACTION_COLUMNS
+from facegear.contact.pattern import pattern_margins
+from facegear.errors import FacegearError
+from facegear.machine.machine import Machine
+from facegear.machine.poses.fixed_point import OperatingPose, carrying_pairs
+from facegear.machine.poses.fixed_point import operating_pose as fixed_point
+from facegear.machine.poses.posed_flanks import assembly_errors
+from facegear.machine.poses.surface import QUANTITIES, RADIUS, STIFFNESS, Nodes, PoseSurface, surface_nodes
+from facegear.machine.poses.tables import (
+    PERCENT,
+    REACTIONS,
+    gear_reactions,
+    hardest_mesh,
+    leaving_text,
+    load_tables,
+    margin_text,
+    mesh_table,
+    with_margins,
+)
+from facegear.machine.static_gears import at_rest
+from facegear.machine.statics import mean_equilibrium
+from facegear.number_format import count_noun
+from facegear.pipeline.outcome import Outcome
+from facegear.schema.contact import Contact
+from facegear.strength.passage import passing
+from facegear.strength.root_stress import largest_tension
+from facegear.teeth.conjugate import PairNumbers, contact_at, without_modifications
+from facegear.teeth.design import PairDesign
+
+
+def pose_surface(
+    pinion: Arrays,
+    face_gear: Arrays,
+    tooth_pair: ToothPair,
+    contact: Contact,
+    torque_n_m: float,
+    tilting: bool,
+) -> Outcome:
+    """Solve the contact of the pair at every node of the pose surface.
+
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    contact : Contact
+        Section `contact` of the config.
+    torque_n_m : float
+        Torque at which the machine takes its mesh stiffness, N m.
+    tilting : bool
+        Whether the machine's bodies tilt or bend.
+
+    Returns
+    -------
+    Outcome
+        Arrays `surface`, tables `nodes` and `errors`.
+
+    Raises
+    ------
+    NotConverged
+        Naming position and torque.
+    FacegearError
+        Where teeth interfere.
+    """
+    teeth, plan = pair(tooth_pair), contact_plan(contact)
+    design, flanks = teeth.design, (from_arrays(pinion), from_arrays(face_gear))
+    numbers = PairNumbers.of_design(design)
+    nodes = surface_nodes(numbers, design.assembly, plan.torques[-1], tilting)
+    plan = replace(plan, torques=tuple(nodes.torques.tolist()))
+    assemblies = nodes.assemblies(numbers)
+    rows = [
+        quantities(design, flanks, posed_contact)
+        for posed_contact in posed_contacts(design, teeth.materials, flanks, plan, assemblies)
+    ]
+    shape = len(nodes.angles), len(nodes.paths), len(nodes.torques)
+    values = {name: np.array([row[name] for row in rows]).reshape(shape) for name in rows[0]}
+    surface = PoseSurface(numbers, design.assembly, nodes, values, torque_n_m)
+    errors = error_table(surface)
+    worst = errors[errors["quantity"] == STIFFNESS]["largest"].max()
+    summary = (
+        f"{count_noun(len(assemblies), 'pose')}, paths {1e3 * nodes.paths[0]:.1f} to "
+        f"{1e3 * nodes.paths[-1]:.1f} mm, up to "
+        f"{nodes.torques[-1]:g} N m; stiffness misses a node that is left out by at most {100 * worst:.2g} %"
+    )
+    table = node_table(nodes, values, [errors.offset for errors in assemblies])
+    return Outcome({"surface": surface.arrays, "nodes": table, "errors": errors}, summary)
+
+
+def quantities(
+    design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed: PosedContact
+) -> dict[str, Array]:
+    """Return the QUANTITIES that are known of one pose.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Design of the pair.
+    flanks : tuple[GearFlank, GearFlank]
+        Compliance of the pinion and of the face gear.
+    posed : PosedContact
+        Contact at the pose.
+
+    Returns
+    -------
+    dict[str, Array]
+        (torques,) each, by name, in SI units. A quantity that is not positive at every torque is left out.
+
+    Raises
+    ------
+    FacegearError
+        Where teeth interfere.
+    """
+    values = {
+        STIFFNESS: _stiffness(design, posed),
+        "ste_peak_to_peak_m": 1e-6 * posed.by_torque["ste_peak_to_peak_um"].to_numpy(),
+        "pressure_pa": 1e6 * posed.by_torque["pressure_mpa"].to_numpy(),
+        RADIUS: 1e-3 * posed.by_torque["path_radius_mm"].to_numpy(),
+    }
+    torques = posed.by_torque["torque_n_m"].to_numpy()
+    for body, flank in zip(BODIES, flanks, strict=True):
+        if flank.gauges is not None:
+            largest = largest_tension(passing(body, flank, posed.loads))
+            values[f"{body}_root_pa"] = np.array([largest(float(torque)) for torque in torques])
+    return {name: values[name] for name in QUANTITIES if name in values and (values[name] > 0.0).all()}
+
+
+def _stiffness(design: PairDesign, posed_contact: PosedContact) -> Array:
+    """Mean average stiffness (t,), counted from the contact of flanks extended beyond their ends."""
+    table = posed_contact.ltca
+    unloaded_error = 1e-6 * table["unloaded_ste_um"]
+    exact = contact_at(PairNumbers.of_design(design), posed_contact.errors)
+    if exact is not None and without_modifications(design):
+        unloaded_error = -exact.transmission_error
+    force = table["torque_n_m"] / design.pinion_base_radius
+    approach = 1e-6 * table["ste_um"] - unloaded_error
+    if not (approach > 0.0).all():
+        position = f"offset {1e6 * posed_contact.errors.offset:.4g} um"
+        raise FacegearError(f"pose_surface: there is no stiffness at {position}, as the teeth interfere")
+    stiffness = force / approach
+    return np.asarray(stiffness.groupby(table["torque_n_m"]).mean())
+
+
+def node_table(nodes: Nodes, values: Mapping[str, Array], offsets: list[float]) -> pd.DataFrame:
+    """Tabulate the nodes.
+
+    Parameters
+    ----------
+    nodes : Nodes
+        Nodes of the surface.
+    values : Mapping[str, Array]
+        Values (angles, paths, torques) at the nodes by quantity, in SI units.
+    offsets : list[float]
+        Offset of each pose, um.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each node.
+    """
+    angle, path, torque = np.meshgrid(nodes.angles, nodes.paths, nodes.torques, indexing="ij")
+    coordinates = {
+        "shaft_angle_error_deg": np.degrees(angle).ravel(),
+        "offset_um": np.repeat(1e6 * np.array(offsets), len(nodes.torques)),
+        "unloaded_path_mm": 1e3 * path.ravel(),
+        "torque_n_m": torque.ravel(),
+    }
+    return pd.DataFrame({**coordinates, **{name: part.ravel() for name, part in values.items()}})
+
+
+def error_table(surface: PoseSurface) -> pd.DataFrame:
+    """Tabulate the error of the surface at nodes that are left out of it.
+
+    Parameters
+    ----------
+    surface : PoseSurface
+        The surface.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each quantity and coordinate.
+    """
+    rows = [
+        (name, over, float(np.abs(differences).max()), float(np.sqrt(np.mean(differences**2))))
+        for name in surface.values
+        for over, differences in surface.left_out(name).items()
+    ]
+    return pd.DataFrame(rows, columns=["quantity", "left_out", "largest", "rms"])
+
+
+def operating_pose(
+    surface: Arrays,
+    pinion: Arrays,
+    face_gear: Arrays,
+    machine: Machine,
+    tooth_pair: ToothPair,
+    contact: Contact,
+) -> Outcome:
+    """Solve the contact at the pose of every mesh under its load.
+
+    `meshes` tells how far each contact pattern stays from every edge. The arrays are the contact of the mesh
+    that its pose changes most, in the form of stage contact's pressures; `check` compares them with the
+    surface.
+
+    Parameters
+    ----------
+    surface : Arrays
+        Arrays of stage pose_surface.
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    machine : Machine
+        The machine.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `meshes`, `loads`, `leaving` and `check`, arrays `as_assembled` and `running`.
+
+    Raises
+    ------
+    InvalidInput
+        For a pose outside the surface.
+    NotConverged
+        Where equilibrium or contact does not converge.
+    """
+    pose_surface = PoseSurface.of_arrays(surface)
+    result = fixed_point(machine, pose_surface)
+    before = mean_equilibrium(at_rest(machine)).forces[0]
+    meshes = mesh_table(machine, pose_surface, result, before)
+    loads, leaving_loads = load_tables(machine, pose_surface)
+    worst = hardest_mesh(meshes)
+    pair_here, plan = pair(tooth_pair), replace(contact_plan(contact), root_stress=False)
+    design, pairs = pair_here.design, carrying_pairs(result, pair_here.design)
+    worst_design = pairs.designs[pairs.numbers[worst]]
+    rest = assembly_errors(machine, pose_surface, worst, bool(result.forces[worst] < 0.0))
+    torque, torques = float(result.torque[worst]), [torque or plan.torques[0] for torque in pairs.torques]
+    requests = [(replace(worst_design, assembly=rest), (torque or plan.torques[0],))]
+    requests += [(design_at_pose, (at,)) for design_at_pose, at in zip(pairs.designs, torques, strict=True)]
+    flanks = from_arrays(pinion), from_arrays(face_gear)
+    assembled_there, *running = met_contacts(design, pair_here.materials, flanks, plan, requests)
+    contacts = [assembled_there, running[pairs.numbers[worst]]]
+    check = _check(
+        pose_surface, result, worst, [_direct(design, flanks, posed_contact) for posed_contact in contacts]
+    )
+    margins = [
+        pattern_margins(posed_contact.pressure, design_at_pose, at)
+        for posed_contact, design_at_pose, at in zip(running, pairs.designs, torques, strict=True)
+    ]
+    known_margins = [None if margin is None else asdict(margin) for margin in margins]
+    meshes = with_margins(meshes, [known_margins[number] for number in pairs.numbers])
+    content = {
+        "meshes": meshes,
+        "loads": loads,
+        "leaving": leaving_loads,
+        "check": check,
+        "as_assembled": contacts[0].pressure,
+        "running": contacts[1].pressure,
+    }
+    return Outcome(content, _summary(meshes, leaving_loads, worst, result))
+
+
+def _direct(
+    design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
+) -> dict[str, AnyArray]:
+    """Quantities of a surface, and REACTIONS of the touching loads."""
+    table = posed_contact.reactions[list(REACTION_COLUMNS[1:])].to_numpy()
+    return {**quantities(design, flanks, posed_contact), **dict(zip(REACTIONS, table.T, strict=True))}
+
+
+def _check(
+    surface: PoseSurface, result: OperatingPose, mesh: int, direct: list[dict[str, AnyArray]]
+) -> pd.DataFrame:
+    """Compare the surface at the pose of a mesh with the contact solved there, a row for each quantity.
+
+    Reactions of the surface follow from its energy; beside them stand the reactions of the touching loads.
+    """
+    at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
+    at_pose = {name: surface.at(name, *at) for name in surface.values if name in direct[1]}
+    at_pose |= dict(zip(REACTIONS, gear_reactions(result, surface)[mesh].tolist(), strict=True))
+    rows = [
+        (name, value, float(direct[1][name][0]), float(direct[0][name][0])) for name, value in at_pose.items()
+    ]
+    table = pd.DataFrame(rows, columns=["quantity", "surface", "direct", "direct_as_assembled"])
+    return table.assign(surface_error_percent=100.0 * (table["surface"] / table["direct"] - 1.0))
+
+
+def _summary(meshes: pd.DataFrame, leaving_loads: pd.DataFrame, worst: int, result: OperatingPose) -> str:
+    row = meshes.iloc[worst]
+    text = (
+        f"converged in {result.steps} steps; contact of {row['mesh']} at {row['unloaded_path_mm']:.2f} mm, "
+        f"its stiffness changes by {row[PERCENT[STIFFNESS]]:.1f} %"
+    )
+    text = f"{text}; {margin_text(meshes)}"
+    return f"{text}; {leaving_text(leaving_loads)}" if len(leaving_loads) else text

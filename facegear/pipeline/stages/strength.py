@@ -1,0 +1,376 @@
+"""Stages of strength: root stress at rest and in motion, safety and life."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Arrays
+from facegear.bodies import BODIES, Body
+from facegear.build.lumped_model import stiffness_phases
+from facegear.build.machine import MachineInputs
+from facegear.build.machine_layout import ToothNumbers
+from facegear.build.strength import duty_bins, rating_request
+from facegear.build.tooth_pair import ContactSetup, ToothPair, contact_setup, pair
+from facegear.contact.gear_flank import GearFlank, from_arrays
+from facegear.errors import ConfigError, FacegearError
+from facegear.machine.flanks import flank_places
+from facegear.machine.static_gears import at_rest
+from facegear.machine.statics import static_equilibrium
+from facegear.motion.between_samples import finer
+from facegear.motion.response_tables import shows_a_period
+from facegear.pipeline.outcome import Outcome
+from facegear.schema.contact import Contact, Mesh
+from facegear.schema.strength import Strength
+from facegear.schema.transmission import Transmission
+from facegear.strength.dynamic_stress import branch_forces, dynamic_stress_table, stress_table, swept_forces
+from facegear.strength.flank_contacts import flank_contacts, met_by, worst_pressure, worst_root
+from facegear.strength.passage import coarser_roots, face_error, passing
+from facegear.strength.posed_contacts import duty_contact_poses, mesh_contacts, posed_of
+from facegear.strength.rating import FailureRating, rate
+from facegear.strength.rating_tables import (
+    curve_table,
+    damage_table,
+    rating_table,
+    safety_table,
+    with_scuffing,
+)
+from facegear.strength.root_stress import RootStress
+from facegear.strength.root_tables import root_arrays, root_by_flank, root_tables
+from facegear.teeth.analysis import section_contact_ratio
+from facegear.ties import first_largest_row
+
+
+def root_stress(
+    pinion: Arrays,
+    face_gear: Arrays,
+    loads: Arrays,
+    tooth_pair: ToothPair,
+    mesh: Mesh,
+    contact: Contact,
+) -> Outcome:
+    """Compute the root stress of both gears on their way through the mesh.
+
+    Tables `summary`, `passage` and `along_face` belong to the drive flank of the upper gear. The error of the
+    planes along the face is measured with twice their distance; it is not known where such a mesh cannot be
+    made or its contact not be solved.
+
+    Parameters
+    ----------
+    pinion : Arrays
+        Compliance of the pinion's flank, arrays of stage compliance.
+    face_gear : Arrays
+        Compliance of the face gear's flank, arrays of stage compliance.
+    loads : Arrays
+        Arrays `loads` of stage contact.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    mesh : Mesh
+        Section `mesh` of the config.
+    contact : Contact
+        Section `contact` of the config.
+
+    Returns
+    -------
+    Outcome
+        Tables `summary`, `passage`, `along_face` and `by_flank`, arrays `stress`.
+
+    Raises
+    ------
+    ConfigError
+        Where the fillets carry no gauges.
+    """
+    flanks: dict[Body, GearFlank] = {"pinion": from_arrays(pinion), "face_gear": from_arrays(face_gear)}
+    roots = {body: passing(body, flank, loads) for body, flank in flanks.items()}
+    errors = _face_errors(contact_setup(tooth_pair, mesh, contact), roots)
+    content = root_contents(flanks, loads, errors)
+    return Outcome(content, _summary(content["by_flank"]))
+
+
+def root_contents(
+    flanks: Mapping[Body, GearFlank], loads: Arrays, face_errors: Mapping[Body, float]
+) -> dict[str, Any]:
+    """Return the parts of the stage.
+
+    Parameters
+    ----------
+    flanks : Mapping[Body, GearFlank]
+        Compliance of both bodies.
+    loads : Arrays
+        Arrays `loads` of stage contact.
+    face_errors : Mapping[Body, float]
+        Error of each body by its planes along the face, relative.
+
+    Returns
+    -------
+    dict[str, Any]
+        Tables `summary`, `passage`, `along_face` and `by_flank`, arrays `stress`.
+    """
+    numbers = loads["flank_variant"]
+    variants: list[dict[str, RootStress]] = [
+        {body: _passing(body, flank, loads, variant, face_errors[body]) for body, flank in flanks.items()}
+        for variant in range(int(numbers.max()) + 1)
+    ]
+    positions: dict[str, Array] = {
+        body: flank.gauges.position for body, flank in flanks.items() if flank.gauges
+    }
+    return {
+        **root_tables(variants[0]),
+        "by_flank": root_by_flank(variants, numbers),
+        "stress": root_arrays(variants, numbers, positions),
+    }
+
+
+def _passing(body: Body, flank: GearFlank, loads: Arrays, variant: int, face_error: float) -> RootStress:
+    root = passing(body, flank, loads, variant)
+    return replace(root, error=root.error + face_error)
+
+
+def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[Body, float]:
+    """Relative errors of the planes along the face; nan where they are not known."""
+    pair = setup.pair
+    materials = {body: pair.material(body) for body in BODIES}
+    try:
+        coarser = coarser_roots(pair.design, materials, setup.sizes, setup.plan, roots)
+    except FacegearError:
+        return dict.fromkeys(BODIES, np.nan)
+    return {body: face_error(roots[body], coarser[body]) for body in BODIES}
+
+
+def _summary(table: pd.DataFrame) -> str:
+    worst = table[table["torque_n_m"] == table["torque_n_m"].max()]
+    peaks = worst.groupby("body", sort=False)["largest_mpa"].max()
+    text = ", ".join(f"{body.replace('_', ' ')} {peak:.0f} MPa" for body, peak in peaks.items())
+    return f"largest root stress at {worst['torque_n_m'].iloc[0]:g} N m: {text}"
+
+
+FINER = 8
+"""Instants for each sample of the history at which force and stress are looked at."""
+
+
+def dynamic_root_stress(
+    response: pd.DataFrame,
+    summary: pd.DataFrame,
+    stress: Arrays,
+    by_flank: pd.DataFrame,
+    tooth_pair: ToothPair,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    gears: Sequence[str],
+    posed: Arrays | None = None,
+    posed_by_torque: pd.DataFrame | None = None,
+    poses: Arrays | None = None,
+) -> Outcome:
+    """Compute the root stress of every mesh at the nominal speed.
+
+    Parameters
+    ----------
+    response : pd.DataFrame
+        Table of stage dynamics_response.
+    summary : pd.DataFrame
+        Table of stage dynamics_response.
+    stress : Arrays
+        Arrays of stage root_stress.
+    by_flank : pd.DataFrame
+        Table `by_flank` of stage contact.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    transmission : Transmission
+        Section `transmission` of the config.
+    teeth : ToothNumbers
+        Numbers of teeth.
+    gears : Sequence[str]
+        Face gears of the machine, `upper` alone or `upper` and `lower`; a mesh has the stress of its own gear
+        and flank.
+    posed : Arrays or None
+        Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
+    posed_by_torque : pd.DataFrame or None
+        Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
+    poses : Arrays or None
+        Arrays of stage pose_surface at the pose of the machine's mean torques, None unless its forces pose
+        the teeth.
+
+    Returns
+    -------
+    Outcome
+        Table `dynamic_stress`.
+    """
+    phases = stiffness_phases(transmission, teeth)
+    forces, positions, whole = {}, {}, shows_a_period(response, summary)
+    for number, (mesh, rows) in enumerate(response.groupby("mesh", sort=False)):
+        cycles, force = rows["mesh_cycle"].to_numpy(), rows["elastic_force_n"].to_numpy()
+        force = finer(force, FINER, whole)
+        between = (cycles[1] - cycles[0]) * np.arange(FINER) / FINER
+        drive, back = flank_places(phases[[number]], (cycles[:, None] + between).ravel()).T
+        forces[str(mesh)], positions[str(mesh)] = force, np.where(force < 0.0, back, drive)
+    contacts = flank_contacts(stress, by_flank)
+    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    contacts_by_mesh = mesh_contacts(forces, contacts, gears, at_pose)
+    table = dynamic_stress_table(
+        forces, positions, pair(tooth_pair).design.pinion_base_radius, contacts_by_mesh
+    )
+    worst = first_largest_row(table, "face_gear_running_mpa")
+    summary = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
+    return Outcome({"dynamic_stress": table}, f"{summary}, pinion {worst['pinion_running_mpa']:.0f} MPa")
+
+
+def stress_over_speed(
+    sweep: pd.DataFrame,
+    stress: Arrays,
+    by_flank: pd.DataFrame,
+    inputs: MachineInputs,
+    tooth_pair: ToothPair,
+    gears: Sequence[str],
+    branches: pd.DataFrame | None = None,
+    posed: Arrays | None = None,
+    posed_by_torque: pd.DataFrame | None = None,
+) -> Outcome:
+    """Compute root stress and pressure over the sweep and, where there are any, the branches.
+
+    Parameters
+    ----------
+    sweep : pd.DataFrame
+        Table of stage dynamics_sweep.
+    stress : Arrays
+        Arrays of stage root_stress.
+    by_flank : pd.DataFrame
+        Table `by_flank` of stage contact.
+    inputs : MachineInputs
+        What the machine is built from.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    gears : Sequence[str]
+        Face gears of the machine, `upper` alone or `upper` and `lower`; a mesh has the stress of its own
+        gear, on the flank where it is more.
+    branches : pd.DataFrame or None
+        Table of stage branches, None if there is none.
+    posed : Arrays or None
+        Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
+    posed_by_torque : pd.DataFrame or None
+        Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
+
+    Returns
+    -------
+    Outcome
+        Table `stress_over_speed`.
+
+    Raises
+    ------
+    NotConverged
+        Where the equilibrium at standstill does not converge.
+    """
+    machine = inputs.build()
+    at_standstill = float(np.abs(static_equilibrium(at_rest(machine)).forces).max())
+    forces = swept_forces(sweep)
+    if branches is not None:
+        forces_of_branches = branch_forces(branches, np.unique(forces["speed_rpm"]))
+        forces = pd.concat([forces, forces_of_branches], ignore_index=True)
+    contacts = flank_contacts(stress, by_flank)
+    at_pose = posed_of(contacts, gears, posed, posed_by_torque, inputs.poses)
+    by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
+    contacts_by_mesh = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
+    radius = pair(tooth_pair).design.pinion_base_radius
+    table = stress_table(forces, at_standstill, radius, contacts_by_mesh)
+    worst = first_largest_row(table, "largest_force_n")
+    position = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"
+    stresses = f"face gear {worst['face_gear_mpa']:.0f} MPa, pinion {worst['pinion_mpa']:.0f} MPa"
+    summary = f"largest dynamic factor {worst['dynamic_factor']:.2f} at {position}: {stresses}"
+    return Outcome({"stress_over_speed": table}, summary)
+
+
+def rating(
+    stress: Arrays,
+    by_flank: pd.DataFrame,
+    duty_spectrum: pd.DataFrame | None = None,
+    mesh_losses: pd.DataFrame | None = None,
+    posed: Arrays | None = None,
+    posed_by_torque: pd.DataFrame | None = None,
+    poses: Arrays | None = None,
+    duty_poses: pd.DataFrame | None = None,
+    *,
+    tooth_pair: ToothPair,
+    strength: Strength | None,
+    gears: Sequence[str],
+) -> Outcome:
+    """Compute safety, damage and life from the root stress.
+
+    Every flank is judged by the contacts that it has with the `gears` of the machine.
+
+    Parameters
+    ----------
+    stress : Arrays
+        Arrays of stage root_stress.
+    by_flank : pd.DataFrame
+        Table `by_flank` of stage contact.
+    duty_spectrum : pd.DataFrame or None
+        Table of stage duty_loads, where the loads are the machine's.
+    mesh_losses : pd.DataFrame or None
+        Table `meshes` of stage machine_loss, where its flanks are lubricated.
+    posed : Arrays or None
+        Arrays `contacts` of stage posed_stress, None unless the machine's forces pose the teeth.
+    posed_by_torque : pd.DataFrame or None
+        Table `by_torque` of stage posed_stress, None unless the machine's forces pose the teeth.
+    poses : Arrays or None
+        Arrays of stage pose_surface, None unless the machine's forces pose the teeth.
+    duty_poses : pd.DataFrame or None
+        Table of stage duty_poses, None unless the machine's forces pose the teeth.
+    tooth_pair : ToothPair
+        Section `tooth_pair` of the config.
+    strength : Strength or None
+        Section `strength` of the config, None if it has none.
+    gears : Sequence[str]
+        Face gears of the machine, `upper` alone or `upper` and `lower`.
+
+    Returns
+    -------
+    Outcome
+        Tables `safety`, `rating`, `damage` and `curves`.
+
+    Raises
+    ------
+    ConfigError
+        Without section strength.
+    """
+    if strength is None:
+        raise ConfigError("strength", None, "given for safety and life")
+    design = pair(tooth_pair).design
+    request, bins = rating_request(strength, design, duty_spectrum), duty_bins(strength)
+    contacts = flank_contacts(stress, by_flank)
+    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    stands = None if duty_poses is None else duty_contact_poses(duty_poses)
+    ratings: list[FailureRating] = []
+    tables: dict[str, list[pd.DataFrame]] = {}
+    for duty in request.duty:
+        of_loads = None
+        if at_pose is None or stands is None:
+            flank_contacts_met = [contacts[flank] for flank in met_by(duty, gears)]
+        else:
+            flank_contacts_met = [at_pose.contacts[mesh][flank] for mesh, flank in at_pose.met_by(duty)]
+            of_loads = at_pose.stresses(duty, stands)
+        roots, pressure = (
+            {duty.gear: worst_root(duty, flank_contacts_met)},
+            worst_pressure(flank_contacts_met),
+        )
+        alone = replace(request, duty=(duty,))
+        ways = rate(design, section_contact_ratio(design), roots, pressure, alone, of_loads)
+        ratings += ways
+        for name, table in {
+            "safety": safety_table(ways, pressure),
+            "rating": rating_table(ways, pressure, roots),
+            "damage": damage_table(ways, bins, pressure),
+            "curves": curve_table(ways),
+        }.items():
+            tables.setdefault(name, []).append(table)
+    content = {name: pd.concat(parts, ignore_index=True) for name, parts in tables.items()}
+    if duty_spectrum is not None and mesh_losses is not None:
+        content["safety"] = with_scuffing(content["safety"], duty_spectrum, mesh_losses)
+    worst = min(ratings, key=lambda flank_rating: flank_rating.safety / flank_rating.required_safety)
+    flank_name = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
+    text = f"{flank_name}, {worst.failure} ({worst.method})"
+    return Outcome(
+        content,
+        f"nearest to its limit: {text}, safety {worst.safety:.2f} "
+        f"where {worst.required_safety:g} is required",
+    )

@@ -1,0 +1,1 @@
+"""Two folders of results side by side: what moved, by how much, and why it may have moved."""

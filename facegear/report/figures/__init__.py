@@ -1,0 +1,1 @@
+"""Figures as data, drawn from stored results alone, chapter by chapter."""

@@ -1,0 +1,155 @@
+"""Figures that compare: designs of a search, two runs laid over each other."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from facegear.report.figures.colours import BLACK, BLUE, RED, colour_of, grey
+from facegear.report.figures.description import Axis, Figure, Panel
+from facegear.report.figures.marks import Curve, Line, LineStyle, Look
+
+
+def curves_compared(
+    old: pd.DataFrame, new: pd.DataFrame, x: str, y: str, labels: tuple[str, str], title: str
+) -> Figure:
+    """Above both curves `y` over `x`, below what the new one has more; both tables are of one series.
+
+    `labels`: `x` and `y` in words, with their units in brackets.
+    """
+    joined_curves = old[[x, y]].merge(new[[x, y]], on=x, suffixes=("_old", "_new"))
+    (across, across_unit), (up, unit) = (split_label(label) for label in labels)
+    top = [
+        Curve(old[x], old[y], "old", BLUE, width=2.2, opacity=0.6),
+        Curve(new[x], new[y], "new", BLACK, "dash", width=1.1),
+    ]
+    bottom: list[Curve | Line] = [
+        Line(0.0, "y", colour=grey(0.6)),
+        Curve(joined_curves[x], joined_curves[f"{y}_new"] - joined_curves[f"{y}_old"], colour=RED, width=1.2),
+    ]
+    axis = Axis(across, across_unit)
+    return Figure(
+        [
+            Panel(axis, Axis(up, unit), top, height=2.0, own_legend=True),
+            Panel(axis, Axis("New - old", unit), bottom, height=1.0),
+        ],
+        title=title,
+    )
+
+
+def split_label(label: str) -> tuple[str, str]:
+    """Part a label into quantity and unit.
+
+    Parameters
+    ----------
+    label : str
+        The quantity with its unit in brackets, as tables of the report name it.
+
+    Returns
+    -------
+    name, unit : str
+        The unit is empty where there is none.
+    """
+    name, bracket, unit = label.rpartition(" (")
+    return (name, unit.removesuffix(")")) if bracket and label.endswith(")") else (label, "")
+
+
+MARKERS = ("square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
+
+
+def front_figure(
+    designs: pd.DataFrame, front: pd.DataFrame, winners: pd.DataFrame, objectives: list[str]
+) -> Figure:
+    """Draw every design by its first two objectives, by generation where there is but one; front and winners.
+
+    Parameters
+    ----------
+    designs : pd.DataFrame
+        Table `designs` of stage search.
+    front : pd.DataFrame
+        Table `front` of stage search.
+    winners : pd.DataFrame
+        Table `winners` of stage search.
+    objectives : list[str]
+        Names of the objectives.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    across, up = objectives[:2] if len(objectives) > 1 else ("generation", objectives[0])
+    computed_designs = designs[designs["error"] == ""]
+    dots: Look = {"line": "none", "marker": "dot", "size": 3.0}
+    marks = [
+        Curve(computed_designs[across], computed_designs[up], "designs tried", grey(0.6), **dots),
+        Curve(front[across], front[up], "front", BLUE, width=1.0, marker="circle", size=4.0),
+    ]
+    for number, row in enumerate(winners.itertuples() if len(objectives) > 1 else ()):
+        at = winners.loc[[row.Index], f"{across}_searched"], winners.loc[[row.Index], f"{up}_searched"]
+        colour = RED if row.design == "nominal" else BLACK
+        look: Look = {"line": "none", "marker": MARKERS[number % len(MARKERS)], "size": 8.0, "hollow": True}
+        marks.append(Curve(*at, row.design.replace("_", " "), colour, **look))
+    return Figure([Panel(_axis(across), _axis(up), marks, height=3.2)])
+
+
+def _axis(objective: str) -> Axis:
+    return Axis(objective.replace("_", " "), "", integer=objective == "generation")
+
+
+def hypervolume_figure(hypervolume: pd.DataFrame) -> Figure:
+    """Draw the share of the box of all fronts that each island has covered, over its generations.
+
+    Parameters
+    ----------
+    hypervolume : pd.DataFrame
+        Table `hypervolume` of stage search.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    curves = [
+        Curve(
+            rows["generation"],
+            100.0 * rows["hypervolume"],
+            f"seed {seed}",
+            colour_of(number + 1),
+            LINES[number % len(LINES)],
+        )
+        for number, (seed, rows) in enumerate(hypervolume.groupby("seed"))
+    ]
+    return Figure([Panel(Axis("Generation", "", integer=True), Axis("Hypervolume", "%"), curves, height=2.2)])
+
+
+def search_figures(
+    designs: pd.DataFrame,
+    front: pd.DataFrame,
+    hypervolume: pd.DataFrame,
+    winners: pd.DataFrame,
+    objectives: Sequence[Mapping[str, Any]],
+) -> tuple[Figure, ...]:
+    """Draw the front between the objectives, and how the islands came to it.
+
+    Parameters
+    ----------
+    designs : pd.DataFrame
+        Table `designs` of stage search.
+    front : pd.DataFrame
+        Table `front` of stage search.
+    hypervolume : pd.DataFrame
+        Table `hypervolume` of stage search.
+    winners : pd.DataFrame
+        Table `winners` of stage search.
+    objectives : Sequence[Mapping[str, Any]]
+        Objectives of section `search` of the config.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
+    names = [objective["name"] for objective in objectives]
+    return front_figure(designs, front, winners, names), hypervolume_figure(hypervolume)

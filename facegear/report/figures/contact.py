@@ -1,0 +1,375 @@
+"""Figures of loaded contact: transmission error, load share, pattern, studies, poses."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Arrays, Integers
+from facegear.contact.pattern import EDGES, SHARES, Pattern, pattern
+from facegear.contact.summary import StudiedContact
+from facegear.number_format import format_number
+from facegear.report.figures.colours import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    RED,
+    grey,
+    mesh_looks,
+    shades,
+)
+from facegear.report.figures.description import Axis, Figure, Panel
+from facegear.report.figures.marks import ColourScale, Curve, Line, LineStyle, Look, Map
+
+PAIR_NAMES = ("-2", "-1", "0", "1", "2")
+
+MARKS = (
+    (("pinion tip", "gear tip"), "square", BLUE, "tip edge: line load only"),
+    (("end",), "diamond", GREEN, "end of the face: the same"),
+)
+"""Kinds of edges, marker, colour and legend: where a flank carries load and no pressure is known."""
+UNLOADED_COLOUR = grey(0.92)
+"""Colour of a flank where it carries no load."""
+PAIR_LOOKS: tuple[tuple[str, LineStyle], ...] = (
+    (PURPLE, "dot"),
+    (RED, "dash"),
+    (BLACK, "solid"),
+    (BLUE, "dash"),
+    (ORANGE, "dot"),
+)
+"""Colour and line of each of PAIR_NAMES."""
+
+
+def contact_curves(ltca: pd.DataFrame) -> Figure:
+    """Draw static transmission error and both stiffnesses for each torque, load shares at the smallest and
+    largest.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    torques = np.sort(ltca["torque_n_m"].unique())
+    error, stiffness = [], []
+    for torque, colour in zip(torques, shades(torques.size), strict=True):
+        rows = close_pitch(ltca[ltca["torque_n_m"] == torque])
+        at, name = rows["position"], f"{format_number(torque, 4)} N m"
+        error.append(Curve(at, rows["ste_um"], name, colour))
+        stiffness += [
+            Curve(at, 1e-6 * rows["k_average_n_per_m"], name, colour, in_legend=False),
+            Curve(
+                at,
+                1e-6 * rows["k_local_n_per_m"],
+                f"{name}, local",
+                colour,
+                "dash",
+                width=0.9,
+                in_legend=False,
+            ),
+        ]
+    unloaded_rows = close_pitch(ltca[ltca["torque_n_m"] == torques[0]])
+    error.append(Curve(unloaded_rows["position"], unloaded_rows["unloaded_ste_um"], "unloaded", BLACK, "dot"))
+    position = Axis("Position", "pitches", low=0.0, high=1.0)
+    panels = [
+        Panel(position, Axis("Static transmission error", "µm"), error, height=2.2, own_legend=True),
+        Panel(position, Axis("Stiffness", "N/µm", "average solid, local dashed"), stiffness, height=2.2),
+    ]
+    for torque in torques[[0, -1]] if torques.size > 1 else torques:
+        rows = close_pitch(ltca[ltca["torque_n_m"] == torque])
+        pairs = [
+            Curve(rows["position"], rows[column], f"pair {name}", colour, line)
+            for column, name, (colour, line) in zip(SHARES, PAIR_NAMES, PAIR_LOOKS, strict=True)
+            if (rows[column] > 0).any()
+        ]
+        label = Axis(f"Load share\nat {format_number(torque, 4)} N m", "", low=-0.02, high=1.05)
+        panels.append(Panel(position, label, pairs, height=2.0, own_legend=True))
+    return Figure(panels)
+
+
+def close_pitch(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of one torque with the end of the pitch: its beginning, each pair in the next one's
+    place.
+
+    Parameters
+    ----------
+    rows : pd.DataFrame
+        Rows of the contact table at one torque.
+
+    Returns
+    -------
+    pd.DataFrame
+        The rows with the added one.
+    """
+    rows = rows.sort_values("position")
+    last = rows.iloc[[0]].copy()
+    last["position"] = rows["position"].iloc[0] + 1.0
+    last[list(SHARES)] = np.append(last[list(SHARES)].to_numpy()[0, 1:], 0.0)
+    return pd.concat([rows, last], ignore_index=True)
+
+
+def contact_pattern(arrays: Arrays) -> Figure:
+    """Draw the pressure that each point of the pinion's flank sees as it passes through the mesh, one panel a
+    torque.
+
+    Parameters
+    ----------
+    arrays : Arrays
+        Arrays `pressure` of stage contact.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    torques = np.unique(arrays["line_torque_n_m"])
+    return pattern_panels({_title(arrays, torque): (arrays, torque) for torque in torques})
+
+
+def pattern_panels(panels: Mapping[str, tuple[Arrays, float]], title: str = "") -> Figure:
+    """`contact_pattern` with panels by title: the arrays and the torque (N m) that each shows.
+
+    All have one scale, which ends at their largest pressure; marks stand where only a line load is known.
+    """
+    patterns = {name: (pattern(arrays), float(torque)) for name, (arrays, torque) in panels.items()}
+    top = max(
+        np.nanmax(flank_pattern.pressure[torque], initial=0.0) for flank_pattern, torque in patterns.values()
+    )
+    scale = ColourScale("Pressure", "MPa", 0.0, 1e-6 * top or 1.0, "inferno")
+    nodes = np.concatenate([1e3 * arrays["point_m"] for arrays, _ in panels.values()])
+    height = np.hypot(nodes[:, 0], nodes[:, 2])
+    across = Axis(
+        "Along the pinion's axis, from the gear's",
+        "mm",
+        low=float(nodes[:, 1].min()),
+        high=float(nodes[:, 1].max()),
+    )
+    up = Axis("Pinion\nradius", "mm", low=float(height.min()), high=float(height.max()))
+    drawn = [
+        Panel(
+            across, up, _marks(flank_pattern, torque, scale), title=name, height=1.1, ground=UNLOADED_COLOUR
+        )
+        for name, (flank_pattern, torque) in patterns.items()
+    ]
+    return Figure(drawn, title=title)
+
+
+def _marks(flank_pattern: Pattern, torque: float, scale: ColourScale) -> list[Map | Curve]:
+    """Pressures on the surface that the contact lines sweep, and marks at edges."""
+    width = 1e3 * flank_pattern.points[..., 1]
+    radius = 1e3 * np.hypot(flank_pattern.points[..., 0], flank_pattern.points[..., 2])
+    edge_kind = flank_pattern.edge[torque]
+    marks: list[Map | Curve] = [
+        Map(width, radius, 1e-6 * _fade_edges(flank_pattern.pressure[torque], edge_kind), scale, smooth=True)
+    ]
+    for edges, marker, colour, name in MARKS:
+        on = np.isin(edge_kind, [EDGES.index(kind) for kind in edges])
+        if on.any():
+            marks.append(Curve(width[on], radius[on], name, colour, line="none", marker=marker, size=2.5))
+    return marks
+
+
+def _fade_edges(field: Array, edge_kind: Integers) -> Array:
+    """The pressures, with zeros in unloaded planes next to them, where the loaded length ends."""
+    is_finite = np.isfinite(field)
+    beside = np.zeros_like(is_finite)
+    beside[:, 1:] |= is_finite[:, :-1]
+    beside[:, :-1] |= is_finite[:, 1:]
+    return np.where(beside & (edge_kind < 0), 0.0, field)
+
+
+def _title(arrays: Arrays, torque: float) -> str:
+    """Title of a panel: torque, largest pressure with its error, largest line load of a tip edge."""
+    on = arrays["line_torque_n_m"] == torque
+    at = np.argmax(arrays["line_pressure_pa"][on])
+    pressure, error = (1e-6 * arrays[f"line_{name}_pa"][on][at] for name in ("pressure", "error"))
+    tips = np.isin(arrays["line_where"][on], [EDGES.index("pinion tip"), EDGES.index("gear tip")])
+    tip = 1e-3 * arrays["line_load_n_per_m"][on][tips].max(initial=0.0)
+    edge = f"; tip edges {format_number(tip)} N/mm" if tip > 0 else ""
+    return (
+        f"{format_number(torque, 4)} N m: {format_number(pressure)} ± {format_number(round(error))} MPa{edge}"
+    )
+
+
+def contact_figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
+    """Draw curves over a pitch, and the contact pattern.
+
+    Parameters
+    ----------
+    ltca : pd.DataFrame
+        Table `ltca` of stage contact.
+    pressure : Arrays
+        Arrays `pressure` of stage contact.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
+    return contact_curves(ltca), contact_pattern(pressure)
+
+
+LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+
+
+def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:
+    """Transmission error less its mean, average stiffness, contact radius over a pitch at a torque (N m)."""
+    error: list[Curve] = []
+    stiffness: list[Curve] = []
+    path: list[Curve | Line] = []
+    for number, case in enumerate(cases):
+        rows = close_pitch(case.over_pitch(torque))
+        colour, line = COLOURS[number % len(COLOURS)], LINES[number // len(COLOURS) % len(LINES)]
+        at, name = rows["position"], case.label_at(torque)
+        error.append(Curve(at, _variation(rows["ste_um"]), name, colour, line))
+        stiffness.append(Curve(at, 1e-6 * rows["k_average_n_per_m"], name, colour, line))
+        path.append(Curve(at, rows["path_radius_mm"], name, colour, line))
+        path.append(Line(case.unloaded_path_mm, "y", colour=colour, line="dot", width=0.9))
+    position = Axis("Position", "pitches", low=0.0, high=1.0)
+    return Figure(
+        [
+            Panel(position, Axis("Transmission error\nless its mean", "µm"), error, height=2.0),
+            Panel(position, Axis("Average stiffness", "N/µm"), stiffness, height=2.0),
+            Panel(position, Axis("Contact radius", "mm", "dotted: unloaded"), path, height=2.0),
+        ],
+        title=title,
+    )
+
+
+def _variation(closed_curve: pd.Series) -> pd.Series:
+    """Less the mean over the pitch, whose end repeats its beginning."""
+    return closed_curve - closed_curve.iloc[:-1].mean()
+
+
+def pattern_study(cases: Sequence[StudiedContact], torque: float) -> Figure:
+    """Contact patterns at a torque (N m), one panel a case, one scale."""
+    return pattern_panels(
+        {case.label_at(torque): (case.pressure, case.torque_near(torque)) for case in cases}
+    )
+
+
+def contact_study_figures(
+    points: Sequence[Sequence[str]],
+    titles: Mapping[str, str],
+    torque: float,
+    pair: Sequence[Mapping[str, Any]],
+    ltca: Sequence[pd.DataFrame],
+    by_torque: Sequence[pd.DataFrame],
+    pressure: Sequence[Arrays],
+) -> list[Figure]:
+    """Curves and patterns of each study beside those of the machine itself.
+
+    `points`: study, point and label of each case; `titles`: of each study by its name.
+    """
+    machine, *other_cases = StudiedContact.from_columns(points, pair, ltca, by_torque, pressure)
+    study_figures = []
+    for study, title in titles.items():
+        cases = [machine, *(case for case in other_cases if case.study == study)]
+        study_figures += [contact_study(cases, torque, title), pattern_study(cases, torque)]
+    return study_figures
+
+
+NEAR = 8.0
+"""Distance (mm) of a path from an end of the face below which that is drawn."""
+
+
+def operating_pose_figures(
+    meshes: pd.DataFrame, loads: pd.DataFrame, as_assembled: Arrays, running: Arrays
+) -> tuple[Figure, ...]:
+    """Draw the pattern of the mesh that its pose changes most, and unloaded paths of all meshes over the
+    load.
+
+    Parameters
+    ----------
+    meshes : pd.DataFrame
+        Table `meshes` of stage operating_pose.
+    loads : pd.DataFrame
+        Table `loads` of stage operating_pose.
+    as_assembled : Arrays
+        Arrays `as_assembled` of stage operating_pose.
+    running : Arrays
+        Arrays `running` of stage operating_pose.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
+    return pose_pattern(meshes, as_assembled, running), pose_paths(meshes, loads)
+
+
+def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) -> Figure:
+    """Draw two panels of the contact pattern: as assembled, and at the pose under the machine's forces.
+
+    Parameters
+    ----------
+    meshes : pd.DataFrame
+        Table `meshes` of stage operating_pose.
+    as_assembled : Arrays
+        Arrays `as_assembled` of stage operating_pose.
+    running : Arrays
+        Arrays `running` of stage operating_pose.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    torque = float(np.unique(running["line_torque_n_m"])[0])
+    name = meshes["mesh"].iloc[int(np.argmin(np.abs(meshes["torque_n_m"] - torque)))]
+    row = meshes[meshes["mesh"] == name].iloc[0]
+    panels = {
+        _operating_pose_title("as assembled", row["path_as_assembled_mm"], as_assembled): (
+            as_assembled,
+            torque,
+        ),
+        _operating_pose_title("as the machine runs", row["path_mm"], running): (running, torque),
+    }
+    return pattern_panels(panels, title=f"{name} at {format_number(torque)} N m")
+
+
+def _operating_pose_title(words: str, path_mm: float, arrays: Arrays) -> str:
+    pressure = 1e-6 * float(np.nanmax(arrays["line_pressure_pa"], initial=0.0))
+    return f"{words}: path at {format_number(path_mm, 4)} mm, {format_number(pressure)} MPa"
+
+
+def pose_paths(meshes: pd.DataFrame, loads: pd.DataFrame) -> Figure:
+    """Draw the unloaded contact of every mesh along the pinion, and the ends of the face.
+
+    Parameters
+    ----------
+    meshes : pd.DataFrame
+        Table `meshes` of stage operating_pose.
+    loads : pd.DataFrame
+        Table `loads` of stage operating_pose.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    row = meshes.iloc[0]
+    ends: Look = {
+        "inner end of the face": row["unloaded_path_mm"] - row["to_inner_end_mm"],
+        "outer end of the face": row["unloaded_path_mm"] + row["to_outer_end_mm"],
+    }
+    marks: list[Curve | Line] = []
+    for name, look in mesh_looks(dict.fromkeys(loads["mesh"])).items():
+        rows = loads[loads["mesh"] == name]
+        marks.append(Curve(100.0 * rows["load_fraction"], rows["unloaded_path_mm"], name, **look))
+    paths = loads["unloaded_path_mm"]
+    styles: tuple[LineStyle, ...] = ("dot", "dashdot")
+    for (name, radius), line in zip(ends.items(), styles, strict=True):
+        if paths.min() - NEAR < radius < paths.max() + NEAR:
+            marks.append(Line(radius, "y", name, line=line, width=2.0))
+    across = Axis("Mean torques over the machine's own", "%")
+    up = Axis("Unloaded contact,\nfrom the gear's axis", "mm")
+    return Figure([Panel(across, up, marks, height=2.9)])

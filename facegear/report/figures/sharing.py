@@ -1,0 +1,349 @@
+"""Figures of load sharing: over a cycle, over the hunting cycle, map, studies."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.build.machine_layout import ToothNumbers, layout
+from facegear.number_format import format_number
+from facegear.report.figures.colours import BLACK, BLUE, GREEN, RED, colour_of, grey, mesh_looks
+from facegear.report.figures.comparison import split_label
+from facegear.report.figures.description import Axis, Figure, Panel
+from facegear.report.figures.machine import layout_figure
+from facegear.report.figures.marks import Band, Bars, Curve, Line, LineStyle, Look
+from facegear.schema.transmission import Transmission
+from facegear.sharing.sharing_map import AS_GIVEN
+
+LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+LABEL = {
+    "inputs": "Load sharing coefficient\nof upper and lower face gear",
+    "idlers": "Load sharing coefficient\nof idlers and tail rotor idler",
+}
+ENVELOPE = 0.02
+"""An envelope narrower than this is a line, and not drawn."""
+
+
+def sharing_figure(curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title: str) -> Figure:
+    """Coefficient against time over one mesh cycle.
+
+    Where the motion is not period-one a single cycle is drawn over the envelope of all cycles. Gaps are
+    instants at which no path carries load. Of several groups of a kind the first is drawn, as in the paper.
+    """
+    rows = curves[curves["kind"] == kind]
+    group = rows["group"].iloc[0]
+    rows = rows[rows["group"] == group]
+    means = summary[(summary["group"] == group) & (summary["study"] == rows["study"].iloc[0])]
+    means = means.set_index("point")
+    marks: list[Band | Curve] = []
+    for number, (point, curve) in enumerate(rows.groupby("point", sort=False)):
+        marks += _marks(curve, means.loc[point], number)
+    cycle = 1e3 * rows["time_s"].max() * len(curve) / (len(curve) - 1)
+    top = max(2.0 if kind == "inputs" else 3.0, float(rows["envelope_high"].max()))
+    panel = Panel(
+        Axis("Time over one mesh cycle", "ms", low=0.0, high=cycle),
+        Axis(LABEL[kind], "", low=0.95, high=top + 0.05),
+        marks,
+        title=f"{title}: {group}",
+        height=2.7,
+    )
+    return Figure([panel])
+
+
+def _marks(curve: pd.DataFrame, mean: pd.Series, number: int) -> Iterator[Band | Curve]:
+    """One point's curve, its envelope if it has one, and its name with mean and class of motion."""
+    colour = colour_of(number)
+    if mean["motion"] == "period-1":
+        curve = _close_cycle(curve)
+    time = 1e3 * curve["time_s"]
+    if (curve["envelope_high"] - curve["envelope_low"]).max() > ENVELOPE:
+        yield Band(time, curve["envelope_low"], curve["envelope_high"], colour=colour, opacity=0.12)
+    width = f" ± {format_number(mean['half_width'], 1)}" if mean["half_width"] > 0.005 else ""
+    name = f"{curve['label'].iloc[0]}: mean {format_number(mean['mean'])}{width}, {mean['motion']}"
+    if mean["undefined_fraction"] > 0.005:
+        name += f", unloaded {format_number(100 * mean['undefined_fraction'], 2)} %"
+    yield Curve(time, curve["coefficient"], name, colour, LINES[number % len(LINES)], width=1.3)
+
+
+def _close_cycle(curve: pd.DataFrame) -> pd.DataFrame:
+    """The samples of one cycle of a motion that repeats with it, with the end of the cycle."""
+    end = curve.iloc[[0]].copy()
+    end["time_s"] = curve["time_s"].iloc[-1] + curve["time_s"].iloc[1]
+    return pd.concat([curve, end], ignore_index=True)
+
+
+def load_sharing_figures(
+    studies: Sequence[pd.DataFrame],
+    summary: pd.DataFrame,
+    titles: Sequence[str],
+    groups: Sequence[str],
+) -> list[Figure]:
+    """A figure for each study and kind of group."""
+    return [
+        sharing_figure(table, summary, kind, title)
+        for table, title in zip(studies, titles, strict=True)
+        for kind in groups
+    ]
+
+
+CYCLE_LINES: Mapping[str, LineStyle] = {"geometric": "solid", "printed": "dash"}
+MAX_BARS = 20
+"""Bars of the sensitivity chart."""
+
+
+def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame) -> Figure:
+    """Share of its group's load that each mesh carries, mean of each mesh cycle, one panel a group."""
+    panels = []
+    for group in [name for name in meshes["group"].dropna().unique() if name]:
+        names = meshes.loc[meshes["group"] == group, "mesh"]
+        loads = cycles[[f"{name} (N)" for name in names]].to_numpy()
+        total = loads.sum(axis=1)
+        shares = 100.0 * loads / np.where(total > 0.0, total, np.nan)[:, None]
+        has_several = len(shares) > 1
+        at = cycles["cycle"].to_numpy() if has_several else np.array([0, 1])
+        marks: list[Curve | Line] = [
+            Curve(at, share if has_several else np.repeat(share, 2), name, colour_of(number + 1), width=0.9)
+            for number, (share, name) in enumerate(zip(shares.T, names, strict=True))
+        ]
+        marks.append(Line(100.0 / len(names), "y", line="dot"))
+        cycle = Axis("Mesh cycle", "", low=float(at.min()), high=float(at.max()))
+        share_axis = Axis("Share", "%")
+        title = f"Group: {group}"
+        panels.append(Panel(cycle, share_axis, marks, title=title, height=1.4, own_legend=True))
+    return Figure(panels, title="Load of each mesh over the hunting cycle, quasi-static")
+
+
+def bearing_figure(scan: pd.DataFrame) -> Figure:
+    """K_gamma against bearing stiffness of the inputs (top) and of the idlers (below), both kinematics."""
+    panels = []
+    for role in ("inputs", "idlers"):
+        curves = []
+        for number, kind in enumerate(scan["kind"].unique()):
+            for kinematics, line in CYCLE_LINES.items():
+                mask = (scan["varied"] == role) & (scan["kind"] == kind)
+                rows = scan[mask & (scan["kinematics"] == kinematics)]
+                name = f"Kᵧ of the {kind}, {kinematics}"
+                stiffness = 1e-6 * rows["stiffness_n_per_m"]
+                curves.append(Curve(stiffness, rows["k_gamma"], name, colour_of(number + 1), line))
+        across = Axis(f"Bearing stiffness of the {role}", "N/µm", logarithmic=True)
+        panels.append(Panel(across, Axis("Largest Kᵧ of the paths", ""), curves, height=2.2))
+    return Figure(panels, title="Static load sharing against bearing stiffness", shared_x=False)
+
+
+def sensitivity_figure(table: pd.DataFrame) -> Figure:
+    """The largest sensitivities dK/d(um), one bar an error: that of the group which answers most."""
+    largest = table.loc[table.groupby("error")["per_um"].apply(lambda rows: rows.abs().idxmax())]
+    rows = largest.sort_values("per_um", key=np.abs, ascending=False).head(MAX_BARS)[::-1]
+    positions = np.arange(len(rows), dtype=float)
+    marks: list[Bars | Line] = [Line(0.0, colour=BLACK, width=0.6)]
+    for number, group in enumerate(table["group"].unique()):
+        in_group = (rows["group"] == group).to_numpy()
+        if in_group.any():
+            lengths = 1e3 * rows["per_um"].to_numpy()[in_group]
+            marks.append(
+                Bars(positions[in_group], lengths, f"Kᵧ of {group}", colour_of(number + 1), flat=True)
+            )
+    errors = [(position, str(name)) for position, name in zip(positions, rows["error"], strict=True)]
+    panel = Panel(
+        Axis("Change of Kᵧ", "10⁻³/µm"),
+        Axis("", "", low=-0.6, high=len(rows) - 0.4, ticks=errors),
+        marks,
+        height=0.5 + 0.22 * len(rows),
+    )
+    return Figure([panel], title="Which errors matter: largest first")
+
+
+def hunting_figures(
+    meshes: pd.DataFrame,
+    bearings: pd.DataFrame,
+    cycles: pd.DataFrame,
+    scan: pd.DataFrame,
+    sensitivity: pd.DataFrame,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+) -> tuple[Figure, ...]:
+    """Layout of the machine with its mean forces, loads over the hunting cycle, bearings, single errors."""
+    return (
+        layout_figure(layout(transmission, teeth), meshes, bearings),
+        hunting_figure(cycles, meshes),
+        bearing_figure(scan),
+        sensitivity_figure(sensitivity),
+    )
+
+
+FLOATING: Mapping[str, tuple[str, str]] = {
+    AS_GIVEN: ("as given", BLACK),
+    "upper": ("upper gear floats", BLUE),
+    "lower": ("lower gear floats", RED),
+    "both": ("both gears float", GREEN),
+}
+"""Name and colour of each curve of the idlers."""
+OTHER_LEVELS: Mapping[int, LineStyle] = {50: "dash", 99: "dashdot"}
+"""Percentiles that are drawn beside P95 for the machine as given."""
+ALL_CARRY = 1.0 - 1e-9
+"""Fraction of samples in which every path carries, from which the closed form may hold."""
+HOLDS = 0.02
+"""Relative difference from the statics below which a closed form is drawn: little beside what it explains."""
+CLOSED_NAME = "closed form"
+
+
+def sharing_map_figures(
+    curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame
+) -> tuple[Figure, ...]:
+    """Describe the map.
+
+    Parameters
+    ----------
+    curves, inputs, points : pd.DataFrame
+        Tables of stage sharing_map.
+
+    Returns
+    -------
+    tuple of Figure
+        The figure.
+    """
+    return (sharing_map_figure(curves, inputs, points),)
+
+
+def sharing_map_figure(curves: pd.DataFrame, inputs: pd.DataFrame, points: pd.DataFrame) -> Figure:
+    """Describe a panel for the idlers, and one for the inputs.
+
+    Parameters
+    ----------
+    curves, inputs, points : pd.DataFrame
+        Tables of stage sharing_map.
+
+    Returns
+    -------
+    Figure
+        Closed forms are broad grey lines where they hold; the machine is a point at each torque.
+    """
+    panels = []
+    if len(curves):
+        number, factor = Axis("Lateness of idlers kₑ σ / W", ""), Axis("Kᵧ of the idlers", "")
+        marks = [*_idlers(curves), _machine(points, "idlers")]
+        panels.append(Panel(number, factor, marks, height=2.6, own_legend=True))
+    if len(inputs):
+        number, factor = Axis("Misfit of inputs 2 b k / W", ""), Axis("Largest Kᵧ of the inputs", "")
+        marks = [*_inputs(inputs), _machine(points, "inputs")]
+        panels.append(Panel(number, factor, marks, height=2.6, own_legend=True))
+    return Figure(panels, title="Load sharing over what decides it, at rest", shared_x=False)
+
+
+def _machine(points: pd.DataFrame, kind: str) -> Curve:
+    """The machine at each of its torques."""
+    rows = points[points["kind"] == kind]
+    at = rows["number"].to_numpy(), rows["k_gamma_p95"].to_numpy()
+    return Curve(*at, "this machine", BLACK, "none", marker="circle", size=7.0)
+
+
+def _idlers(curves: pd.DataFrame) -> list[Curve]:
+    """P95 for each floating gear; for the machine as given the other percentiles as well."""
+    broad: list[Curve] = []
+    marks: list[Curve] = []
+    for floating, rows in curves.groupby("floating", sort=False):
+        words, colour = FLOATING[str(floating)]
+        number = rows["number"].to_numpy()
+        if _is_close(rows):
+            broad.append(_closed_form(number, rows["closed_p95"], not broad))
+        marks.append(Curve(number, rows["k_gamma_p95"].to_numpy(), f"idlers, P95, {words}", colour))
+        if floating == AS_GIVEN:
+            for level, line in OTHER_LEVELS.items():
+                values = rows[f"k_gamma_p{level}"].to_numpy()
+                marks.append(Curve(number, values, f"idlers, P{level}, {words}", colour, line, width=0.9))
+    return broad + marks
+
+
+def _is_close(rows: pd.DataFrame) -> bool:
+    """Whether the closed form holds for a curve as long as every path carries."""
+    valid = rows[rows["all_carry"] >= ALL_CARRY]
+    return bool((valid["k_gamma_p95"] / valid["closed_p95"] - 1.0).abs().max() < HOLDS)
+
+
+def _inputs(inputs: pd.DataFrame) -> list[Curve]:
+    """The input that shares worst, for each bearing stiffness."""
+    broad: list[Curve] = []
+    marks: list[Curve] = []
+    worst = inputs.groupby(["bearing_n_per_m", "number"])[["k_gamma", "closed"]].max().reset_index()
+    for index, (bearing, rows) in enumerate(worst.groupby("bearing_n_per_m")):
+        number, factor = rows["number"].to_numpy(), rows["k_gamma"].to_numpy()
+        if (rows["k_gamma"] / rows["closed"] - 1.0).abs().max() < HOLDS:
+            broad.append(_closed_form(number, rows["closed"], not broad))
+        name = f"inputs, bearings {1e-6 * float(bearing):.3g} N/µm"
+        marks.append(Curve(number, factor, name, colour_of(index)))
+    return broad + marks
+
+
+def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
+    """A broad line below the computed one, in the legend once."""
+    return Curve(number, values.to_numpy(), CLOSED_NAME, grey(0.8), width=4.0, in_legend=is_first)
+
+
+MARKERS = ("circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+WIDE = 30.0
+"""Ratio of the largest number to the smallest from which the axis is logarithmic."""
+PERIODIC = "period-1"
+
+
+def study_forces_figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:
+    """A figure for each study over numbers; cells without text may be nan, as they are read."""
+    text = {name: forces[name].astype(object).where(forces[name].notna(), "") for name in ("group", "beside")}
+    every = forces.assign(**text).groupby("study", sort=False)
+    return [forces_figure(rows, titles[str(name)]) for name, rows in every]
+
+
+def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
+    """Two panels for each label of the other axis: fraction of the group's load, largest force."""
+    looks = mesh_looks(dict.fromkeys(forces["mesh"]))
+    name, unit = split_label(str(forces["axis"].iloc[0]))
+    if unit == "N/m":
+        forces, unit = forces.assign(number=1e-6 * forces["number"]), "N/µm"
+    numbers = forces["number"]
+    is_wide = numbers.min() > 0.0 and numbers.max() > WIDE * numbers.min()
+    across = Axis(name, unit, logarithmic=bool(is_wide))
+    panels = []
+    for beside, rows in forces.groupby("beside", sort=False):
+        group_rows = rows[rows["group"] != ""]
+        panels += [
+            Panel(
+                across,
+                Axis("Mean fraction of the\nload of its group", "%"),
+                list(_curves(group_rows, looks, "fraction", 100.0, in_legend=False)),
+                title=str(beside),
+                height=1.9,
+            ),
+            Panel(
+                across,
+                Axis("Largest dynamic\nforce", "kN", low=0.0),
+                list(_curves(rows, looks, "largest_n", 1e-3)),
+                height=1.9,
+            ),
+        ]
+    return Figure(panels, title=title)
+
+
+def _curves(
+    rows: pd.DataFrame, looks: Mapping[str, Any], column: str, scale: float, in_legend: bool = True
+) -> Iterator[Curve]:
+    """A curve a mesh; hollow marks where the motion does not repeat with the mesh cycle."""
+    colours = list(dict.fromkeys(look["colour"] for look in looks.values()))
+    for mesh, every in rows.groupby("mesh", sort=False):
+        look = looks[str(mesh)]
+        marker = MARKERS[colours.index(look["colour"]) % len(MARKERS)]
+        sorted_rows = every.sort_values("number")
+        yield Curve(
+            sorted_rows["number"],
+            scale * sorted_rows[column],
+            str(mesh),
+            width=1.3,
+            marker=marker,
+            in_legend=in_legend,
+            **look,
+        )
+        irregular_rows = sorted_rows[sorted_rows["motion"] != PERIODIC]
+        if len(irregular_rows):
+            hollow: Look = {"colour": look["colour"], "line": "none", "marker": marker, "hollow": True}
+            yield Curve(
+                irregular_rows["number"], scale * irregular_rows[column], str(mesh), in_legend=False, **hollow
+            )

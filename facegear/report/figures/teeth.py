@@ -1,0 +1,341 @@
+"""Figures of the tooth pair: in mesh, sections, separation, flank charts, single teeth."""
+
+from collections.abc import Mapping
+from math import pi
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Arrays
+from facegear.number_format import format_number
+from facegear.report.figures.colours import BLACK, BLUE, RED, channels, grey
+from facegear.report.figures.description import Axis, Figure, Panel, apart
+from facegear.report.figures.marks import Area, Bars, ColourScale, Curve, Levels, LineStyle, Look, Solid, Text
+
+PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
+AZIMUTH, ALTITUDE = np.radians([150.0, 50.0])
+LIGHT = np.array([np.cos(AZIMUTH) * np.cos(ALTITUDE), np.sin(AZIMUTH) * np.cos(ALTITUDE), np.sin(ALTITUDE)])
+"""Direction from which the pair in mesh is lit."""
+LABEL_GAP = 0.1
+"""Least distance of two radius labels, in whole depths of the tooth."""
+GAPS = (0.0, 0.1, 0.3, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0, 200.0)
+"""Levels of the separation, µm."""
+RADII: Mapping[str, LineStyle] = {
+    "pinion_tip": "solid",
+    "pinion_pitch": "dashdot",
+    "pinion_fillet_start": "dot",
+    "pinion_base": "dash",
+    "pinion_root": "solid",
+}
+"""Radii that the section of a pinion's tooth shows."""
+
+
+def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
+    """Pinion and gear in mesh, from `geometry/pair.json` and `flanks.npz`."""
+    design = record["design_si"]
+    pinion_teeth, gear_teeth = design["pinion"]["teeth"], design["face_gear"]["teeth"]
+    pinion = np.concatenate([_quads(grid) for grid in _pinion_skin(flanks, design["pinion"]["bore_radius"])])
+    gear = np.concatenate([_quads(grid) for grid in _gear_skin(flanks, gear_teeth)])
+    parts = [
+        _turned_pinion(pinion, (tooth - 0.5) * 2 * pi / pinion_teeth) for tooth in range(pinion_teeth)
+    ] + [_turned_gear(gear, tooth * 2 * pi / gear_teeth) for tooth in range(-6, 7)]
+    names = [PINION_COLOUR] * pinion_teeth + [GEAR_COLOUR] * 13
+    faces = np.concatenate(parts) * 1e3
+    colours = np.concatenate(
+        [np.tile(channels(name), (len(part), 1)) for name, part in zip(names, parts, strict=True)]
+    )
+    normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
+    area = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.divide(normals, area, where=area > 0, out=np.zeros_like(normals))
+    brightness = 0.4 + 0.6 * np.abs(normals @ LIGHT)
+    low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
+    x, y, z = (
+        Axis(letter, "mm", low=float(first), high=float(last))
+        for letter, first, last in zip("xyz", low, high, strict=True)
+    )
+    solid = Solid(faces, colours * brightness[:, None])
+    panel = Panel(x, y, [solid], z=z, equal=True, title="Pinion and face gear in mesh", height=3.1)
+    return Figure([panel])
+
+
+def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
+    """Sections of both teeth with limits and radii, from `geometry/pair.json` and `flanks.npz`."""
+    panels = [_pinion_section(record, flanks), _gear_sections(record, flanks)]
+    return Figure(panels, shared_x=False, legend_title="face gear tooth at radius")
+
+
+def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
+    """Grids (profile, 2, 3) of one tooth from space to space: its surface and the end that is looked at."""
+    half = flanks["pinion_section"][::8]
+    section = np.concatenate([half[::-1], half * [-1, 1]])
+    first, last = flanks["pinion_flank"][0, [0, -1], 1]
+    outer = np.insert(section * [1, -1], 1, first, axis=1)
+    inner = np.insert(
+        bore * section / np.linalg.norm(section, axis=1, keepdims=True) * [1, -1], 1, first, axis=1
+    )
+    return [np.stack([outer, outer + [0, last - first, 0]], axis=1), np.stack([outer, inner], axis=1)]
+
+
+def _gear_skin(flanks: Mapping[str, Array], teeth: int) -> list[Array]:
+    """Grids (profile, width, 3) of one tooth from space to space: its surface and its inner end."""
+    right = np.concatenate([flanks["gear_flank"][::4, ::8], flanks["gear_fillet"][::4, ::8]])
+    radius = np.hypot(right[0, :, 0], right[0, :, 1])
+    middle = np.stack([radius * np.sin(pi / teeth), radius * np.cos(pi / teeth), right[-1, :, 2]], axis=-1)
+    right = np.concatenate([right, middle[None]])
+    surface = np.concatenate([right[::-1], right * [-1, 1, 1]])
+    below = surface[:, 0].copy()
+    below[:, 2] = 1.15 * surface[..., 2].min()
+    return [surface, np.stack([surface[:, 0], below], axis=1)]
+
+
+def _turned_pinion(points: Array, angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]]).T
+
+
+def _turned_gear(points: Array, angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]).T
+
+
+def _quads(grid: Array) -> Array:
+    return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 3)
+
+
+def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    half = 1e3 * flanks["pinion_section"]
+    tooth = np.concatenate([half[::-1], half * [-1, 1]])
+    foot = half[:, 1].min() - 1.5
+    body = np.append(tooth[:, 0], [tooth[-1, 0], tooth[0, 0]]), np.append(tooth[:, 1], [foot, foot])
+    marks: list[Area | Curve | Text] = [
+        Area(*body, colour=PINION_COLOUR, opacity=0.35),
+        Curve(tooth[:, 0], tooth[:, 1], colour=PINION_COLOUR),
+    ]
+    reach = 1.2 * np.abs(tooth[:, 0]).max()
+    x = np.linspace(-reach, reach, 101)
+    radii = {name: record["radii_mm"][name] for name in RADII}
+    apart = LABEL_GAP * (radii["pinion_tip"] - radii["pinion_root"])
+    height = np.inf
+    for name, radius in sorted(radii.items(), key=lambda item: -item[1]):
+        marks.append(Curve(x, np.sqrt(radius**2 - x**2), colour=grey(0.4), line=RADII[name], width=0.8))
+        label = name.removeprefix("pinion_").replace("_", " ")
+        height = min(np.sqrt(radius**2 - reach**2), height - apart)
+        marks.append(Text(reach, height, f"{label} {radius:.3f}"))
+    across = Axis("Across", "mm", low=-reach, high=2.05 * reach)
+    return Panel(across, Axis("Radius", "mm"), marks, title="Pinion tooth", equal=True, height=2.9)
+
+
+def path_text(record: Mapping[str, Any]) -> str:
+    """Where the contact path lies along the face, and the nominal place where errors of assembly move it."""
+    path = np.asarray(record["unloaded"]["drive"]["path_pinion_y_mm"], dtype=float)
+    nominal = float(record["radii_mm"]["gear_contact_path_nominal"])
+    text = f"contact path at {path.mean():.3f} mm"
+    return text if np.abs(path - nominal).max() < 0.005 else f"{text}, nominal {nominal:.3f} mm"
+
+
+def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
+    width = right.shape[1]
+    radius = np.hypot(right[0, :, 0], right[0, :, 1])
+    styles: tuple[tuple[int, LineStyle], ...] = ((0, "solid"), (width // 2, "dash"), (width - 1, "dot"))
+    marks = []
+    for column, line in styles:
+        arc = radius[column] * np.arctan2(right[:, column, 0], right[:, column, 1])
+        across = np.concatenate([-arc[::-1], arc])
+        height = np.concatenate([right[::-1, column, 2], right[:, column, 2]])
+        name = f"{format_number(radius[column], 4)} mm"
+        marks.append(Curve(across, height, name, GEAR_COLOUR, line))
+    limits, radii = record["limits_mm"], record["radii_mm"]
+    inner, outer = (format_number(radii[f"gear_{end}"], 4) for end in ("inner", "outer"))
+    note = (
+        f"undercut below {limits['inner_undercut']:.3f} mm\n"
+        f"face {inner} to {outer} mm, pointed above {limits['outer_pointing']:.3f} mm\n"
+        f"{path_text(record)}"
+    )
+    return Panel(
+        Axis("Arc", "mm", note), Axis("z", "mm"), marks, title="Face gear tooth", equal=True, height=2.4
+    )
+
+
+def separation(
+    record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
+) -> Figure:
+    """Gap of the unloaded pair over the gear's flank, with the contact path, from all of `geometry/`."""
+    is_facing = contact["contour_facing"].astype(bool)
+    gap = np.where(is_facing, 1e6 * contact["contour_gap"], np.nan)
+    # places outside the flank have no gap, yet a map wants coordinates everywhere
+    radius = np.where(is_facing, 1e3 * contact["contour_radius"], 1e3 * contact["contour_y"])
+    height = np.where(is_facing, 1e3 * contact["contour_height"], np.nan)
+    height = np.where(np.isnan(height), np.nanmean(height), height)
+    largest = np.nanmax(gap)
+    levels = (*(level for level in GAPS if level <= largest), float(np.ceil(largest + 1e-9)))
+    scale = ColourScale("Separation", "µm", levels[0], levels[-1], "viridis_r", levels)
+    marks: list[Levels | Curve | Text] = [Levels(radius, height, gap, scale)]
+    top, flank = 1e3 * flanks["gear_flank"][0], 1e3 * flanks["gear_flank"][-1]
+    for line, label, point, points in (
+        (top, "tip edge", -1, 2.0),
+        (flank, "end of the flank", len(flank) // 2, -3.0),
+    ):
+        out = np.hypot(line[:, 0], line[:, 1])
+        marks.append(Curve(out, line[:, 2], colour=grey(0.2), width=0.8))
+        look: Look = {"across": "right", "upright": "bottom" if points > 0 else "top"}
+        marks.append(Text(out[point], line[point, 2], label, shift=(0.0, points), **look))
+    path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
+    rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
+    path = 1e3 * contact["path_y"], height[rows, height.shape[1] // 2]
+    marks.append(Curve(*path, "contact path", RED, line="none", marker="dot"))
+    gap_record = record["smallest_gap"]
+    title = (
+        f"Drive flank; smallest gap elsewhere {format_number(gap_record['gap_um'])} µm\n"
+        f"at {format_number(gap_record['gear_radius_mm'], 4)} mm (gear {gap_record['gear_part']}, "
+        f"pinion {gap_record['pinion_part']})"
+    )
+    ends = np.hypot(top[[0, -1], 0], top[[0, -1], 1])
+    across = Axis("Gear radius", "mm", low=float(ends.min()), high=float(ends.max()))
+    return Figure([Panel(across, Axis("z", "mm"), marks, title=title, height=3.0)])
+
+
+def tooth_pair_figures(
+    pair: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
+) -> tuple[Figure, ...]:
+    """Both gears in mesh, sections of both teeth, separation around the contact path."""
+    return tooth_pair(pair, flanks), tooth_sections(pair, flanks), separation(pair, flanks, contact)
+
+
+AXES = {
+    "pinion": (("From the middle of the face", "mm"), ("Length of roll", "mm")),
+    "face_gear": (("Gear radius", "mm"), ("Depth below the tip plane", "mm")),
+}
+EXCESS_COLOUR, LACK_COLOUR = RED, BLUE
+HEIGHT = 0.14
+"""Height of the largest deviation, in parts of the profile."""
+
+
+def topography_figure(points: pd.DataFrame, body: str) -> Figure:
+    """Draw left and right flank of a gear, with the mean of all teeth.
+
+    Parameters
+    ----------
+    points : pd.DataFrame
+        Table `points` of stage topography.
+    body : str
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    body_points = points[points["body"] == body]
+    largest = float(body_points["deviation_um"].abs().max())
+    (across, width_unit), (up, unit) = AXES[body]
+    face = body_points["face_mm"]
+    margin = 0.2 * np.ptp(face)
+    panels = []
+    for side, flank in body_points.groupby("flank", sort=False):
+        title = f"{body.replace('_', ' ')}, {side} flank: {_range(flank)}"
+        panels.append(
+            Panel(
+                Axis(across, width_unit, low=face.min() - 0.25 * margin, high=face.max() + margin),
+                Axis(up, unit, is_falling=body == "face_gear"),
+                _chart(flank, largest),
+                title=title,
+                height=2.1,
+            )
+        )
+    return Figure(panels)
+
+
+def _chart(flank: pd.DataFrame, largest: float) -> list[Area | Curve | Text]:
+    """Grid lines of one flank, lifted by what they deviate."""
+    table = flank.pivot_table(index="profile_mm", columns="face_mm", values="deviation_um")
+    face, profile, values = table.columns.to_numpy(float), table.index.to_numpy(float), table.to_numpy()
+    up = HEIGHT * np.ptp(profile) * (-1.0 if flank["body"].iloc[0] == "face_gear" else 1.0) / (largest or 1.0)
+    lifted = profile[:, None] + up * values
+    flat = np.broadcast_to(profile[:, None], lifted.shape)
+    marks: list[Area | Curve | Text] = [
+        Area(*_between(face, flat, flat + up * part), name, colour, opacity=0.4)
+        for part, name, colour in (
+            (np.maximum(values, 0.0), "material added", EXCESS_COLOUR),
+            (np.minimum(values, 0.0), "material missing", LACK_COLOUR),
+        )
+        if np.nanmax(np.abs(part)) > 0.0
+    ]
+    bar = _round_below(largest or 1.0)
+    beside = face.max() + 0.05 * np.ptp(face)
+    ends = profile.mean() + up * bar * np.array([-0.5, 0.5])
+    return [
+        *marks,
+        Curve(*apart(face, flat), "nominal", grey(0.6), width=0.8),
+        Curve(*apart(face, lifted), "flank with its deviations", grey(0.25), width=0.7),
+        Curve(*apart(np.broadcast_to(face[:, None], lifted.T.shape), lifted.T), colour=grey(0.25), width=0.4),
+        Curve(np.array([beside, beside]), ends, width=2.0),
+        Text(beside, float(profile.mean()), f"{format_number(bar)} µm", shift=(4.0, 0.0)),
+    ]
+
+
+def _between(face: Array, flat: Array, lifted: Array) -> tuple[Array, Array]:
+    """Rings between each flat line and the lifted one, parted by nan."""
+    across = np.concatenate([face, face[::-1]])
+    return apart(across, np.concatenate([flat, lifted[:, ::-1]], axis=1))
+
+
+def _round_below(value: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above a value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= value))
+
+
+def _range(flank: pd.DataFrame) -> str:
+    values = flank["deviation_um"]
+    return f"{format_number(values.min())} to {format_number(values.max())} µm"
+
+
+def topography_figures(points: pd.DataFrame) -> tuple[Figure, ...]:
+    """Draw charts of the pinion and of the face gear.
+
+    Parameters
+    ----------
+    points : pd.DataFrame
+        Table `points` of stage topography.
+
+    Returns
+    -------
+    tuple[Figure, ...]
+        The figures.
+    """
+    return topography_figure(points, "pinion"), topography_figure(points, "face_gear")
+
+
+def tooth_error_figure(curves: Arrays, orders: pd.DataFrame) -> Figure:
+    """Two panels a gear whose teeth differ: the drive flank over a turn, and the orders of its turns."""
+    panels = []
+    for body in orders["body"].unique():
+        name, curve = body.replace("_", " "), 1e6 * curves[f"{body}_drive_m"]
+        turns = np.arange(curve.size) / curve.size
+        early = Curve(turns, curve, "drive flank, under load", BLUE, width=0.9)
+        body_orders = orders[orders["body"] == body]
+        at = body_orders["order"].to_numpy(float)
+        bars = [
+            Bars(at - 0.2, body_orders["unloaded_um"].to_numpy(float), "no load", BLACK, width=0.4),
+            Bars(at + 0.2, body_orders["loaded_um"].to_numpy(float), "under load", BLUE, width=0.4),
+        ]
+        panels += [
+            Panel(
+                Axis(f"Turns of the {name}", ""), Axis("Early by", "µm"), [early], height=1.5, own_legend=True
+            ),
+            Panel(
+                Axis(f"Order of its turns ({name})", "", integer=True),
+                Axis("Amplitude", "µm", low=0.0),
+                bars,
+                height=1.5,
+                own_legend=True,
+            ),
+        ]
+    return Figure(panels, shared_x=False)
+
+
+def tooth_errors_figures(curves: Arrays, orders: pd.DataFrame) -> tuple[Figure, ...]:
+    """The figure."""
+    return (tooth_error_figure(curves, orders),)

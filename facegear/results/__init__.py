@@ -1,1 +1,0 @@
-"""Results of a gearbox: tables, figures and files of one stage each."""

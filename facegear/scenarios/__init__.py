@@ -1,1 +1,0 @@
-"""Thousands of variants of one machine: sampling of tolerances, chunks that resume, statistics."""

@@ -1,0 +1,1 @@
+"""Sections of the config and their validation as far as it needs no geometry."""

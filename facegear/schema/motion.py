@@ -1,0 +1,157 @@
+"""Config sections `dynamics` and `branches`: speeds, accuracy, sweeps, continuation of motions."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from facegear.schema.base import Section, refuse
+
+MAX_SPEED_RPM = 200_000
+"""Largest pinion speed that a config may give, rpm."""
+SECOND_LOOKS = 3
+"""Other starts from which a class of motion that is in doubt must come out again."""
+CARRIED_STATE_OFFSET = 1e-2
+"""Distance of these other starts from a state that is carried from speed to speed, over the length scale."""
+
+
+class Accuracy(Section):
+    """Numerical settings of a steady state; lengths in mesh periods."""
+
+    tolerance: float = Field(
+        1e-6, ge=1e-13, le=1e-2, description="local error of a step over the length scale"
+    )
+    dwell_periods: int = Field(32, ge=16, le=1_000_000, description="run before anything is judged")
+    settle_periods: int = Field(
+        8192, ge=16, le=10_000_000, description="watched before a motion counts as not periodic"
+    )
+    window_periods: int = Field(
+        256, ge=16, le=1_000_000, description="measured where the motion is not periodic"
+    )
+    longest_period: int = Field(64, ge=1, le=1024, description="longest period looked for")
+    periodic_residual: float = Field(
+        1e-7, ge=1e-13, le=1e-2, description="change over a period, over the scale"
+    )
+    samples_per_period: int = Field(
+        64, ge=16, le=4096, description="at least; more are taken where the motion needs them"
+    )
+    refine: bool = Field(True, description="periodic orbits to rounding, with Floquet multipliers")
+    extensions: int = Field(
+        2, ge=0, le=10, description="doublings of patience for a motion that is undecided"
+    )
+
+
+SWEEP_ACCURACY = Accuracy(
+    tolerance=3e-5,
+    dwell_periods=32,
+    settle_periods=256,
+    window_periods=160,
+    longest_period=64,
+    periodic_residual=1e-5,
+    extensions=1,
+    samples_per_period=32,
+)
+"""Accuracy of each speed where many speeds are run in a row."""
+SWEPT_TEXT = (
+    f"left out as a whole: tolerance {SWEEP_ACCURACY.tolerance:g}, "
+    f"settle_periods {SWEEP_ACCURACY.settle_periods}, window_periods {SWEEP_ACCURACY.window_periods}, "
+    f"periodic_residual {SWEEP_ACCURACY.periodic_residual:g}, "
+    f"extensions {SWEEP_ACCURACY.extensions}, samples_per_period {SWEEP_ACCURACY.samples_per_period}; "
+    "else each key's own default"
+)
+"""Description of the keys with the default SWEEP_ACCURACY."""
+
+
+class Sweep(Section):
+    """Speeds run up and down with the state carried over."""
+
+    from_rpm: float = Field(200, ge=1, le=MAX_SPEED_RPM, description="smallest pinion speed")
+    to_rpm: float = Field(20_000, ge=1, le=MAX_SPEED_RPM, description="largest pinion speed")
+    points: int = Field(400, ge=2, le=100_000, description="evenly spaced speeds, both ends included")
+    directions: tuple[Literal["up", "down"], ...] = Field(
+        ("up", "down"), min_length=1, max_length=2, description="ways in which the speeds are run"
+    )
+    chunks: int = Field(
+        1, ge=1, le=1000, description="independent pieces of each direction; more for more than two cores"
+    )
+    overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
+    jump_resolution_rpm: float = Field(
+        1.0, ge=1e-6, le=1000, description="width to which the speed of a jump is bracketed"
+    )
+    accuracy: Accuracy = Field(SWEEP_ACCURACY, description=SWEPT_TEXT)
+
+    @model_validator(mode="after")
+    def _check_speeds(self) -> "Sweep":
+        if self.to_rpm <= self.from_rpm:
+            refuse("to_rpm", self.to_rpm, f"more than from_rpm = {self.from_rpm}")
+        if len(set(self.directions)) < len(self.directions):
+            refuse("directions", list(self.directions), "up, down, or both once")
+        if self.chunks > self.points:
+            refuse("chunks", self.chunks, f"at most one for each of the {self.points} points")
+        return self
+
+
+class Dynamics(Section):
+    """Time response of the lumped model."""
+
+    speed_rpm: float = Field(7500, ge=1, le=MAX_SPEED_RPM, description="nominal pinion speed")
+    accuracy: Accuracy = Field(Accuracy(), description="of the response at the nominal speed")
+    sweep: Sweep = Sweep()
+
+
+Parameter = Literal["torque", "backlash", "mesh_damping", "bearing_stiffness"]
+
+
+class Explore(Section):
+    """Random starts at chosen speeds."""
+
+    speeds_rpm: tuple[Annotated[float, Field(ge=1e-3, le=MAX_SPEED_RPM)], ...] = Field(
+        (), max_length=200, description="empty: the nominal speed alone"
+    )
+    starts: int = Field(100, ge=1, le=1_000_000, description="at each speed")
+    spread_um: float = Field(
+        100.0,
+        ge=1e-6,
+        le=1e5,
+        description="half width of the box around rest: displacements, and rotations at the mesh radius",
+    )
+    seed: int = Field(0, ge=0, le=2**31, description="of the random starts")
+
+
+class Loci(Section):
+    """Curves of folds and period doublings in the plane of speed and one more parameter."""
+
+    parameters: tuple[Parameter, ...] = Field(("torque",), max_length=4, description="multiplied by a factor")
+    from_factor: float = Field(0.5, ge=1e-3, lt=1, description="smallest factor on the parameter")
+    to_factor: float = Field(2.0, gt=1, le=1000, description="largest factor on the parameter")
+    nearest: int = Field(4, ge=0, le=1000, description="special points nearest to the nominal speed")
+
+
+class Branches(Section):
+    """Continuation of periodic motions, stable or not."""
+
+    from_rpm: float = Field(200, ge=1e-3, le=MAX_SPEED_RPM, description="smallest pinion speed")
+    to_rpm: float = Field(20_000, ge=1e-3, le=MAX_SPEED_RPM, description="largest pinion speed")
+    tolerance: float = Field(
+        1e-7,
+        ge=1e-14,
+        le=1e-5,
+        description="about the error of orbits in length scales and of special points over the speed",
+    )
+    longest_period: int = Field(
+        2, ge=1, le=64, description="longest period followed through doublings, in mesh periods"
+    )
+    longest_start_period: int = Field(
+        8, ge=1, le=64, description="longest period followed of motions of the sweep and of random starts"
+    )
+    max_branches: int = Field(48, ge=1, le=10_000, description="how many branches are followed")
+    explore: Explore = Explore()
+    loci: Loci = Loci()
+
+    @model_validator(mode="after")
+    def _check_speeds(self) -> "Branches":
+        if self.to_rpm <= self.from_rpm:
+            refuse("to_rpm", self.to_rpm, f"more than from_rpm = {self.from_rpm}")
+        for speed in self.explore.speeds_rpm:
+            if not self.from_rpm <= speed <= self.to_rpm:
+                refuse("explore.speeds_rpm", speed, f"from {self.from_rpm:g} to {self.to_rpm:g}")
+        return self

@@ -1,0 +1,187 @@
+"""Config sections `shafts` and `torsion` of a transmission: what pinions sit on, and what torques turn."""
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from facegear.arrays import Array
+from facegear.rigid_body import MOTIONS, is_held
+from facegear.schema.base import Section, refuse, require_all
+from facegear.schema.gear_body import MaterialSection
+
+SOFTEST_BEARING, STIFFEST_BEARING = 1e6, 1e14
+"""Limits of a bearing's stiffness across and along the shaft, N/m."""
+SHORTEST_MM, LONGEST_MM = 0.5, 1e4
+"""Limits of the length of a segment, mm."""
+STEEL = MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3)
+"""Material of a shaft that gives none."""
+MOTIONS_KEPT = "x, y, z, tilt_x, tilt_y"
+"""Order of rows and columns of a bearing's stiffness matrix."""
+SYMMETRIC = 1e-9
+"""Relative size up to which the skew part and a negative eigenvalue of a bearing's matrix count as rounding.
+"""
+RESERVED = ("x", "y", "z", "theta", "tilt_x", "tilt_y")
+"""Names that no turning mass may have: those of motions."""
+OUTPUT = "output"
+"""Key of the masses behind the face gear that gives the power out."""
+
+
+class SegmentSection(Section):
+    """A piece of shaft between two steps."""
+
+    length_mm: float = Field(ge=SHORTEST_MM, le=LONGEST_MM, description="along the shaft")
+    diameter_mm: float = Field(ge=1, le=5000, description="outer diameter")
+    bore_mm: float = Field(0.0, ge=0, le=5000, description="diameter of the bore; 0: a solid shaft")
+
+    @model_validator(mode="after")
+    def _hollow(self) -> "SegmentSection":
+        if self.bore_mm >= self.diameter_mm:
+            refuse("bore_mm", self.bore_mm, f"below diameter_mm = {self.diameter_mm:g}")
+        return self
+
+
+class ShaftBearing(Section):
+    """A bearing: stiffness across and along the shaft and against tilting, or its matrix."""
+
+    at_mm: float = Field(ge=0, le=LONGEST_MM * 100, description="from the beginning of the first segment")
+    radial_n_per_m: float | None = Field(
+        None, ge=SOFTEST_BEARING, le=STIFFEST_BEARING, description="stiffness across the shaft"
+    )
+    axial_n_per_m: float | None = Field(
+        None,
+        ge=SOFTEST_BEARING,
+        le=STIFFEST_BEARING,
+        description="stiffness along the shaft; null: it does not hold the shaft that way",
+    )
+    tilt_n_m_per_rad: float | None = Field(
+        None, ge=1e-3, le=1e12, description="stiffness against tilting; null: none"
+    )
+    matrix: tuple[tuple[Annotated[float, Field(ge=-1e16, le=1e16)], ...], ...] | None = Field(
+        None, description=f"5 x 5 in {MOTIONS_KEPT}, N/m, N/rad and N m/rad, in place of the others"
+    )
+
+    @model_validator(mode="after")
+    def _given_once(self) -> "ShaftBearing":
+        require_all(self._not_twice, self._square)
+        return self
+
+    def _not_twice(self) -> None:
+        if self.matrix is None:
+            if self.radial_n_per_m is None:
+                refuse("radial_n_per_m", None, "given, or else matrix")
+            return
+        for key in ("radial_n_per_m", "axial_n_per_m", "tilt_n_m_per_rad"):
+            if (value := getattr(self, key)) is not None:
+                refuse(key, value, "left out beside matrix, which holds it")
+
+    def _square(self) -> None:
+        if self.matrix is None:
+            return
+        if [len(row) for row in self.matrix] != [MOTIONS] * MOTIONS:
+            refuse("matrix", [len(row) for row in self.matrix], f"5 rows of 5 numbers, in {MOTIONS_KEPT}")
+        matrix = np.array(self.matrix)
+        size = np.sqrt(np.abs(np.outer(matrix.diagonal(), matrix.diagonal())))
+        if (np.abs(matrix - matrix.T) > SYMMETRIC * size).any():
+            refuse("matrix", self.matrix, "symmetric")
+        if np.linalg.eigvalsh(matrix).min() < -SYMMETRIC * np.abs(matrix).max():
+            refuse("matrix", self.matrix, "such that it resists every motion: no negative eigenvalue")
+
+    def stiffness(self) -> Array:
+        """Return the stiffness matrix of the bearing.
+
+        Returns
+        -------
+        (5, 5) array
+            Stiffness in x, y, z, tilt_x and tilt_y, N/m, N/rad and N m/rad.
+        """
+        if self.matrix is not None:
+            return np.array(self.matrix, float)
+        across, along, tilting = (
+            value or 0.0 for value in (self.radial_n_per_m, self.axial_n_per_m, self.tilt_n_m_per_rad)
+        )
+        return np.diag([across, across, along, tilting, tilting])
+
+
+class ShaftSection(Section):
+    """Shaft of a pinion, in place of its bearing stiffness; lengths count away from the gears' axis."""
+
+    segments: tuple[SegmentSection, ...] = Field(max_length=100, description="one or more")
+    pinion_mm: float = Field(
+        ge=0, le=LONGEST_MM * 100, description="middle of the pinion, from the beginning of the first segment"
+    )
+    bearings: tuple[ShaftBearing, ...] = Field(
+        max_length=10, description="one or more, named A, B and so on in this order"
+    )
+    material: MaterialSection = Field(STEEL, description="of the shaft")
+    tilt_inertia_kg_m2: float | None = Field(
+        None,
+        ge=1e-12,
+        le=1e5,
+        description="of the pinion about a diameter; null: it does not tilt in the dynamics",
+    )
+
+    @property
+    def length_mm(self) -> float:
+        """From end to end; decimals of the segments that rounding adds up are none of it."""
+        return round(sum(segment.length_mm for segment in self.segments), 9)
+
+    @property
+    def is_round(self) -> bool:
+        """Whether every bearing gives way alike in all directions across."""
+        return all(bearing.matrix is None for bearing in self.bearings)
+
+    @model_validator(mode="after")
+    def _stands(self) -> "ShaftSection":
+        for key in ("segments", "bearings"):
+            if not getattr(self, key):
+                refuse(key, [], "one or more")
+        require_all(self._stations, self._check_support)
+        return self
+
+    def _stations(self) -> None:
+        length = self.length_mm
+        requirement = f"on the shaft, from 0 to {length:g} mm"
+        if self.pinion_mm > length:
+            refuse("pinion_mm", self.pinion_mm, requirement)
+        for number, bearing in enumerate(self.bearings):
+            if bearing.at_mm > length:
+                refuse(f"bearings[{number}].at_mm", bearing.at_mm, requirement)
+
+    def _check_support(self) -> None:
+        stations = [bearing.at_mm for bearing in self.bearings]
+        if max(self.pinion_mm, *stations) > self.length_mm:
+            return
+        distances = [1e-3 * (at - self.pinion_mm) for at in stations]
+        stiffnesses = [bearing.stiffness() for bearing in self.bearings]
+        if not is_held(distances, stiffnesses, 1e-3 * self.length_mm):
+            condition = "such that they hold it along its axis and against tilting"
+            refuse("bearings", f"at {', '.join(f'{at:g}' for at in stations)} mm", condition)
+
+
+class TurningMassSection(Section):
+    """A turning mass behind a torsional spring."""
+
+    name: str = Field(
+        pattern="^[a-z][a-z0-9_]*$", max_length=30, description="names the mass in tables and modes"
+    )
+    inertia_kg_m2: float = Field(ge=1e-12, le=1e7, description="reduced to the speed of the gear")
+    stiffness_n_m_per_rad: float | None = Field(
+        None, ge=1, le=1e12, description="of the spring before it, reduced to the speed of the gear"
+    )
+    segments: tuple[SegmentSection, ...] = Field(
+        (), max_length=100, description="in place of the stiffness: the shaft that twists"
+    )
+    material: MaterialSection = Field(STEEL, description="of the shaft that the segments make")
+    damping_ratio: float = Field(
+        0.01, ge=0, le=0.5, description="of the two masses that the spring joins, by themselves"
+    )
+
+    @model_validator(mode="after")
+    def _one_spring(self) -> "TurningMassSection":
+        if (self.stiffness_n_m_per_rad is None) != bool(self.segments):
+            requirement = "given, or else segments, but not both"
+            refuse("stiffness_n_m_per_rad", self.stiffness_n_m_per_rad, requirement)
+        if self.name in RESERVED:
+            refuse("name", self.name, f"none of {', '.join(RESERVED)}, which name motions of the gear itself")
+        return self

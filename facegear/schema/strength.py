@@ -1,0 +1,138 @@
+"""Config section `strength`: materials, duty cycle and factors of the rating of a tooth pair."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from facegear.bodies import BODIES
+from facegear.schema.base import Section, refuse, require_all
+from facegear.schema.cards import CARDS, Card, read_card
+from facegear.schema.csv_file import CsvFault, read_numbers
+
+BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
+"""Columns of a csv of the duty cycle."""
+
+
+class DutySection(Section):
+    """One bin of the duty cycle: the pinion's torque in this mesh, its speed, and how long."""
+
+    torque_n_m: float = Field(ge=1e-6, le=1e7, description="on the pinion, in this mesh")
+    speed_rpm: float = Field(ge=1e-3, le=1e6, description="of the pinion")
+    hours: float = Field(ge=0, le=1e7, description="how long the load lasts")
+
+
+class BodyStrength(Section):
+    """Material, roughness and loading of one gear, for the rating."""
+
+    card: Card = Field(description="name of a card of the package, a yaml file, or the card itself")
+    root_roughness_um: float = Field(
+        ge=0.1, le=40, description="Rz of the fillet, within the range of Y_R in ISO 6336-3"
+    )
+    cycles_per_turn: int | None = Field(
+        default=None,
+        ge=1,
+        le=100,
+        description="how often the same flank of a tooth is loaded in a turn; null: as on an input pinion "
+        "and on the face gears of transmission, 1 without; counted where load_factors is machine",
+    )
+    both_ways: bool = Field(
+        default=False,
+        description="the other flank is loaded as well, as on an idler; counted where load_factors "
+        "is machine",
+    )
+
+    @field_validator("card", mode="before")
+    @classmethod
+    def _read(cls, card: Any) -> Any:
+        return read_card(Card, card, CARDS)
+
+
+class Strength(Section):
+    """Safety and life of the pair under a duty cycle."""
+
+    pinion: BodyStrength = Field(description="material and loading of the pinion's teeth")
+    face_gear: BodyStrength = Field(description="material and loading of the face gear's teeth")
+    duty: tuple[DutySection, ...] = Field(default=(), max_length=10000, description="bins of the duty cycle")
+    duty_csv: str | None = Field(
+        default=None,
+        description=f"csv of the bins with columns {', '.join(BIN_COLUMNS)}; the name counts from this file",
+    )
+    application_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_A")
+    load_factors: Literal["given", "machine"] = Field(
+        default="given",
+        description="K_v and K_gamma: given here, or the loads of each flank from the machine's motion",
+    )
+    dynamic_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_v")
+    mesh_load_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_gamma of parallel meshes")
+    min_bending_safety: float = Field(
+        default=1.4, ge=1, le=10, description="S_F min: smallest safety against bending that is accepted"
+    )
+    min_pitting_safety: float = Field(
+        default=1.0, ge=1, le=10, description="S_H min: smallest safety against pitting that is accepted"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _bins(cls, values: Any) -> Any:
+        if not isinstance(values, Mapping):
+            return values
+        if isinstance(values.get("duty"), list):
+            values = {**values, "duty": tuple(values["duty"])}
+        if not isinstance(name := values.get("duty_csv"), str):
+            return values
+        if values.get("duty"):
+            refuse("duty_csv", name, "either duty_csv or duty, not both")
+        try:
+            duty = tuple(row.values for row in read_numbers(name, BIN_COLUMNS))
+        except CsvFault as fault:
+            refuse("duty_csv", name, f"a csv of numbers; {fault}")
+        return {**values, "duty_csv": None, "duty": duty}
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Strength":
+        cards = (partial(self._check_card, name) for name in BODIES)
+        require_all(self._check_factors, self._check_counted, self._check_duty, *cards)
+        return self
+
+    def _check_factors(self) -> None:
+        """Load factors are either given or taken from the machine."""
+        for key in ("dynamic_factor", "mesh_load_factor"):
+            if self.load_factors == "machine" and getattr(self, key) != 1.0:
+                refuse(key, getattr(self, key), "left out where load_factors is machine")
+
+    def _check_counted(self) -> None:
+        """Check that the loading of flanks is either given or counted in the machine."""
+        for name in BODIES:
+            for key in ("cycles_per_turn", "both_ways"):
+                if self.load_factors == "machine" and (value := getattr(getattr(self, name), key)):
+                    refuse(f"{name}.{key}", value, "left out where load_factors is machine")
+
+    def _check_duty(self) -> None:
+        if not any(load.hours > 0 for load in self.duty):
+            refuse("duty", [], "at least one bin with hours, here or in duty_csv")
+
+    def _check_card(self, name: str) -> None:
+        """The card of a body holds what the rating needs."""
+        card = getattr(self, name).card
+        for part in ("pitting", "bending"):
+            if getattr(card, part) is None:
+                refuse(f"{name}.card", card.name, f"a card with {part}, which the rating needs")
+        if card.bending.slip_layer_mm is None:
+            refuse(f"{name}.card", card.name, "a card with bending.slip_layer_mm, which the rating needs")
+        loads_both_ways = getattr(self, name).both_ways or self.load_factors == "machine"
+        if loads_both_ways and card.bending.mean_stress is None:
+            requirement = "a card with bending.mean_stress, which teeth bent both ways need"
+            refuse(f"{name}.card", card.name, requirement)
+
+    @property
+    def torques(self) -> tuple[float, float]:
+        """Smallest and largest of the duty cycle with all factors, N m; bins without hours do not count."""
+        loads = [self.factor * load.torque_n_m for load in self.duty if load.hours > 0]
+        return min(loads), max(loads)
+
+    @property
+    def factor(self) -> float:
+        """K_A K_v K_gamma, those of the machine left out."""
+        return self.application_factor * self.dynamic_factor * self.mesh_load_factor

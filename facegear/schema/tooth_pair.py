@@ -1,0 +1,117 @@
+"""The section tooth_pair: teeth, blanks, tools, material and assembly of one pinion and face gear."""
+
+from pydantic import Field
+
+from facegear.schema.base import Section
+from facegear.schema.flanks import FlanksSection
+from facegear.schema.gear_body import MaterialSection
+
+
+class ReliefSection(Section):
+    """A modification of a flank, removed along the normal."""
+
+    amount_um: float = Field(default=0.0, ge=0, le=500, description="depth taken off, largest at its end")
+    start_mm: float = Field(
+        default=0.0,
+        ge=0,
+        le=1e4,
+        description="tip, root, end: length from the end with the full amount; crowning: plain half width",
+    )
+    length_mm: float = Field(
+        default=0.0, ge=0, le=1e4, description="over which it grows from nothing to the amount"
+    )
+
+
+class PinionSection(Section):
+    """Spur pinion cut by a rack."""
+
+    width_mm: float = Field(ge=0.01, le=2000, description="face width, along the pinion's axis")
+    addendum_modules: float = Field(
+        default=1.0, ge=0.01, le=2, description="from the pitch circle to the tip circle, without shift"
+    )
+    dedendum_modules: float = Field(
+        default=1.25, ge=0.01, le=2.5, description="from the pitch circle to the root circle, without shift"
+    )
+    rack_tip_radius_modules: float = Field(
+        default=0.1, ge=0, le=0.6, description="rounding of the rack's tip, which cuts the fillet"
+    )
+    profile_shift_modules: float = Field(
+        default=0.0, ge=-1, le=1, description="shift of the rack; positive: away from the pinion's axis"
+    )
+    thinning_um: float = Field(
+        default=0.0, ge=0, le=1e5, description="off both flanks together: nominal normal backlash"
+    )
+    tip_chamfer_mm: float = Field(
+        default=0.0, ge=0, le=1000, description="radial height of a 45 degree chamfer"
+    )
+    bore_radius_mm: float = Field(ge=1e-3, le=1e4, description="of the bore, which contact analysis holds")
+    tip_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the tip")
+    root_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the root")
+    lead_crowning: ReliefSection = Field(
+        ReliefSection(), description="taken off towards both ends of the face"
+    )
+    flanks: FlanksSection = Field(FlanksSection(), description="deviations of the flanks as measured")
+    material: MaterialSection | None = Field(default=None, description="if not the pair's")
+
+
+class GearModificationsSection(Section):
+    """Material taken off both flanks of the face gear along the normal (docs/explanation/geometry.md)."""
+
+    tip_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the tip")
+    root_relief: ReliefSection = Field(ReliefSection(), description="taken off towards the root")
+    end_relief: ReliefSection = Field(ReliefSection(), description="taken off towards both ends of the face")
+    profile_crowning: ReliefSection = Field(
+        ReliefSection(), description="taken off towards tip and root alike"
+    )
+    lead_crowning: ReliefSection = Field(
+        ReliefSection(), description="taken off towards both ends of the face, from its middle on"
+    )
+    lead_slope_um: float = Field(
+        default=0.0, ge=-500, le=500, description="off the outer end, onto the inner"
+    )
+    profile_slope_um: float = Field(
+        default=0.0, ge=-500, le=500, description="off the tip, onto as far below the pitch plane"
+    )
+    bias_um: float = Field(
+        default=0.0, ge=-500, le=500, description="off the outer tip and inner root, onto the other two"
+    )
+
+
+class FaceGearSection(Section):
+    """Face gear blank."""
+
+    inner_radius_mm: float = Field(ge=0.01, le=10000, description="at which the face begins")
+    outer_radius_mm: float = Field(ge=0.01, le=10000, description="at which the face ends")
+    addendum_modules: float = Field(
+        default=1.0, ge=0.01, le=2, description="height of the teeth above the pitch plane"
+    )
+    rim_thickness_mm: float = Field(
+        ge=0.01, le=10000, description="from the root land to the back, which is clamped"
+    )
+    modifications: GearModificationsSection = Field(
+        GearModificationsSection(), description="reliefs, crowning and slopes of both flanks"
+    )
+    flanks: FlanksSection = Field(FlanksSection(), description="deviations of the flanks as measured")
+    material: MaterialSection | None = Field(default=None, description="if not the pair's")
+
+
+class ShaperSection(Section):
+    """The tool that generates the face gear."""
+
+    teeth: int = Field(ge=5, le=500, description="from the pinion's number (line contact) to three more")
+    addendum_modules: float = Field(
+        default=1.25, ge=0.01, le=2.5, description="height of its teeth above its pitch circle"
+    )
+    tip_rounding_modules: float = Field(
+        default=0.0, ge=0, le=0.6, description="radius between flank and tip land; 0: a sharp edge"
+    )
+
+
+class AssemblySection(Section):
+    """Assembly errors; signs as in docs/explanation/geometry.md."""
+
+    offset_um: float = Field(default=0.0, ge=-5000, le=5000, description="dE: offset of the axes")
+    shaft_angle_error_deg: float = Field(
+        default=0.0, ge=-2, le=2, description="dgamma: error of the angle between the axes"
+    )
+    axial_shift_um: float = Field(default=0.0, ge=-5000, le=5000, description="dq, gear away from the pinion")

@@ -1,1 +1,0 @@
-"""Shafts on bearings, condensed statically to what a gear sits on, and chains of turning masses."""

@@ -1,0 +1,1 @@
+"""Load sharing between meshes: coefficients, hunting cycle, maps and advice."""

@@ -1,0 +1,197 @@
+"""Even shares of the meshes, and load-sharing coefficients, equations (25) and (26)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array, Mask
+from facegear.machine.flanks import significant_forces
+from facegear.machine.layout import Layout, Role, Side
+from facegear.machine.machine import Machine
+from facegear.motion.plan import Motion
+from facegear.motion.track import DenseMotion
+from facegear.sharing.groups import LoadGroup
+from facegear.sharing.options import SharingOptions
+from facegear.sharing.statistics import Average, average, defined_mean, held_over_starts
+
+
+def sharing_coefficient(forces: Array) -> Array:
+    """Return the largest over the mean magnitude of the forces that share a load.
+
+    Equation (25) with two paths, (26) with three.
+
+    Parameters
+    ----------
+    forces : (..., paths) array
+        Elastic mesh forces of either flank without those that are rounding
+        (`facegear.machine.flanks.significant_forces`), N.
+
+    Returns
+    -------
+    (...) array
+        Dimensionless, in [1, paths]: 1 for equal loads, the number of paths where one carries all. NaN where
+        all forces vanish, as the coefficient is undefined.
+    """
+    sizes = np.abs(_path_by_path(forces))
+    total = sizes.sum(axis=0)
+    has_load = total > 0.0
+    ratio = len(sizes) * sizes.max(axis=0) / np.where(has_load, total, 1.0)
+    return np.where(has_load, np.clip(ratio, 1.0, len(sizes)), np.nan)
+
+
+def lost_contact(forces: Array) -> Mask:
+    """Return where at least one of the paths carries nothing.
+
+    Parameters
+    ----------
+    forces : (..., paths) array
+        Forces, N.
+
+    Returns
+    -------
+    (...) array of bool
+        True if a force is 0.
+    """
+    return (_path_by_path(forces) == 0.0).any(axis=0)
+
+
+def _path_by_path(forces: Array) -> Array:
+    """Forces (paths, ...), each path in one piece: sums over two or three neighbours in memory are slow."""
+    return np.ascontiguousarray(np.moveaxis(np.asarray(forces, dtype=float), -1, 0))
+
+
+def even_shares(machine: Machine) -> Array:
+    """Return the nominal even share of the load at each mesh.
+
+    With one face gear a mesh carries its own pinion's torque. Between two, an input gives half of its torque
+    to each, and idlers and tails share evenly what the lower gear passes on; without idlers the inputs serve
+    the lower gear's own load in proportion to their torques. Mesh load factors (K_gamma of ISO 6336-1, AGMA
+    6123) count from these.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    (meshes,) array
+        N along the line of action; nan where a mesh has none.
+    """
+    layout = machine.layout
+    pinion_torques = machine.torques[: len(layout.pinions)] / layout.pinion_arm
+    size = np.abs(
+        significant_forces(_even_forces(layout, pinion_torques, machine.torques[len(layout.pinions) :]))
+    )
+    return np.where(size > 0.0, size, np.nan)
+
+
+def _even_forces(layout: Layout, coefficients: Array, on_gears: Array) -> Array:
+    """Forces (meshes,), positive where the pinion drives; own (pinions,): what each torque asks for."""
+    if len(layout.gears) == 1:
+        return coefficients
+    inputs = np.array([pinion.role is Role.INPUT for pinion in layout.pinions])
+    lower_gear = [gear.side for gear in layout.gears].index(Side.LOWER)
+    torques = -on_gears[lower_gear] / layout.gear_arm
+    lower = np.where(inputs, 0.5 * coefficients, 0.0)
+    if inputs.all():
+        total = coefficients.sum()
+        lower = coefficients * (torques / total if total != 0.0 else 0.0)
+    else:
+        lower[~inputs] = (torques - lower.sum()) / (~inputs).sum()
+    by_side = {Side.LOWER: lower, Side.UPPER: coefficients - lower}
+    return np.concatenate([by_side[gear.side] for gear in layout.gears])
+
+
+@dataclass(frozen=True, eq=False)
+class GroupSharing:
+    """Load sharing of one group of meshes.
+
+    Attributes
+    ----------
+    group : LoadGroup
+        Its meshes.
+    coefficients : (cycles, samples) array
+        Load-sharing coefficient, dimensionless.
+    lost_contact : (cycles, samples) array of bool
+        Whether a path is without load.
+    average : Average
+        Averages of the coefficient.
+    starts_low, starts_high : float
+        Range of the means over the starting states, dimensionless.
+    """
+
+    group: LoadGroup
+    coefficients: Array
+    lost_contact: Mask
+    average: Average
+    starts_low: float
+    starts_high: float
+
+
+def cycle_forces(motion: DenseMotion) -> Array:
+    """Return the elastic mesh forces by cycle.
+
+    Parameters
+    ----------
+    motion : DenseMotion
+        Densely sampled motion.
+
+    Returns
+    -------
+    (meshes, cycles, samples) array
+        N.
+    """
+    return motion.loads.reshape(len(motion.loads), -1, motion.per_period)
+
+
+def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> tuple[Array, Mask, Average]:
+    """Return coefficient and lost contact of a group, and their average.
+
+    Parameters
+    ----------
+    motion : DenseMotion
+        Densely sampled motion.
+    group : LoadGroup
+        Meshes that share a load.
+    confidence : float
+        Confidence level from 0 to 1, dimensionless.
+
+    Returns
+    -------
+    tuple of (cycles, samples) array, (cycles, samples) array of bool and Average
+        Coefficient (dimensionless), whether a path is without load, and averages over all defined instants.
+    """
+    forces = np.moveaxis(cycle_forces(motion)[list(group.meshes)], 0, -1)
+    coefficients, lost_mask = sharing_coefficient(forces), lost_contact(forces)
+    periodic = motion.response.motion is Motion.PERIODIC
+    return coefficients, lost_mask, average(coefficients, lost_mask, confidence, periodic)
+
+
+def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
+    """Mean coefficient of each group, NaN where nothing is ever loaded."""
+    forces = np.moveaxis(cycle_forces(motion), 0, -1)
+    return [defined_mean(sharing_coefficient(forces[..., group.meshes])) for group in groups]
+
+
+def _group(
+    motion: DenseMotion,
+    group: LoadGroup,
+    options: SharingOptions,
+    start_means: list[float],
+    again: list[float],
+) -> GroupSharing:
+    """Return the result of a group; `start_means` are the means from other starts, of which `again` are those
+    of the same irregular motion.
+    """
+    coefficients, lost_mask, first = group_average(motion, group, options.confidence)
+    every = max(coefficients.shape[1] // options.samples, 1)
+    defined_means = [mean for mean in (first.mean, *start_means) if not np.isnan(mean)] or [float("nan")]
+    return GroupSharing(
+        group=group,
+        coefficients=coefficients[:, ::every],
+        lost_contact=lost_mask[:, ::every],
+        average=held_over_starts(first, again, options.confidence),
+        starts_low=min(defined_means),
+        starts_high=max(defined_means),
+    )

@@ -1,0 +1,156 @@
+"""Groups of meshes that share one load, and the names of what a machine is judged by."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from facegear.machine.layout import Layout, Role, Side
+from facegear.quantities import (
+    BEARINGS,
+    ERROR_HARMONIC,
+    ERROR_RANGE,
+    FRICTION,
+    JUMP_MARGIN,
+    K_GAMMA,
+    K_V,
+    OPEN_FRACTION,
+    PAST_LAW,
+    PEAK,
+    PRESSURE,
+    REVERSED_FRACTION,
+    ROOTS,
+)
+
+
+class GroupKind(StrEnum):
+    """`inputs`: the meshes of one input pinion, equation (25); `idlers`: one gear's idlers, equation (26).
+
+    `independent`: pinions on the only face gear. The torque of each sets the load of its mesh, so that they
+    split nothing and have no load-sharing coefficient.
+    """
+
+    INPUTS = "inputs"
+    IDLERS = "idlers"
+    INDEPENDENT = "independent"
+
+
+@dataclass(frozen=True)
+class LoadGroup:
+    """Meshes (positions in `Layout.meshes`) that share one load."""
+
+    name: str
+    kind: GroupKind
+    meshes: tuple[int, ...]
+
+    @property
+    def splits_load(self) -> bool:
+        """Whether the machine splits a load among the meshes, so that a load-sharing coefficient exists."""
+        return self.kind is not GroupKind.INDEPENDENT
+
+
+def split_groups(layout: Layout) -> tuple[LoadGroup, ...]:
+    """Return the groups among whose meshes the machine splits a load.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and meshes.
+
+    Returns
+    -------
+    tuple of LoadGroup
+        Empty where nothing is split.
+    """
+    return tuple(group for group in load_groups(layout) if group.splits_load)
+
+
+def load_groups(layout: Layout) -> tuple[LoadGroup, ...]:
+    """Return the groups of a layout with at least two meshes each; the tail pinion counts as an idler.
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and meshes.
+
+    Returns
+    -------
+    tuple of LoadGroup
+        Inputs first, then idlers.
+    """
+    of_role: dict[bool, list[int]] = {True: [], False: []}
+    for i, pinion in enumerate(layout.pinions):
+        of_role[pinion.role is Role.INPUT].append(i)
+    sides = [gear.side for gear in layout.gears]
+    groups: list[LoadGroup] = []
+    if len(sides) > 1:
+        for i in of_role[True]:
+            meshes = tuple(layout.mesh_index(i, side) for side in sides)
+            groups.append(LoadGroup(layout.pinions[i].name, GroupKind.INPUTS, meshes))
+    else:
+        meshes = tuple(layout.mesh_index(i, sides[0]) for i in of_role[True])
+        groups.append(LoadGroup("inputs", GroupKind.INDEPENDENT, meshes))
+    idler_side = Side.LOWER if Side.LOWER in sides else sides[0]
+    idlers = tuple(layout.mesh_index(i, idler_side) for i in of_role[False])
+    kind = GroupKind.IDLERS if len(sides) > 1 else GroupKind.INDEPENDENT
+    groups.append(LoadGroup("idlers", kind, idlers))
+    return tuple(group for group in groups if len(group.meshes) > 1)
+
+
+def quantity_names(
+    layout: "Layout",
+    dynamic: bool,
+    contact: bool = False,
+    gauges: bool = False,
+    jumps: bool = False,
+    friction: bool = False,
+    law: bool = False,
+) -> tuple[str, ...]:
+    """Return the columns of a sample.
+
+    `k_gamma <mesh>`: mesh load factor of a path, its largest mean of a mesh cycle over its nominal even share
+    (`facegear.sharing.even_shares`); of the motion with `k_v <mesh>`, the largest load over that mean;
+    `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26)); then the
+    largest load of a mesh, the fraction of time in which some mesh that shares a load carries nothing, and in
+    which some mesh is loaded on the flank that it does not work on; the mass of bearings for the loads on
+    them (`facegear.sharing.quantities`).
+
+    Parameters
+    ----------
+    layout : Layout
+        Bodies and meshes.
+    dynamic : bool
+        Whether the quantities are of the motion.
+    contact : bool
+        Whether the loaded transmission error of the tooth pair and its pressure are listed.
+    gauges : bool
+        Whether the root stress of both bodies is listed, too (`facegear.strength.contact_pressure`).
+    jumps : bool
+        Whether the distance from the operating speed to the nearest jump is listed
+        (`facegear.motion.sweeps.whole_sweep`).
+    friction : bool
+        Whether the columns FRICTION are listed.
+    law : bool
+        Whether the fraction of positions at which a flank is past the last level of its load-dependent law,
+        the largest of all, is listed.
+
+    Returns
+    -------
+    tuple of str
+        Names in the order of the columns.
+    """
+    # Those who only check names, as a config does, need not load what a machine is made of.
+    groups = load_groups(layout)
+    sharing_meshes = [layout.mesh_names[mesh] for group in groups for mesh in group.meshes]
+    paths = [f"{factor} {mesh}" for factor in (K_GAMMA, K_V)[: 1 + dynamic] for mesh in sharing_meshes]
+    names = [
+        *paths,
+        *(f"coefficient {group.name}" for group in split_groups(layout)),
+        PEAK,
+        OPEN_FRACTION,
+        REVERSED_FRACTION,
+        BEARINGS,
+    ]
+    names += [PAST_LAW] if law else []
+    names += [ERROR_RANGE, ERROR_HARMONIC, PRESSURE] if contact else []
+    names += ROOTS.values() if contact and gauges else []
+    names += FRICTION if friction else ()
+    return (*names, *([JUMP_MARGIN] if jumps else []))

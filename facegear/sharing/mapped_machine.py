@@ -1,0 +1,294 @@
+"""A machine at rest with what decides its load sharing: stiffness, load and backlash of its paths."""
+
+from functools import cached_property
+
+import numpy as np
+
+from facegear.arrays import Array, Integers
+from facegear.machine.flank_errors import constant_errors
+from facegear.machine.flanks import flank_law, significant_forces
+from facegear.machine.layout import Side
+from facegear.machine.loaded_modes import pressed_springs
+from facegear.machine.machine import Machine
+from facegear.machine.static_gears import at_rest
+from facegear.machine.statics import Equilibria, settle
+from facegear.sharing.closed_form import SplitMachine, plane_freedom
+from facegear.sharing.even_shares import even_shares
+from facegear.sharing.groups import GroupKind, LoadGroup, split_groups
+
+
+class MappedMachine:
+    """A machine at rest, with the stiffness and load of its paths; computed when asked for.
+
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes and two face gears.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+
+    @cached_property
+    def machine_at_rest(self) -> Machine:
+        """The machine for static questions alone."""
+        return at_rest(self.machine)
+
+    @cached_property
+    def base(self) -> Equilibria:
+        """Equilibrium without drawn errors. Raises NotConverged."""
+        return self.equilibria(np.zeros((1, len(self.machine.layout.pinions))))
+
+    @cached_property
+    def forces(self) -> Array:
+        """Load of each mesh without drawn errors, (meshes,), N."""
+        return np.abs(significant_forces(self.base.forces)[0])
+
+    @cached_property
+    def mesh_springs(self) -> Array:
+        """Stiffness of each mesh under its load, (meshes,), N/m; 0 where it carries nothing."""
+        springs = np.diagonal(pressed_springs(self.machine_at_rest)[1])
+        return np.asarray(springs.reshape(2, -1).sum(axis=0))
+
+    def equilibria(self, late: Array) -> Equilibria:
+        """Equilibrium for pinions whose upper meshes are late.
+
+        Parameters
+        ----------
+        late : (samples, pinions) array
+            Lateness beside the machine's own errors, m along the line of action; positive unloads the mesh.
+
+        Returns
+        -------
+        Equilibria
+            One for each sample, in m and N. Raises NotConverged.
+        """
+        layout = self.machine.layout
+        meshes, upper = len(layout.meshes), [layout.mesh_index(i, Side.UPPER) for i in range(late.shape[1])]
+        tangential = np.zeros((len(late), meshes))
+        tangential[:, upper] = late
+        errors = constant_errors(self.machine_at_rest) + np.concatenate([tangential, -tangential], axis=1)
+        names = [f"sample {number}" for number in range(len(late))]
+        return settle(
+            self.machine_at_rest, flank_law(self.machine_at_rest).mean(), np.zeros(len(late)), errors, names
+        )
+
+    def idler_forces(self, group: LoadGroup, late: Array) -> Array:
+        """Load of the meshes of a group of idlers whose paths are late.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Idlers.
+        late : (samples, paths) array
+            Lateness of each path, m.
+
+        Returns
+        -------
+        (samples, paths) array
+            N. Raises NotConverged.
+        """
+        pinions, every = self.pinions(group), np.zeros((len(late), len(self.machine.layout.pinions)))
+        every[:, pinions] = late * self.working_flank(group)
+        return np.abs(significant_forces(self.equilibria(every).forces)[:, list(group.meshes)])
+
+    def working_flank(self, group: LoadGroup) -> Array:
+        """Return on which flank the upper mesh of each path works.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Idlers.
+
+        Returns
+        -------
+        (paths,) array
+            Dimensionless: 1 on the drive flank, -1 on the back flank.
+        """
+        layout, forces = self.machine.layout, self.base.forces[0]
+        upper = [layout.mesh_index(i, Side.UPPER) for i in self.pinions(group)]
+        return np.where(forces[upper] < 0.0, -1.0, 1.0)
+
+    def pinions(self, group: LoadGroup) -> Integers:
+        """Return the numbers of the pinions of a group's meshes.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        (meshes,) array of int
+            In the order of the meshes, dimensionless.
+        """
+        return np.array([self.machine.layout.meshes[mesh][0] for mesh in group.meshes])
+
+    def even(self, group: LoadGroup) -> Array:
+        """Return the nominal even share of each mesh of a group.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        (meshes,) array
+            N; nan where there is none.
+        """
+        return np.asarray(even_shares(self.machine)[list(group.meshes)])
+
+    def load(self, group: LoadGroup) -> float:
+        """Return the load W that the meshes of a group carry together without drawn errors.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        float
+            N.
+        """
+        return float(self.forces[list(group.meshes)].sum())
+
+    def factor(self, group: LoadGroup) -> float:
+        """Return K_gamma of a group without drawn errors.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        float
+            The number, dimensionless.
+        """
+        return float((self.forces[list(group.meshes)] / self.even(group)).max())
+
+    def group_spring(self, group: LoadGroup) -> float:
+        """Return the mean stiffness of the loaded meshes of the pinions of a group.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        float
+            N/m; nan where none is loaded.
+        """
+        pinions = self.pinions(group)
+        is_on_pinion = [i in pinions for i, _ in self.machine.layout.meshes]
+        springs = self.mesh_springs[is_on_pinion]
+        has_load = springs > 0.0
+        return float(springs[has_load].mean()) if has_load.any() else float("nan")
+
+    def bearing(self, group: LoadGroup) -> float:
+        """Return the mean tangential stiffness of the bearings of the pinions of a group.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        float
+            N/m.
+        """
+        bodies = [self.machine.layout.pinions[i].body for i in self.pinions(group)]
+        return float(np.mean([body.bearing[0] for body in bodies]))
+
+    def path_stiffness(self, group: LoadGroup) -> float:
+        """Return the stiffness k_e of a path through an idler.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Idlers.
+
+        Returns
+        -------
+        float
+            N/m: two meshes and the bearing in series.
+        """
+        form = SplitMachine(1, 1, 1.0, self.group_spring(group), 0.0, self.machine.layout.pressure_angle)
+        return form.path_stiffness(self.bearing(group))
+
+    def freedom(self, group: LoadGroup) -> float:
+        """Return `plane_freedom` of the face gears as they are held.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Idlers.
+
+        Returns
+        -------
+        float
+            The number, dimensionless.
+        """
+        layout = self.machine.layout
+        bearings = tuple(0.5 * (gear.body.bearing[0] + gear.body.bearing[1]) for gear in layout.gears)
+        stiffness = self.path_stiffness(group)
+        return plane_freedom(len(group.meshes), stiffness, (bearings[0], bearings[1]), layout.pressure_angle)
+
+    def backlash(self, group: LoadGroup) -> float:
+        """Return the mean backlash 2 b of the meshes of a group.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Meshes that share a load.
+
+        Returns
+        -------
+        float
+            m.
+        """
+        return float(2.0 * self.machine.half_backlash[list(group.meshes)].mean())
+
+    def number(self, group: LoadGroup, deviation: float) -> float:
+        """Number that decides the sharing of a group, dimensionless.
+
+        Parameters
+        ----------
+        group : LoadGroup
+            Idlers: k_e times `deviation` over W. Meshes of an input: 2 b k over its load.
+        deviation : float
+            Standard deviation of the lateness of a path, m.
+
+        Returns
+        -------
+        float
+            The number, dimensionless; nan where the group carries nothing.
+        """
+        load = self.load(group)
+        if load <= 0.0:
+            return float("nan")
+        if group.kind is GroupKind.IDLERS:
+            return self.path_stiffness(group) * deviation / load
+        return self.backlash(group) * self.group_spring(group) / load
+
+
+def groups_of_kind(machine: Machine, kind: GroupKind) -> list[LoadGroup]:
+    """Return the groups of meshes of one kind that split a load.
+
+    Parameters
+    ----------
+    machine : Machine
+        With geometric meshes.
+    kind : GroupKind
+        Idlers, which have a map over the deviation of their errors, or inputs, over their misfit.
+
+    Returns
+    -------
+    list of LoadGroup
+        Empty where there is none.
+    """
+    return [group for group in split_groups(machine.layout) if group.kind is kind]

@@ -1,0 +1,211 @@
+"""Machines that differ in what decides their load sharing, and drawn deviations of their paths."""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.layout import Layout, Role, Side
+from facegear.machine.machine import Machine
+from facegear.sharing.groups import GroupKind, LoadGroup
+from facegear.sharing.mapped_machine import MappedMachine
+from facegear.sharing.options import MapOptions
+
+LEVELS = (50.0, 95.0, 99.0)
+"""Percentiles of K_gamma in tables, %."""
+JUDGED_LEVEL = 95.0
+"""Percentile that advice is about, %."""
+
+
+def draws(group: LoadGroup, options: MapOptions) -> Array:
+    """Draw the lateness of the paths of a group.
+
+    Parameters
+    ----------
+    group : LoadGroup
+        Idlers.
+    options : MapOptions
+        Number of samples and seed.
+
+    Returns
+    -------
+    (samples, paths) array
+        Lateness over its standard deviation, dimensionless.
+    """
+    random = np.random.default_rng(options.seed)
+    return random.standard_normal((options.samples, len(group.meshes)))
+
+
+def group_levels(
+    mapped: MappedMachine, group: LoadGroup, deviation: float, options: MapOptions
+) -> tuple[float, ...]:
+    """Return percentiles of K_gamma of a group by statics.
+
+    Parameters
+    ----------
+    mapped : MappedMachine
+        The machine.
+    group : LoadGroup
+        Meshes of an input, or idlers.
+    deviation : float
+        Standard deviation of the lateness of a path, m.
+    options : MapOptions
+        Samples.
+
+    Returns
+    -------
+    tuple of float
+        One for each of LEVELS, dimensionless. Raises NotConverged.
+    """
+    if group.kind is GroupKind.INPUTS:
+        return (mapped.factor(group),) * len(LEVELS)
+    forces = mapped.idler_forces(group, deviation * draws(group, options))
+    return levels((forces / mapped.even(group)).max(axis=1))
+
+
+def levels(factors: Array) -> tuple[float, ...]:
+    """Return the percentiles LEVELS of drawn values.
+
+    Parameters
+    ----------
+    factors : (samples,) array
+        Values in any unit.
+
+    Returns
+    -------
+    tuple of float
+        In the same unit.
+    """
+    return tuple(float(value) for value in np.percentile(factors, LEVELS))
+
+
+def judged_factor(mapped: MappedMachine, group: LoadGroup, options: MapOptions) -> float:
+    """Return K_gamma of a group by statics, as advice judges it.
+
+    Parameters
+    ----------
+    mapped : MappedMachine
+        The machine.
+    group : LoadGroup
+        Meshes of an input, or idlers.
+    options : MapOptions
+        Deviations and samples.
+
+    Returns
+    -------
+    float
+        The percentile JUDGED_LEVEL of idlers, the value of an input; dimensionless. Raises NotConverged.
+    """
+    deviation = options.deviation(mapped.machine.layout.pressure_angle)
+    return group_levels(mapped, group, deviation, options)[LEVELS.index(JUDGED_LEVEL)]
+
+
+FREE = 0.1
+"""Radial stiffness of the bearing of a face gear that floats, N/m: nothing beside meshes of 1e8 N/m, and
+enough to place a gear that no mesh holds.
+"""
+
+
+def floated(machine: Machine, sides: Collection[Side]) -> Machine:
+    """Let face gears move freely in their planes.
+
+    Parameters
+    ----------
+    machine : Machine
+        With bearings as they are.
+    sides : collection of Side
+        The gears that float.
+
+    Returns
+    -------
+    Machine
+        With radial bearing stiffness FREE there; along the axis and in tilt the gears are held as before.
+    """
+    gears = tuple(
+        replace(gear, body=replace(gear.body, bearing=(FREE, FREE, gear.body.bearing[2]), bearing_xy=0.0))
+        if gear.side in sides
+        else gear
+        for gear in machine.layout.gears
+    )
+    return _with_layout(machine, replace(machine.layout, gears=gears))
+
+
+def with_scaled_bearings(machine: Machine, roles: Collection[Role], factor: float) -> Machine:
+    """Scale the radial stiffness of the bearings of pinions.
+
+    Parameters
+    ----------
+    machine : Machine
+        With bearings as they are; a shaft counts by what it leaves of a bearing at rest.
+    roles : collection of Role
+        Pinions whose bearings change.
+    factor : float
+        On the radial stiffness, dimensionless.
+
+    Returns
+    -------
+    Machine
+        With these bearings; clearance and axial stiffness stay.
+    """
+    if factor == 1.0:
+        return machine
+    numbers = {i for i, pinion in enumerate(machine.layout.pinions) if pinion.role in roles}
+    pinions = list(machine.layout.pinions)
+    for i in numbers:
+        body = pinions[i].body
+        x, y, z = body.bearing
+        softer = replace(body, bearing=(factor * x, factor * y, z), bearing_xy=factor * body.bearing_xy)
+        pinions[i] = replace(pinions[i], body=softer)
+    new_machine = _with_layout(machine, replace(machine.layout, pinions=tuple(pinions)))
+    if new_machine.drive_line is None:
+        return new_machine
+    return replace(new_machine, drive_line=new_machine.drive_line.without_shafts(numbers, new_machine.layout))
+
+
+def with_half_backlash(machine: Machine, half: float) -> Machine:
+    """Give every mesh the same backlash.
+
+    Parameters
+    ----------
+    machine : Machine
+        With backlash as it is.
+    half : float
+        Half the backlash from flank to flank, m.
+
+    Returns
+    -------
+    Machine
+        With this backlash.
+    """
+    return replace(machine, half_backlash=np.full(len(machine.layout.meshes), half))
+
+
+def with_scaled_backlash(machine: Machine, factor: float) -> Machine:
+    """Scale the backlash of every mesh, so that meshes that differ keep their proportion.
+
+    Parameters
+    ----------
+    machine : Machine
+        With backlash as it is.
+    factor : float
+        On the backlash, dimensionless.
+
+    Returns
+    -------
+    Machine
+        With this backlash.
+    """
+    return replace(machine, half_backlash=factor * machine.half_backlash)
+
+
+def _with_layout(machine: Machine, layout: Layout) -> Machine:
+    """The machine with the same bodies on other bearings."""
+    line, bodies = machine.drive_line, machine.bodies
+    return replace(
+        machine,
+        layout=layout,
+        drive_line=line and replace(line, layout=layout),
+        bodies=replace(bodies, layout=layout) if isinstance(bodies, ElasticGears) else bodies,
+    )

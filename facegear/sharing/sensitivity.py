@@ -1,0 +1,246 @@
+"""Sensitivity of load sharing to every single error, and to the stiffness of the bearings."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Mask
+from facegear.machine.elastic_gears import ElasticGears
+from facegear.machine.flanks import flank_law
+from facegear.machine.imperfections import Imperfections, Runout, perfect
+from facegear.machine.kinematics import KINEMATICS
+from facegear.machine.layout import Kinematics, Layout, Role
+from facegear.machine.machine import Machine, balanced_torques
+from facegear.sharing.even_shares import even_shares
+from facegear.sharing.hunting import HuntingCycle, at_cycles, hunting_cycle, hunting_length, largest
+
+STEP = 1e-10
+"""Step of the differences, m: far above rounding, and so small that no other mesh cycle becomes the
+hardest.
+"""
+POSITIONS = 8
+"""Positions in a mesh cycle."""
+BEARINGS = np.geomspace(1e6, 1e11, 26)
+"""Stiffness of the bearings in the scan, N/m."""
+
+
+def worst_factor(run: HuntingCycle, kind: str | None = None) -> float:
+    """Return the largest K_gamma of all paths, or of the groups of one kind.
+
+    Parameters
+    ----------
+    run : HuntingCycle
+        The quasi-static motion.
+    kind : str or None
+        Value of a GroupKind; None for all groups.
+
+    Returns
+    -------
+    float
+        K_gamma, dimensionless; nan where there is none.
+    """
+    factors = [largest(run.path_factors(group)) for group in run.groups if kind in (None, group.kind.value)]
+    return largest(np.array(factors))
+
+
+def sensitivities(base: HuntingCycle) -> pd.DataFrame:
+    """Compute the change of K_gamma per um of each error.
+
+    Central differences about the machine as it is; sizes that cannot be negative count from where they are.
+    Both ends are taken at the same positions, POSITIONS or more, of the same mesh cycles: of the longer of
+    their hunting cycles those that can be the hardest of a group. A group whose paths have no K_gamma has no
+    row.
+
+    Parameters
+    ----------
+    base : HuntingCycle
+        The whole hunting cycle of the machine as it is.
+
+    Returns
+    -------
+    pd.DataFrame
+        One row an error and group, largest first: columns error, group, per_um.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
+    """
+    base = _coarser(base)
+    machine, rows, hard = base.machine, [], _may_be_hardest(base)
+    for name, low, high, width in _changes(machine):
+        end_machines = (low, high)
+        # The base repeats itself through a longer hunting cycle.
+        hardest = np.flatnonzero(np.tile(hard, max(map(hunting_length, end_machines)) // hard.size))
+        ends = [at_cycles(end_machine, hardest, base.positions) for end_machine in end_machines]
+        for group in base.groups:
+            before, after = (largest(run.path_factors(group)) for run in ends)
+            rows.append((name, group.name, 1e-6 * (after - before) / width))
+    frame = pd.DataFrame(rows, columns=["error", "group", "per_um"])
+    return frame.dropna().sort_values("per_um", key=np.abs, ascending=False, ignore_index=True)
+
+
+def _coarser(base: HuntingCycle) -> HuntingCycle:
+    """Return the hunting cycle at fewer positions of each mesh cycle, evenly spaced."""
+    every = base.positions // POSITIONS
+    if every < 2 or base.positions % every:
+        return base
+    loads = base.flank_forces[::every]
+    return replace(base, positions=base.positions // every, cycles=base.cycles[::every], flank_forces=loads)
+
+
+def _may_be_hardest(base: HuntingCycle) -> Mask:
+    """Whether each mesh cycle of the base may hold the largest K_gamma of some group after a change of STEP.
+
+    Forces of springs that only push change by no more than the stiffest of them times the change of all gaps
+    together. Where no group has a K_gamma the first cycle stands for all.
+    """
+    machine, even = base.machine, even_shares(base.machine)
+    factors = np.nan_to_num(base.cycle_means / even, nan=-np.inf)
+    bearings = max(max(pinion.body.bearing[:2]) for pinion in machine.layout.pinions)
+    meshes = float(flank_law(machine).steepest.max())
+    stiffest = max(meshes, np.sqrt(meshes * bearings))
+    reach = 2.0 * STEP * stiffest * np.sqrt(base.flank_forces.shape[1])
+    hard = np.zeros(len(factors), dtype=bool)
+    for group in base.groups:
+        group_factors = factors[:, list(group.meshes)]
+        threshold = (
+            group_factors.max() - reach / np.nanmin(even) if np.isfinite(group_factors).any() else np.inf
+        )
+        hard |= (group_factors >= threshold).any(axis=1)
+    hard[0] |= not hard.any()
+    return hard
+
+
+def bearing_scan(machine: Machine) -> pd.DataFrame:
+    """Compute K_gamma of each kind of group against the bearing stiffness of inputs or idlers, in both
+    kinematics.
+
+    The scan takes one mesh cycle, with constant errors of meshes only. A kind whose paths have no even share
+    has no K_gamma and no row.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+
+    Returns
+    -------
+    pd.DataFrame
+        Columns kinematics, varied, stiffness_n_per_m, kind, k_gamma.
+
+    Raises
+    ------
+    NotConverged
+        If no equilibrium is found.
+    """
+    rows = []
+    for name, kinematics in KINEMATICS.items():
+        base = _with_kinematics(machine, kinematics)
+        for varied_pinions, roles in (("inputs", (Role.INPUT,)), ("idlers", (Role.IDLER, Role.TAIL))):
+            for stiffness in BEARINGS:
+                run = hunting_cycle(_with_bearings(base, roles, float(stiffness)), POSITIONS)
+                for kind in dict.fromkeys(group.kind.value for group in run.groups):
+                    rows.append((name, varied_pinions, stiffness, kind, worst_factor(run, kind)))
+    columns = ["kinematics", "varied", "stiffness_n_per_m", "kind", "k_gamma"]
+    return pd.DataFrame(rows, columns=columns).dropna(ignore_index=True)
+
+
+def _changes(machine: Machine) -> Iterator[tuple[str, Machine, Machine, float]]:
+    """Yield the name of each error, the machine with less and more of it, and the difference (m)."""
+    layout, errors, half = machine.layout, machine.imperfections, machine.half_backlash
+    for mesh, name in enumerate(layout.mesh_names):
+        yield f"error {name}", *_shift_error(machine, "error", mesh), 2 * STEP
+        tighter, looser = _with_step(half, mesh, -min(STEP, half[mesh])), _with_step(half, mesh, STEP)
+        low, high = (replace(machine, half_backlash=values) for values in (tighter, looser))
+        yield f"backlash {name}", low, high, 2 * float(looser[mesh] - tighter[mesh])
+    for i, pinion in enumerate(layout.pinions):
+        for k, letter in enumerate("xy"):
+            yield f"position {letter} {pinion.name}", *_shift_error(machine, "position", (i, k)), 2 * STEP
+        if errors.bearing_clearance[i] > STEP:
+            yield f"clearance {pinion.name}", *_shift_error(machine, "bearing_clearance", i), 2 * STEP
+    for key, names in (
+        ("pinion_runout", [pinion.name for pinion in layout.pinions]),
+        ("gear_runout", [gear.name for gear in layout.gears]),
+    ):
+        for body, name in enumerate(names):
+            amplitude = getattr(errors, key)[body].amplitude
+            ends = max(amplitude - STEP, 0.0), amplitude + STEP
+            low, high = (replace(machine, imperfections=_with_runout(errors, key, body, end)) for end in ends)
+            yield f"runout {name}", low, high, ends[1] - ends[0]
+
+
+def _shift_error(machine: Machine, key: str, index: int | tuple[int, int]) -> tuple[Machine, Machine]:
+    """Return the machine with one value of its errors smaller, and larger, by STEP."""
+    errors = machine.imperfections
+
+    def machine_with(step: float) -> Machine:
+        values: dict[str, Any] = {key: _with_step(getattr(errors, key), index, step)}
+        return replace(machine, imperfections=replace(errors, **values))
+
+    return machine_with(-STEP), machine_with(STEP)
+
+
+def _with_step(values: Array, index: int | tuple[int, int], step: float) -> Array:
+    """Return a copy of the values with a step added to one of them."""
+    stepped = values.copy()
+    stepped[index] += step
+    return stepped
+
+
+def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> Imperfections:
+    runouts: list[Runout] = list(getattr(base, key))
+    runouts[body] = replace(runouts[body], amplitude=amplitude)
+    values: dict[str, Any] = {key: tuple(runouts)}
+    return replace(base, **values)
+
+
+def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
+    """Return the machine with the given kinematics, with its mesh errors, backlash and stiffness."""
+    layout = machine.layout
+    conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
+    radius = kinematics.gear_radius(conjugate, layout.pressure_angle)
+    gears = tuple(replace(gear, body=replace(gear.body, tilt=None)) for gear in layout.gears)
+    new_layout = replace(layout, gear_radius=radius, kinematics=kinematics, gears=gears)
+    old_errors = machine.imperfections
+    errors = replace(perfect(new_layout), error=old_errors.error, stiffness=old_errors.stiffness)
+    pinions = len(layout.pinions)
+    lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
+    torques = balanced_torques(new_layout, machine.torques[:pinions], float(lower))
+    # At rest a drive line is what the layout has in its place.
+    machine_with_layout = replace(
+        machine, layout=new_layout, torques=torques, imperfections=errors, drive_line=None
+    )
+    if kinematics is not layout.kinematics:
+        return replace(machine_with_layout, bodies=None, softening=None)
+    if isinstance(machine.bodies, ElasticGears):
+        return replace(machine_with_layout, bodies=replace(machine.bodies, layout=new_layout))
+    return machine_with_layout
+
+
+def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:
+    """Return the machine with other bearings of these pinions, which replace their shafts, too."""
+    machine_with_bearings = replace(machine, layout=_layout_with_bearings(machine.layout, roles, stiffness))
+    if machine.drive_line is None:
+        return machine_with_bearings
+    pinions = {i for i, pinion in enumerate(machine.layout.pinions) if pinion.role in roles}
+    return replace(
+        machine_with_bearings,
+        drive_line=machine.drive_line.without_shafts(pinions, machine_with_bearings.layout),
+    )
+
+
+def _layout_with_bearings(layout: Layout, roles: tuple[Role, ...], stiffness: float) -> Layout:
+    pinions = tuple(
+        replace(
+            pinion,
+            body=replace(pinion.body, bearing=(stiffness, stiffness, pinion.body.bearing[2]), bearing_xy=0.0),
+        )
+        if pinion.role in roles
+        else pinion
+        for pinion in layout.pinions
+    )
+    return replace(layout, pinions=pinions)

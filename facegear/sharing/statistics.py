@@ -1,0 +1,224 @@
+"""Averages of a coefficient over many mesh cycles, and the samples that they need."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy
+
+from facegear.arrays import Array, Integers, Mask
+from facegear.motion.plan import Motion
+from facegear.motion.steady_state.averages import BATCHES, mean_interval
+from facegear.motion.steady_state.response import SteadyState
+from facegear.motion.track import DenseMotion, track
+
+DENSE, MAX_SAMPLES_OF_RUN = 2048, 16_384
+"""Samples of a mesh cycle, and of a period of many cycles."""
+ORBIT_TOLERANCE = 1e-5
+"""Distance over the length scale, in mesh deflections, within which two positions count as one."""
+
+
+def densely_sampled(response: SteadyState) -> DenseMotion:
+    """Return a periodic motion at many instants, others at their samples.
+
+    Coefficients jump where a path takes up or loses load, so their means err by the time between two samples:
+    by 6e-3 with 256 a cycle. The motion has no jumps, and its Fourier series gives the instants between.
+
+    Parameters
+    ----------
+    response : SteadyState
+        The motion at its own samples.
+
+    Returns
+    -------
+    DenseMotion
+        At most DENSE samples in a mesh cycle, or MAX_SAMPLES_OF_RUN in a period of many cycles.
+    """
+    factor = 1
+    if response.motion is Motion.PERIODIC:
+        longest = MAX_SAMPLES_OF_RUN // len(response.coordinates)
+        factor = max(min(DENSE // response.per_period, longest), 1)
+    return DenseMotion(response, factor * response.per_period, track(response, factor))
+
+
+def same_orbit(first: SteadyState, second: SteadyState) -> bool:
+    """Whether two periodic motions are one, perhaps begun at another cycle of it.
+
+    Parameters
+    ----------
+    first : SteadyState
+        A motion.
+    second : SteadyState
+        Another motion of the same machine.
+
+    Returns
+    -------
+    bool
+        False where one is not periodic.
+    """
+    if not first.period or first.period != second.period:
+        return False
+    distances = first.coordinates[:: first.per_period] - second.coordinates[0]
+    far = np.abs(distances @ first.system.mesh_jacobian.T).max(axis=1)
+    return bool(far.min() <= ORBIT_TOLERANCE * first.system.scale)
+
+
+SIGNIFICANCE = 0.05
+"""Chance at which means from several starts are wrongly taken to differ by more than batches say."""
+
+
+@dataclass(frozen=True)
+class Average:
+    """Mean over all defined instants, its confidence half-width, extremes, and statistics of single cycles.
+
+    `cycle_low` and `cycle_high` bound the means of single cycles at the confidence level; `cycle_minimum` is
+    the median of their minima. `lost_fraction` and `undefined_fraction` are shares of time with a path
+    without load and with no load at all; undefined instants are left out of everything else. All are NaN
+    where nothing is ever loaded.
+    """
+
+    mean: float
+    half_width: float
+    minimum: float
+    maximum: float
+    cycle_low: float
+    cycle_high: float
+    cycle_minimum: float
+    lost_fraction: float
+    undefined_fraction: float
+    cycles: int
+
+
+def average(
+    coefficients: Array,
+    lost_mask: Mask,
+    confidence: float = 0.95,
+    periodic: bool = False,
+) -> Average:
+    """Average a coefficient over many mesh cycles.
+
+    A periodic motion given over its whole period has an exact mean: its half-width is zero.
+
+    Parameters
+    ----------
+    coefficients : (cycles, samples) array
+        Dimensionless; NaN where undefined.
+    lost_mask : (cycles, samples) array of bool
+        Whether a path is without load.
+    confidence : float
+        Confidence level from 0 to 1, dimensionless.
+    periodic : bool
+        Whether the samples are of a whole period.
+
+    Returns
+    -------
+    Average
+        Dimensionless.
+    """
+    is_undefined = np.isnan(coefficients)
+    counts = (~is_undefined).sum(axis=-1)
+    has_load = counts > 0
+    count = len(coefficients)
+    if not has_load.any():
+        nan = float("nan")
+        return Average(
+            mean=nan,
+            half_width=nan,
+            minimum=nan,
+            maximum=nan,
+            cycle_low=nan,
+            cycle_high=nan,
+            cycle_minimum=nan,
+            lost_fraction=float(lost_mask.mean()),
+            undefined_fraction=1.0,
+            cycles=count,
+        )
+    sums = np.where(is_undefined, 0.0, coefficients).sum(axis=-1)
+    means = sums[has_load] / counts[has_load]
+    lows = np.where(is_undefined, np.inf, coefficients).min(axis=-1)[has_load]
+    tail = 0.5 * (1.0 - confidence)
+    return Average(
+        mean=float(sums.sum() / counts.sum()),
+        half_width=0.0 if periodic else _half_width(sums, counts, confidence),
+        minimum=float(np.nanmin(coefficients)),
+        maximum=float(np.nanmax(coefficients)),
+        cycle_low=float(np.quantile(means, tail)),
+        cycle_high=float(np.quantile(means, 1.0 - tail)),
+        cycle_minimum=float(np.median(lows)),
+        lost_fraction=float(lost_mask.mean()),
+        undefined_fraction=float(is_undefined.mean()),
+        cycles=count,
+    )
+
+
+def held_over_starts(first_average: Average, again: Sequence[float], confidence: float) -> Average:
+    """Return the average of an irregular motion with a half-width that also holds for its means from other
+    starts.
+
+    Batches of one run show nothing of what changes more slowly than the run lasts, other runs do. Where the
+    variance of the means is more than chance makes of that of the batches (F test at SIGNIFICANCE), the
+    half-width is Student's of a single one of n + 1 runs.
+
+    Parameters
+    ----------
+    first_average : Average
+        Average of one run.
+    again : sequence of n floats
+        Means of the same motion from other starts, dimensionless.
+    confidence : float
+        Confidence level from 0 to 1, dimensionless.
+
+    Returns
+    -------
+    Average
+        Dimensionless.
+    """
+    means = [first_average.mean, *(mean for mean in again if not np.isnan(mean))]
+    freedom = len(means) - 1
+    if freedom < 1 or not first_average.half_width > 0.0:
+        return first_average
+    batches = min(BATCHES, first_average.cycles) - 1
+    error = first_average.half_width / scipy.special.stdtrit(batches, 0.5 + 0.5 * confidence)
+    spread = float(np.std(means, ddof=1))
+    if (spread / error) ** 2 <= scipy.special.fdtri(freedom, batches, 1.0 - SIGNIFICANCE):
+        return first_average
+    return replace(
+        first_average, half_width=float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence)) * spread
+    )
+
+
+def defined_mean(coefficients: Array) -> float:
+    """Return the mean over all defined instants, as `average` has it.
+
+    Parameters
+    ----------
+    coefficients : array of any shape (...)
+        Dimensionless; NaN where undefined.
+
+    Returns
+    -------
+    float
+        Dimensionless; NaN where no instant is defined.
+    """
+    is_undefined = np.isnan(coefficients)
+    if not is_undefined.any():
+        return float(coefficients.mean())
+    return float("nan") if is_undefined.all() else float(coefficients[~is_undefined].mean())
+
+
+def _half_width(sums: Array, counts: Integers, confidence: float) -> float:
+    """Half-width of the mean's confidence interval from batch means; sums and counts are (cycles,).
+
+    Cycles follow each other and are not independent, batches of many cycles nearly are. NaN from one batch.
+    """
+    batches = min(BATCHES, sums.size)
+    means = [
+        batch_sums.sum() / batch_counts.sum()
+        for batch_sums, batch_counts in zip(
+            np.array_split(sums, batches), np.array_split(counts, batches), strict=True
+        )
+        if batch_counts.sum() > 0
+    ]
+    if len(means) < 2:
+        return float("nan")
+    return float(mean_interval(np.array(means), confidence))

@@ -1,0 +1,1 @@
+"""Direct elimination of sparse symmetric systems: nested dissection, fronts, Schur complements."""

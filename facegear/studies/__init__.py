@@ -1,0 +1,1 @@
+"""Many machines: samples of tolerances, designs of a search, and their statistics."""

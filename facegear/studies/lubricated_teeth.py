@@ -1,0 +1,180 @@
+"""Friction, heat and film of machines among many, by the few points of the contact that decide them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+import pandas as pd
+
+from facegear import quantities
+from facegear.arrays import Arrays
+from facegear.build.lubrication import contacts_of, lubrication_of
+from facegear.build.tooth_pair import ToothPair
+from facegear.lubrication.contact_points import LoadedContact
+from facegear.lubrication.film import temperature_safety
+from facegear.lubrication.machine_loss import LoadedPair, MachineLoss, MeshLoads, Pair, machine_loss
+from facegear.lubrication.reduction import Condition, FewPlaces, ReducedPair, reduce_contacts
+from facegear.lubrication.request import GivenBulk, Limits, Lubrication
+from facegear.machine.machine import Machine
+from facegear.machine.ratings import compute_ratings
+from facegear.schema.lubrication import LubricationSection
+from facegear.sharing.quantities import FlankLoads
+
+GOLDEN = 0.6180339887
+"""Multiples of it, less their whole part, are spread evenly over 0..1 however many are taken."""
+
+State = tuple[LubricationSection, float]
+"""Lubrication and the pinion's speed in rpm."""
+
+
+@dataclass(frozen=True, eq=False)
+class LubricatedTeeth:
+    """Contact of a tooth pair at all its points, and at few."""
+
+    section: ToothPair
+    contacts: tuple[LoadedContact, ...]
+    few: FewPlaces
+
+    def pair(self, lubrication: LubricationSection, every_place: bool) -> Pair:
+        """Return the pair with a lubrication.
+
+        Parameters
+        ----------
+        lubrication : LubricationSection
+            Section `lubrication` of the config.
+        every_place : bool
+            Whether all points of the contact are taken, not the few that stand for them.
+
+        Returns
+        -------
+        Pair
+            The pair.
+        """
+        request = lubrication_of(lubrication, self.section)
+        return LoadedPair(self.contacts, request) if every_place else ReducedPair(self.few, request)
+
+
+ReduceTeeth = Callable[[pd.DataFrame, Arrays, ToothPair], LubricatedTeeth]
+"""The teeth of a pair, given the table and the arrays of its contact."""
+
+
+def reduction_over(states: Sequence[State]) -> ReduceTeeth:
+    """Return a function that reduces contacts to few points, right over the range of some states.
+
+    Parameters
+    ----------
+    states : Sequence[State]
+        Lubrication and pinion speed (rpm) of each state.
+
+    Returns
+    -------
+    ReduceTeeth
+        Function from table and arrays of a contact and section tooth_pair to the lubricated teeth.
+    """
+
+    def reduce_contact(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> LubricatedTeeth:
+        contacts = contacts_of(ltca, pressure, section)
+        conditions = [
+            _condition(lubrication_of(lubrication, section), speed_rpm, (GOLDEN * number) % 1.0)
+            for number, (lubrication, speed_rpm) in enumerate(states)
+        ]
+        return LubricatedTeeth(section, contacts, reduce_contacts(contacts, conditions))
+
+    return reduce_contact
+
+
+def _condition(lubrication: Lubrication, speed_rpm: float, part: float) -> Condition:
+    """Return a state with the given bulk temperature, or `part` of the way from supplied oil to its flash
+    point.
+    """
+    oil = lubrication.oil_temperature
+    warm = oil + part * (lubrication.oil.flash_point - oil)
+    bulk_temperature = lubrication.bulk.temperature if isinstance(lubrication.bulk, GivenBulk) else warm
+    return Condition(speed_rpm * pi / 30, lubrication, bulk_temperature)
+
+
+def friction_quantities(
+    machine: Machine, speed_rpm: float, loads: FlankLoads, pair: Pair, limits: Limits
+) -> dict[str, float]:
+    """Compute the friction quantities of a machine: loss by the mean loads of its flanks, heat and film by
+    their largest.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    speed_rpm : float
+        Pinion speed, rpm.
+    loads : FlankLoads
+        Mean and largest force of each flank, N.
+    pair : Pair
+        Lubricated tooth pair.
+    limits : Limits
+        Limits of temperature and film.
+
+    Returns
+    -------
+    dict[str, float]
+        Columns FRICTION: W, %, C, K, um, and dimensionless ratios.
+
+    Raises
+    ------
+    TooHot
+        If a body passes the oil's flash point.
+    NotConverged
+        If bulk temperatures do not settle.
+    """
+    meshes = mesh_loads(machine, loads)
+    losses = machine_loss(pair, meshes, speed_rpm * pi / 30)
+    power_in = compute_ratings(machine, speed_rpm).power_in
+    hottest, film_ratio = float(losses.contact_temperature.max()), float(losses.film_ratio.min())
+    allowed_temperature = limits.allowed_contact(pair.lubrication.oil, pair.lubrication.oil_temperature)
+    return {
+        quantities.LOSS: losses.total,
+        quantities.LOSS_PERCENT: 100 * losses.total / power_in if power_in > 0.0 else np.nan,
+        quantities.BULK: float(losses.bulk.max()),
+        quantities.FLASH: float(losses.flash.max()),
+        quantities.CONTACT_TEMPERATURE: hottest,
+        quantities.SCUFFING: float(
+            temperature_safety(allowed_temperature, pair.lubrication.oil_temperature, hottest)
+        ),
+        quantities.SCUFFING_MARGIN: allowed_temperature - hottest,
+        quantities.FILM: 1e6 * film_ratio * pair.lubrication.composite_rq,
+        quantities.FILM_RATIO: film_ratio,
+        quantities.MICROPITTING: float(losses.micropitting.min()),
+        quantities.UNSOLVED: _unsolved(losses),
+    }
+
+
+def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
+    """Return the flanks that carry a load, with the torques on their pinions.
+
+    Parameters
+    ----------
+    machine : Machine
+        The machine.
+    loads : FlankLoads
+        Mean and largest force of each flank, N.
+
+    Returns
+    -------
+    MeshLoads
+        Loaded flanks; torques in N m.
+    """
+    layout = machine.layout
+    on = np.flatnonzero(loads.largest > 0.0)
+    bodies = np.array(layout.meshes)[on % len(layout.meshes)]
+    return MeshLoads(
+        pinion=bodies[:, 0],
+        gear=bodies[:, 1],
+        torque=layout.pinion_arm * loads.mean[on],
+        peak=layout.pinion_arm * loads.largest[on],
+        pinions=len(layout.pinions),
+        bodies=len(layout.bodies),
+    )
+
+
+def _unsolved(losses: MachineLoss) -> float:
+    """Part of the loss that arises under torques outside those of the contact analysis."""
+    return float(losses.loss[~losses.within].sum() / losses.total) if losses.total > 0.0 else 0.0

@@ -1,0 +1,368 @@
+"""Machines built and judged again and again, for samples and designs alike."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from functools import cache, cached_property
+from typing import Any, Self
+
+import pandas as pd
+
+from facegear.arrays import Arrays
+from facegear.bodies import BODIES
+from facegear.build.lubrication import limits_of
+from facegear.build.lumped_model import lumped_parts, machine
+from facegear.build.machine import tables_of
+from facegear.build.machine_layout import ToothNumbers
+from facegear.build.notes import require_buildable, require_room
+from facegear.build.plans import settings, sharing_options
+from facegear.contact.gear_flank import from_arrays
+from facegear.errors import FacegearError
+from facegear.machine.layout import Layout
+from facegear.machine.machine import Machine
+from facegear.machine.poses.fixed_point import posed_machine
+from facegear.machine.poses.surface import PoseSurface
+from facegear.machine.static_gears import at_rest
+from facegear.meshing.stiffness_source import series_of, unloaded_error
+from facegear.motion.plan import JumpRange, Settings
+from facegear.motion.steady_state.guide import Guide
+from facegear.motion.steady_state.simulate import build_model
+from facegear.motion.sweeps.whole_sweep import jump_margin
+from facegear.quantities import JUMP_MARGIN, PEAK
+from facegear.schema.base import keys_named, parse
+from facegear.schema.lubrication import LubricationSection
+from facegear.schema.motion import Accuracy
+from facegear.schema.sharing import LoadSharing
+from facegear.schema.transmission import Transmission
+from facegear.sharing.groups import quantity_names
+from facegear.sharing.options import SharingOptions
+from facegear.sharing.quantities import (
+    FlankLoads,
+    MachineQuantities,
+    dynamic_quantities,
+    orbit_of,
+    quasi_static_quantities,
+)
+from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth, friction_quantities
+from facegear.studies.summary import identity
+from facegear.studies.tooth_contact import Flanks, Meshes, PairExcitation, Values, meshes_in_contact
+from facegear.studies.varied_bodies import VariedBodies
+
+Judge = Callable[[Mapping[str, Any]], dict[str, float]]
+"""Function that returns the quantities of a machine by column, given values of
+`config.changes.variable_part`.
+
+Raises the error that a config gets for a machine that cannot be built, NotConverged.
+"""
+
+ARRAYS = ("flanks", "pressure", "bodies")
+"""Fields of arrays that follow from the values and tables of the same machine; `identity` leaves them out."""
+WHOLE = 2**31
+"""More mesh cycles than any hunting cycle has: all of them."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """Settings of how machines are judged.
+
+    Loads are taken over `cycles` mesh cycles of the hunting cycle, or of the motion. `model` is quasi_static
+    or dynamic. `accuracy` and `options` are the sections dynamics.accuracy and load_sharing. The nearest jump
+    is looked for in `jumps`, None if it is not asked for. With `every_place`, friction is taken at all points
+    of the contact, not at the few that stand for them.
+    """
+
+    model: str
+    cycles: int
+    accuracy: Mapping[str, Any]
+    options: Mapping[str, Any]
+    jumps: JumpRange | None = None
+    every_place: bool = False
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether the motion is asked for."""
+        return self.model == "dynamic"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class VariedMachine:
+    """Machine that many are made from, as plain config values: the common part of samples and designs.
+
+    With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth pair
+    that differs is put into contact. Without, all have the stiffness of `harmonics`, or the arrays `law` of
+    stage mesh_law where it depends on the load. With `solid`, section tooth_pair, face gears bend; `bodies`
+    are the arrays `reduced` of stage gear_bodies. With `poses`, arrays `surface` of stage pose_surface, the
+    meshes of each machine stand where its own forces put them.
+    """
+
+    harmonics: pd.DataFrame
+    transmission: Values
+    accuracy: Values
+    speed_rpm: float
+    options: Values
+    tolerances: Values | None
+    pair: Values | None = None
+    flanks: Flanks = field(default_factory=dict)
+    law: Arrays | None = None
+    solid: Values | None = None
+    bodies: Arrays | None = None
+    poses: Arrays | None = None
+
+    @classmethod
+    def of_stage(cls, flanks: Sequence[Arrays] = (), **arguments: Any) -> Self:
+        """Build the machine from the arguments of a stage.
+
+        Parameters
+        ----------
+        flanks : Sequence[Arrays]
+            Arrays of both bodies from stage compliance; empty without contact.
+        **arguments : Any
+            The other fields.
+
+        Returns
+        -------
+        Self
+            The machine.
+        """
+        return cls(flanks=stored_flanks(flanks), **arguments)
+
+    @cached_property
+    def meshes(self) -> Meshes:
+        """The mesh of each one's tooth pair."""
+        return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law)
+
+    @cached_property
+    def varied_bodies(self) -> "VariedBodies | None":
+        """The face gears of each one where they bend."""
+        if self.solid is None or self.bodies is None:
+            return None
+        return VariedBodies.of_stage(self.transmission, self.solid, self.bodies)
+
+    @cached_property
+    def surface(self) -> "PoseSurface | None":
+        """Contact over pose, where the machine's own forces put the teeth."""
+        if self.poses is None:
+            return None
+        return PoseSurface.of_arrays(self.poses)
+
+    def judge_of(self, question: Question, label: str, nominal: Values | None = None) -> Judge:
+        """Return the function that judges each machine.
+
+        Parameters
+        ----------
+        question : Question
+            Settings of the judgement.
+        label : str
+            Name of a machine in errors.
+        nominal : Values or None
+            Values that all machines are near; their orbit is the first guess. None without a guess.
+
+        Returns
+        -------
+        Judge
+            Function from values to quantities.
+        """
+        return judge(question, self.meshes, label, self.varied_bodies, self.surface, nominal)
+
+    def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
+        """Return the names of the quantities of a machine.
+
+        Parameters
+        ----------
+        layout : Layout
+            Layout of the machine.
+        question : Question
+            Settings of the judgement.
+        jumps : bool
+            Whether the margin to the nearest jump is one of them.
+
+        Returns
+        -------
+        tuple[str, ...]
+            Names of the columns.
+        """
+        gauges = self.pair is not None and self.pair["contact"]["root_stress"]
+        contact, law = self.pair is not None, self.law is not None
+        return quantity_names(layout, question.dynamic, contact, gauges, jumps, self.friction, law)
+
+    @property
+    def friction(self) -> bool:
+        """Whether friction is asked for."""
+        return False
+
+    def identity(self, *parts: object) -> str:
+        """Return a text that differs whenever one of the parts or a value of the machine does.
+
+        Parameters
+        ----------
+        *parts : object
+            Plain values.
+
+        Returns
+        -------
+        str
+            The text.
+        """
+        plain = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in ARRAYS}
+        tables = {name: value.to_csv() for name, value in plain.items() if isinstance(value, pd.DataFrame)}
+        arrays = {
+            text: {name: values.tolist() for name, values in (mapping or {}).items()}
+            for text, mapping in (("law", self.law), ("poses", self.poses))
+        }
+        return identity(*parts, {**plain, **tables, **arrays})
+
+
+def tooth_meshes(
+    harmonics: pd.DataFrame,
+    pair: Values | None,
+    flanks: Flanks,
+    law: Arrays | None = None,
+    rub: "ReduceTeeth | None" = None,
+    lubricated_teeth: "LubricatedTeeth | None" = None,
+) -> Meshes:
+    """Return the function that gives the mesh of a tooth pair.
+
+    Without `pair` all machines have one mesh, that of `harmonics`.
+
+    Parameters
+    ----------
+    harmonics : pd.DataFrame
+        Table `harmonics` of stage stiffness.
+    pair : Values or None
+        Sections tooth_pair, mesh, contact and mesh_stiffness, where each pair is put into contact; else None.
+    flanks : Flanks
+        Compliance of the bodies of `pair` by name.
+    law : mapping of arrays or None
+        Arrays `law` of stage mesh_law; None where k does not depend on the load.
+    rub : ReduceTeeth or None
+        Function that reduces each contact of lubricated pairs.
+    lubricated_teeth : LubricatedTeeth or None
+        Lubricated teeth of the one mesh.
+
+    Returns
+    -------
+    Meshes
+        Function from section tooth_pair to the mesh.
+    """
+    if pair is not None:
+        return meshes_in_contact(pair, flanks, rub)
+    series, error = series_of(harmonics), unloaded_error(harmonics)
+    tables = None if law is None else tables_of(law)
+    return lambda values: PairExcitation(
+        ToothNumbers.of_config(values), series, error, tables=tables, lubricated_teeth=lubricated_teeth
+    )
+
+
+def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
+    """Return the compliance of both bodies from stored arrays.
+
+    Parameters
+    ----------
+    arrays : Sequence[Arrays]
+        Arrays of pinion and face gear from stage compliance; empty without contact.
+
+    Returns
+    -------
+    Flanks
+        Compliance by body.
+    """
+    if not arrays:
+        return {}
+    return {body: from_arrays(arrays_of_body) for body, arrays_of_body in zip(BODIES, arrays, strict=True)}
+
+
+def judge(
+    question: Question,
+    meshes: Meshes,
+    label: str,
+    bodies: "VariedBodies | None" = None,
+    surface: "PoseSurface | None" = None,
+    nominal: Values | None = None,
+) -> Judge:
+    """Return a function that builds and judges a machine.
+
+    Parameters
+    ----------
+    question : Question
+        Settings of the judgement.
+    meshes : Meshes
+        Function from section tooth_pair to its mesh.
+    label : str
+        Name of the machine in errors.
+    bodies : VariedBodies or None
+        Face gears that bend; None for rigid ones.
+    surface : PoseSurface or None
+        Contact over pose, where meshes stand as the forces of their machine put them; else None.
+    nominal : Values or None
+        Values that all machines are near, whose orbit is the first guess; None without a guess.
+
+    Returns
+    -------
+    Judge
+        Function from values to quantities.
+    """
+    ask = _ask(question)
+
+    def judge_friction(
+        teeth: "LubricatedTeeth",
+        lubrication: Values,
+        lumped_machine: Machine,
+        speed: float,
+        loads: FlankLoads,
+    ) -> dict[str, float]:
+        section = parse(LubricationSection, lubrication, label)
+        pair = teeth.pair(section, question.every_place)
+        return friction_quantities(lumped_machine, speed, loads, pair, limits_of(section))
+
+    def assemble(values: Values) -> tuple[PairExcitation, Machine]:
+        mesh = meshes(values["tooth_pair"])
+        section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
+        parts = lumped_parts(section, mesh.numbers, mesh.unloaded_error)
+        require_buildable(section, mesh.numbers, parts)
+        require_room(section, mesh.numbers, parts)
+        tables = None if mesh.tables is None else mesh.tables(parts[0])
+        lumped_machine = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded_error, parts, tables)
+        if bodies is not None:
+            lumped_machine = bodies.add_bodies(lumped_machine, section, values["tooth_pair"])
+        if surface is not None:
+            lumped_machine = posed_machine(lumped_machine, surface)
+        return mesh, lumped_machine
+
+    @cache
+    def guide() -> Guide | None:
+        if nominal is None or not question.dynamic:
+            return None
+        try:
+            _, lumped_machine = assemble(nominal)
+        except FacegearError:
+            return None
+        return orbit_of(lumped_machine, nominal["dynamics"]["speed_rpm"], *_precision(question))
+
+    @keys_named()
+    def judge_machine(values: Mapping[str, Any]) -> dict[str, float]:
+        mesh, lumped_machine = assemble(values)
+        speed = values["dynamics"]["speed_rpm"]
+        quantities, loads = ask(lumped_machine, speed, guide())
+        quantities |= mesh.quantities(quantities[PEAK])
+        if mesh.lubricated_teeth is not None:
+            quantities |= judge_friction(
+                mesh.lubricated_teeth, values["lubrication"], lumped_machine, speed, loads
+            )
+        if question.jumps is not None:
+            quantities[JUMP_MARGIN] = jump_margin(build_model(lumped_machine), speed, question.jumps)
+        return quantities
+
+    return judge_machine
+
+
+def _ask(question: Question) -> Callable[[Machine, float, Guide | None], MachineQuantities]:
+    if not question.dynamic:
+        return lambda lumped_machine, speed, guide: quasi_static_quantities(
+            at_rest(lumped_machine), question.cycles
+        )
+    precision = _precision(question)
+    return lambda lumped_machine, speed, guide: dynamic_quantities(lumped_machine, speed, *precision, guide)
+
+
+def _precision(question: Question) -> tuple[Settings, SharingOptions]:
+    precise = settings(Accuracy.of_config(question.accuracy))
+    return precise, replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)

@@ -1,0 +1,250 @@
+"""Tooth pairs put into contact again and again, and what they mean for the machine."""
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Any
+
+from facegear.bodies import BODIES
+from facegear.build.checks import geometric_backlash
+from facegear.build.machine import TablesOf
+from facegear.build.machine_layout import ToothNumbers
+from facegear.build.plans import contact_plan, stiffness_request
+from facegear.build.tooth_pair import ToothPair, contact_setup, materials, pair_design
+from facegear.contact.analysis import ContactAnalysis, contact_analysis
+from facegear.contact.gear_flank import GearFlank, gear_flank
+from facegear.contact.ltca import KnownContact, even_positions, known_contact
+from facegear.contact.resolution import check_resolution
+from facegear.contact.summary import contact_summary
+from facegear.errors import FacegearError
+from facegear.harmonics import Harmonics
+from facegear.meshing.stiffness_curve import LoadTable, unloaded_samples
+from facegear.meshing.stiffness_request import StiffnessRequest
+from facegear.meshing.stiffness_source import curve_from_contact
+from facegear.quantities import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
+from facegear.schema.base import parse
+from facegear.schema.changes import GAPS, MODULI, without
+from facegear.schema.contact import Contact, Mesh
+from facegear.schema.stiffness import MeshStiffness
+from facegear.strength.contact_pressure import PairAnswers, contact_pressure
+from facegear.strength.passage import PassingTension
+from facegear.studies.lubricated_teeth import LubricatedTeeth, ReduceTeeth
+
+Values = Mapping[str, Any]
+Flanks = Mapping[str, "GearFlank"]
+"""Compliance of both bodies by name."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairExcitation:
+    """Excitation of a machine by a tooth pair: k and e over a pitch, and the teeth's numbers.
+
+    `backlash_added` (um) is the difference of the pair's backlash from that of the config. `answers` are
+    those of the contact where the pair was put into contact. `tables` are those of the flanks where k depends
+    on the load. `lubricated_teeth` are given where the pair is lubricated.
+    """
+
+    numbers: ToothNumbers
+    stiffness: Harmonics
+    unloaded_error: Harmonics | None
+    backlash_added: float = 0.0
+    answers: PairAnswers | None = None
+    tables: TablesOf | None = None
+    lubricated_teeth: "LubricatedTeeth | None" = None
+
+    def in_machine(self, transmission: Values) -> dict[str, Any]:
+        """Return section `transmission` with the backlash of this pair.
+
+        Parameters
+        ----------
+        transmission : Values
+            Plain values of the section.
+
+        Returns
+        -------
+        dict[str, Any]
+            Plain values with the added backlash at all meshes.
+        """
+        section = dict(transmission)
+        if self.backlash_added == 0.0:
+            return section
+        section["backlash_um"] += self.backlash_added
+        section["single_meshes"] = {
+            name: mesh
+            if mesh.get("backlash_um") is None
+            else {**mesh, "backlash_um": mesh["backlash_um"] + self.backlash_added}
+            for name, mesh in transmission["single_meshes"].items()
+        }
+        return section
+
+    def quantities(self, force: float) -> dict[str, float]:
+        """Return the contact quantities of a machine.
+
+        Parameters
+        ----------
+        force : float
+            Largest mesh force of the machine, N.
+
+        Returns
+        -------
+        dict[str, float]
+            Transmission error (um), pressure and root stress (MPa) by column; none without contact.
+        """
+        if self.answers is None:
+            return {}
+        answers, torque = self.answers, force * self.numbers.pinion_base_radius
+        return {
+            ERROR_RANGE: 1e6 * answers.error_range,
+            ERROR_HARMONIC: 1e6 * answers.error_harmonic,
+            PRESSURE: 1e-6 * answers.pressure.at(torque),
+            **{ROOTS[body]: 1e-6 * largest(torque) for body, largest in answers.roots.items()},
+        }
+
+
+Meshes = Callable[[Values], PairExcitation]
+"""The mesh of a tooth pair, given the plain values of its section. Raises the errors that a config gets."""
+
+
+Tensions = Mapping[str, PassingTension]
+"""By body."""
+
+CACHED_PAIRS = 16
+"""Number of pairs that are remembered: samples of one block of Saltelli's design share theirs."""
+KEPT_BODIES = 4
+"""Compliances of both bodies that are remembered, some 70 MB each at the default resolution."""
+
+
+def meshes_in_contact(pair: Values, flanks: Flanks, rub: "ReduceTeeth | None" = None) -> Meshes:
+    """Return a function that solves the contact of tooth pairs, and remembers the last ones.
+
+    Parameters
+    ----------
+    pair : Values
+        Sections tooth_pair, mesh, contact and mesh_stiffness of the config.
+    flanks : Flanks
+        Compliance of both bodies of this pair by name.
+    rub : ReduceTeeth or None
+        Function that reduces the contact of a lubricated pair; None without lubrication.
+
+    Returns
+    -------
+    Meshes
+        Function from section tooth_pair to the mesh of the pair.
+    """
+    backlash = geometric_backlash(ToothPair.of_config(pair["tooth_pair"]))
+    plan, request = contact_plan(Contact.of_config(pair["contact"])), _request(pair)
+    bodies, own_nodes = _bodies(pair, flanks), _nodes(pair["tooth_pair"])
+
+    @cache
+    def nominal() -> KnownContact | None:
+        """The contact of the pair itself; None where there is none."""
+        section = ToothPair.of_config(pair["tooth_pair"])
+        try:
+            compliances, _ = bodies(pair["tooth_pair"], section)
+            analysis = contact_analysis(
+                pair_design(section), materials(section), compliances, plan, every_flank=False
+            )
+        except FacegearError:
+            return None
+        flanks_of_it, base_radius = analysis.models[0].flanks, analysis.models[0].design.pinion_base_radius
+        positions = even_positions(plan.positions)
+        return known_contact(analysis.results[0][0], positions, flanks_of_it.pinion.shape, base_radius)
+
+    @lru_cache(maxsize=CACHED_PAIRS)
+    def solve_mesh(text: str) -> PairExcitation:
+        values = json.loads(text)
+        section = parse(ToothPair, values, "this pair")
+        backlash_increase = geometric_backlash(section, even_positions(plan.positions)) - backlash
+        compliances, tensions = bodies(values, section)
+        start_contact = nominal() if _nodes(values) == own_nodes else None
+        analysis = contact_analysis(
+            pair_design(section),
+            materials(section),
+            compliances,
+            plan,
+            every_flank=False,
+            known_contact=start_contact,
+        )
+        curve = curve_from_contact(analysis.ltca[0], request)
+        numbers = ToothNumbers.of_config(values)
+        return PairExcitation(
+            numbers=numbers,
+            stiffness=curve.series,
+            unloaded_error=curve.error,
+            backlash_added=backlash_increase,
+            answers=_answers(analysis, tensions, numbers, curve.table, request),
+            lubricated_teeth=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,
+        )
+
+    return lambda values: solve_mesh(json.dumps(values, sort_keys=True))
+
+
+def _request(pair: Values) -> StiffnessRequest:
+    return stiffness_request(MeshStiffness.of_config(pair["mesh_stiffness"]))
+
+
+def _answers(
+    analysis: ContactAnalysis,
+    tensions: Tensions,
+    numbers: ToothNumbers,
+    stiffness: LoadTable,
+    request: StiffnessRequest,
+) -> PairAnswers:
+    assert request.torque is not None
+    torque, ltca = request.torque, analysis.ltca[0]
+    approach = torque / numbers.pinion_base_radius / stiffness.at(torque, "average")
+    error = 1e-6 * unloaded_samples(ltca) + approach
+    roots = {body: tension.under(analysis.loads) for body, tension in tensions.items()}
+    return PairAnswers(error, contact_pressure(contact_summary(ltca)), roots)
+
+
+def _bodies(
+    pair: Values, flanks: Flanks
+) -> Callable[[Values, ToothPair], tuple[tuple[GearFlank, GearFlank], Tensions]]:
+    """Compliance of both bodies of a pair, and the root stress of those with gauges.
+
+    Those given serve every pair of the same nodes: displacements by a force go with 1/E exactly. Raises
+    ConfigError for a pair whose contact the mesh cannot resolve.
+    """
+    start = ToothPair.of_config(pair["tooth_pair"])
+    mesh, contact = Mesh.of_config(pair["mesh"]), Contact.of_config(pair["contact"])
+    cache_by_nodes = {_nodes(pair["tooth_pair"]): (start, dict(flanks), _tensions(flanks))}
+
+    def bodies(values: Values, section: ToothPair) -> tuple[tuple[GearFlank, GearFlank], Tensions]:
+        key = _nodes(values)
+        if key not in cache_by_nodes:
+            setup = contact_setup(section, mesh, contact)
+            check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
+            compliances: dict[str, GearFlank] = {
+                body: gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
+                for body in BODIES
+            }
+            if len(cache_by_nodes) > KEPT_BODIES:
+                cache_by_nodes.pop(list(cache_by_nodes)[1])
+            cache_by_nodes[key] = section, compliances, _tensions(compliances)
+        of, compliances, tensions = cache_by_nodes[key]
+        moduli = (
+            [material.young_modulus for material in materials(pair_section)] for pair_section in (of, section)
+        )
+        first, second = (
+            compliances[body] if before == after else compliances[body].softer(before / after)
+            for body, before, after in zip(BODIES, *moduli, strict=True)
+        )
+        return (first, second), tensions
+
+    return bodies
+
+
+def _tensions(flanks: Flanks) -> Tensions:
+    """They are the same for every Young's modulus."""
+    return {body: PassingTension.of_flank(body, flank) for body, flank in flanks.items() if flank.gauges}
+
+
+def _nodes(tooth_pair: Values) -> str:
+    """Return the values on which the nodes of a pair's bodies depend, and their compliance but for Young's
+    moduli.
+    """
+    for key in (*GAPS, *MODULI):
+        tooth_pair = without(tooth_pair, key)
+    return json.dumps(tooth_pair, sort_keys=True)

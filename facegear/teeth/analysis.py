@@ -1,0 +1,276 @@
+"""Analysis of a pair: limits, contact path on both flanks, backlash, smallest gaps and jamming."""
+
+from dataclasses import dataclass
+from math import isfinite, pi, sin, tan
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.teeth import pinion
+from facegear.teeth.clearance import (
+    TOOTH_NUMBERS,
+    Gap,
+    gear_points,
+    pinion_outline,
+    signed_distance,
+    smallest_gaps,
+)
+from facegear.teeth.curvature import relative_curvatures
+from facegear.teeth.design import PairDesign
+from facegear.teeth.limits import RadiusLimits
+from facegear.teeth.placement import conjugate_angle, mirror_design, pinion_angle, to_pinion_section
+from facegear.teeth.unloaded import UnloadedContact, unloaded_contact
+from facegear.teeth.validate import check
+
+REGULAR_CONTACTS = {("flank", "flank"), ("flank", "tip edge"), ("tip land", "flank")}
+"""Pairs of parts (pinion, gear) that touch in regular contact: flanks, and flanks with tip edges."""
+
+
+@dataclass(frozen=True)
+class PairAnalysis:
+    """drive, back: unloaded contact of both sides (angles of the back side are those of the mirrored pair).
+
+    backlash: (p,) m along the line of action. gaps: smallest gap by (pinion part, gear part).
+    interference: the deepest one, or None. smallest: the smallest gap between parts that ought not to touch.
+    """
+
+    limits: RadiusLimits
+    contact_ratio: float
+    drive: UnloadedContact
+    back: UnloadedContact
+    backlash: Array
+    gaps: dict[tuple[str, str], Gap]
+    interference: Gap | None
+    smallest: Gap
+
+
+def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) -> PairAnalysis:
+    """Analyse the pair at even angles of one pitch, centred on zero.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    positions : int
+        Number of angles.
+    tolerance : float
+        Depth above which a part that reaches into the other gear counts as interference, m.
+
+    Returns
+    -------
+    PairAnalysis
+        All geometry, in m and rad.
+
+    Raises
+    ------
+    GeometryError
+        For a design that cannot exist.
+    NotConverged
+        Where contact is not found.
+    """
+    limits = check(design)
+    phi1 = pinion_angle(design, (np.arange(positions) + 0.5) / positions)
+    drive = unloaded_contact(design, phi1)
+    back = drive if design == mirror_design(design) else unloaded_contact(mirror_design(design), phi1)
+    # the back side of phi1 is the mirrored pair at -phi1: positions are symmetric, so it is the reversed list
+    backlash = (-back.phi2[::-1] - drive.phi2) * design.gear_base_radius
+    gaps = _refined_gaps(design, drive)
+    deepest = min(gaps.values(), key=lambda gap: gap.gap)
+    irregular_gaps = [gap for parts, gap in gaps.items() if parts not in REGULAR_CONTACTS]
+    interference = deepest if deepest.gap < -tolerance else None
+    return PairAnalysis(
+        limits=limits,
+        contact_ratio=section_contact_ratio(design),
+        drive=drive,
+        back=back,
+        backlash=backlash,
+        gaps=gaps,
+        interference=interference,
+        smallest=min(irregular_gaps, key=lambda gap: gap.gap),
+    )
+
+
+def _refined_gaps(design: PairDesign, drive: UnloadedContact) -> dict[tuple[str, str], Gap]:
+    """Smallest gaps at the positions of `drive` and at finer ones around the most critical of them."""
+    gaps = smallest_gaps(design, drive.phi1, drive.phi2)
+    irregular_gaps = [gap for parts, gap in gaps.items() if parts not in REGULAR_CONTACTS]
+    worst = min(irregular_gaps, key=lambda gap: gap.gap).phi1
+    step = drive.phi1[1] - drive.phi1[0]
+    phi1 = worst + np.linspace(-step, step, 17)
+    error = np.interp(phi1, drive.phi1, drive.transmission_error, period=2 * pi / design.pinion.teeth)
+    phi2 = conjugate_angle(design, phi1) + error / design.gear_base_radius
+    finer = smallest_gaps(design, phi1, phi2)
+    return {key: min(gap, finer.get(key, gap), key=lambda g: g.gap) for key, gap in gaps.items()}
+
+
+def section_contact_ratio(design: PairDesign) -> float:
+    """Compute the unloaded contact ratio of the nominal assembly in the section of the pitch point path.
+
+    From the gear's tip (or where the pinion's involute begins) to the pinion's tip (or where the gear's
+    flank ends), over the base pitch; the section at m N2 / 2 where the local pressure angle is the nominal
+    one.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        Contact ratio, dimensionless.
+    """
+    angle, base = design.pressure_angle, design.pinion_base_radius
+    tip = min(
+        base * design.pinion_tip_roll,
+        design.shaper_base_radius * design.shaper_tip_roll - design.shaper_lift * sin(angle),
+    )
+    end = tip - base * tan(angle)
+    rolling = design.gear_tip_plane + design.pinion_pitch_radius
+    start = min(rolling / sin(angle), base * (tan(angle) - pinion.junction_roll(design)))
+    return (start + end) / (2 * pi * base / design.pinion.teeth)
+
+
+def path_curvatures(design: PairDesign) -> tuple[Array, Array, Array, Array]:
+    """Compute relative curvatures at 33 points along the nominal path, see `relative_curvatures`.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple of (33,) arrays
+        Pinion roll, rad, larger and smaller curvature, 1/m, and slope of the contact line, rad.
+    """
+    angle, base = design.pressure_angle, design.pinion_base_radius
+    rolling = design.gear_tip_plane + design.pinion_pitch_radius
+    first = max(tan(angle) - rolling / sin(angle) / base, pinion.junction_roll(design))
+    roll = np.linspace(first, design.pinion_tip_roll, 33)
+    shaper_roll = (base * roll + design.shaper_lift * sin(angle)) / design.shaper_base_radius
+    return roll, *relative_curvatures(design, shaper_roll, angle)
+
+
+TURN = 1e-6
+"""Turn of the gear (rad) that levers are taken over."""
+TOUCH = 1e-7
+"""Depth (m) below which bodies touch."""
+FREES = 0.05
+"""Least sine between a turn and a surface by which turning takes a point out of the other gear."""
+
+
+@dataclass(frozen=True)
+class Jam:
+    """Two bodies that cannot be where both sides' flanks allow: `depth` (m) along the line of action.
+
+    It is infinite where no turn takes one body out of the other.
+    """
+
+    depth: float
+    phi1: float
+
+
+def jam(design: PairDesign, analysis: PairAnalysis) -> Jam | None:
+    """Find where over a pitch the least room is left, if none is; to first order in the depth of
+    interference.
+
+    The gear may turn from where drive flanks touch to where back flanks touch, by the backlash; parts that
+    reach into the other gear there take the turn that clears them from it, on both sides.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    analysis : PairAnalysis
+        Its geometry.
+
+    Returns
+    -------
+    Jam, optional
+        Depth, m, and pinion angle, rad; None where the bodies do not jam.
+    """
+    if analysis.interference is None:
+        return None
+    drive, back = analysis.drive, analysis.back
+    back_turn = turn_to_clear(mirror_design(design), back)[::-1]
+    free_turn = analysis.backlash - turn_to_clear(design, drive) - back_turn
+    worst = int(np.argmin(free_turn))
+    return Jam(-float(free_turn[worst]), float(drive.phi1[worst])) if free_turn[worst] < 0 else None
+
+
+def turn_to_clear(design: PairDesign, contact: UnloadedContact) -> Array:
+    """Compute the turn of the gear that takes its drive side out of the pinion where the drive flanks touch.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    contact : UnloadedContact
+        Unloaded contact at p angles.
+
+    Returns
+    -------
+    (p,) array
+        Turn times r_b2, m; 0 where nothing interferes, inf where a part has to move across the turn.
+    """
+    outline, largest_turn = pinion_outline(design), np.zeros(len(contact.phi1))
+    for points in gear_points(design).values():
+        section, after = (
+            to_pinion_section(design, contact.phi1, contact.phi2 + turn, TOOTH_NUMBERS).points(points)
+            for turn in (0.0, TURN)
+        )
+        distance, nearest = signed_distance(design, outline, section, 0.5 * design.module)
+        displacement = np.sum((after - section)[..., :2] * outline.normals[nearest], axis=-1)
+        lever = displacement / (TURN * design.gear_base_radius)
+        turn = np.where(lever > FREES, -distance / np.maximum(lever, FREES), np.inf)
+        turn = np.where(distance < -TOUCH, turn, 0.0)
+        largest_turn = np.maximum(largest_turn, turn.max(axis=(1, 2)))
+    return largest_turn
+
+
+def jam_in_words(analysis: PairAnalysis, stuck: Jam) -> str:
+    """Say where and how deep bodies jam.
+
+    Parameters
+    ----------
+    analysis : PairAnalysis
+        Analysis of the pair, with an interference.
+    stuck : Jam
+        Least room over a pitch.
+
+    Returns
+    -------
+    str
+        Depth, um, gear radius, mm, and the parts that meet.
+    """
+    gap = analysis.interference
+    assert gap is not None
+    depth = f"by {1e6 * stuck.depth:.1f} um along the line of action"
+    return (
+        f"tooth_pair: the bodies jam {depth if isfinite(stuck.depth) else 'at every turn'}: at gear radius "
+        f"{1e3 * gap.radius:.1f} mm the gear's {gap.gear_part} stands {-1e6 * gap.gap:.1f} um deep in the "
+        f"pinion's {gap.pinion_part}, and the backlash leaves no room for that"
+    )
+
+
+def summary_in_words(analysis: PairAnalysis) -> str:
+    """Say contact ratio, backlash and smallest gap.
+
+    Parameters
+    ----------
+    analysis : PairAnalysis
+        Analysis of the pair.
+
+    Returns
+    -------
+    str
+        The numbers, lengths in um.
+    """
+    gap = analysis.interference or analysis.smallest
+    verdict = "interference" if analysis.interference else "smallest gap"
+    return (
+        f"contact ratio {analysis.contact_ratio:.3f}, backlash {1e6 * analysis.backlash.min():.1f} um, "
+        f"{verdict} {1e6 * gap.gap:.1f} um (gear {gap.gear_part} against pinion {gap.pinion_part}, "
+        f"gear radius {1e3 * gap.radius:.1f} mm)"
+    )

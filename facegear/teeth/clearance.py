@@ -1,0 +1,241 @@
+"""Outline of the pinion's tooth, and the smallest gap between the whole teeth over a pitch."""
+
+from dataclasses import dataclass
+from math import copysign, inf, pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial import cKDTree
+
+from facegear.arrays import Array, Integers
+from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth.design import PairDesign
+from facegear.teeth.modifications import fillet_as_made, flank_as_made
+from facegear.teeth.placement import mirror_design, to_pinion_section
+
+PINION_PARTS = ("tip land", "chamfer", "flank", "fillet", "root land")
+_MODIFIED_PARTS = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
+
+
+@dataclass(frozen=True)
+class PinionOutline:
+    """The right half tooth from the middle of the tip land to the middle of the space.
+
+    points, normals: (n, 2) in (x, -z); other_normals differ at the corners, where two parts meet. part: (n,)
+    index in PINION_PARTS. roll: (n,) roll angle (rad) that modifications are taken at.
+    """
+
+    points: Array
+    normals: Array
+    other_normals: Array
+    part: Integers
+    roll: Array
+    tree: cKDTree
+
+
+def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
+    """Return the outline of half a tooth.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    density : int
+        Number of points on the flank and on the fillet.
+
+    Returns
+    -------
+    PinionOutline
+        Outline, m.
+    """
+    edge, space = pinion.tip_half_angle(design), pi / design.pinion.teeth
+    few = density // 20
+    land = np.linspace(0, edge, few)
+    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    roll = np.sqrt(np.linspace(top**2, bottom**2, density))
+    gamma = np.linspace(design.pressure_angle, pi / 2, density)
+    root = np.linspace(space - pinion.root_half_angle(design), space, few)
+    parts = {
+        "tip land": (np.full(few, design.pinion_tip_radius), land, (np.sin(land), np.cos(land))),
+        "flank": (*pinion.involute_point(design, roll), _upright(pinion.involute_normal(design, roll))),
+        "fillet": (*pinion.trochoid_point(design, gamma), _upright(pinion.trochoid_normal(design, gamma))),
+        "root land": (np.full(few, design.pinion_root_radius), root, (np.sin(root), np.cos(root))),
+    }
+    if design.pinion.tip_chamfer > 0:
+        parts["chamfer"] = _chamfer(design, few)
+    names = [name for name in PINION_PARTS if name in parts]
+    points = [
+        np.stack([parts[n][0] * np.sin(parts[n][1]), parts[n][0] * np.cos(parts[n][1])], 1) for n in names
+    ]
+    normals = [np.stack(parts[n][2], 1) for n in names]
+    corner_normals = [normal.copy() for normal in normals]
+    for before, after in zip(range(len(names) - 1), range(1, len(names)), strict=True):
+        corner_normals[before][-1], corner_normals[after][0] = normals[after][0], normals[before][-1]
+    sizes = [len(part) for part in points]
+    numbers = np.repeat([PINION_PARTS.index(name) for name in names], sizes)
+    rolls = np.full(sum(sizes), bottom)
+    rolls[numbers == PINION_PARTS.index("flank")] = roll
+    nodes = np.concatenate(points)
+    return PinionOutline(
+        points=nodes,
+        normals=np.concatenate(normals),
+        other_normals=np.concatenate(corner_normals),
+        part=numbers,
+        roll=rolls,
+        tree=cKDTree(nodes),
+    )
+
+
+def _upright(normal: tuple[Array, Array]) -> tuple[Array, Array]:
+    return normal[0], -normal[1]
+
+
+def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array, Array]]:
+    (r0, a0) = design.pinion_tip_radius, pinion.tip_half_angle(design)
+    r1, a1 = (float(part) for part in pinion.involute_point(design, design.pinion_tip_roll))
+    start, end = (np.array([r * np.sin(a), r * np.cos(a)]) for r, a in ((r0, a0), (r1, a1)))
+    line = start + np.linspace(0, 1, count)[:, None] * (end - start)
+    along = (end - start) / np.linalg.norm(end - start)
+    normal = np.full(count, -along[1]), np.full(count, along[0])
+    return np.hypot(line[:, 0], line[:, 1]), np.arctan2(line[:, 0], line[:, 1]), normal
+
+
+def signed_distance(
+    design: PairDesign, outline: PinionOutline, section: Array, search_radius: float
+) -> tuple[Array, Integers]:
+    """Compute the signed distance of points from the outline; modifications are taken off the flank and the
+    fillet.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    outline : PinionOutline
+        Outline of the pinion.
+    section : (..., 3) array
+        Points, x, -z, y of the tooth's frame, m.
+    search_radius : float
+        Distance up to which the outline is searched, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Distance, m, negative inside the tooth, inf beyond `search_radius` and the ends of the face; index
+        of the nearest vertex.
+    """
+    distance, nearest = outline.tree.query(section[..., :2], distance_upper_bound=search_radius)
+    away = np.abs(section[..., 2] - design.mean_radius) > design.pinion.width / 2
+    far = ~np.isfinite(distance) | away
+    nearest = np.where(far, 0, nearest)
+    offset = section[..., :2] - outline.points[nearest]
+    normal = np.sum(offset * outline.normals[nearest], axis=-1)
+    # a point at a convex corner is outside if it is outside either part
+    normal = np.maximum(normal, np.sum(offset * outline.other_normals[nearest], axis=-1))
+    along = np.sqrt(np.maximum(np.where(far, 0.0, distance) ** 2 - normal**2, 0.0))
+    # on a smooth part the nearest vertex lies within a spacing: the normal part is the distance
+    corner = (along > 0.02 * design.module) & (normal > 0)
+    signed_length = np.where(corner, distance, normal)
+    is_modified = np.isin(outline.part[nearest], _MODIFIED_PARTS)
+    signed_length = signed_length + np.where(
+        is_modified, pinion.removed_depth(design, outline.roll[nearest], section[..., 2]), 0.0
+    )
+    return np.where(far, np.inf, signed_length), nearest
+
+
+TOOTH_NUMBERS = np.arange(-2.0, 3.0)
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A smallest gap between two parts of the teeth, negative where they interfere, and where it is.
+
+    gap: shortest distance (m). approach: the turn of the gear that closes it, times r_b2 (m), that is along
+    the line of action, comparable with the transmission error. radius: gear radius (m); phi1 in rad.
+    """
+
+    gap: float
+    approach: float
+    pinion_part: str
+    gear_part: str
+    radius: float
+    phi1: float
+    side: str
+
+
+def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[tuple[str, str], Gap]:
+    """Compute the smallest gap of each pair of parts over the placements, on both sides of the teeth.
+
+    Pairs of parts that never come within half a module are left out.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    phi1 : (p,) array_like
+        Pinion angle, rad.
+    phi2 : (p,) array_like
+        Gear angle, rad.
+
+    Returns
+    -------
+    dict[tuple[str, str], Gap]
+        Gap by (pinion part, gear part).
+    """
+    phi1, phi2 = np.atleast_1d(np.asarray(phi1, float)), np.atleast_1d(np.asarray(phi2, float))
+    gaps: dict[tuple[str, str], Gap] = {}
+    for side, pair, sign in (("drive", design, 1.0), ("back", mirror_design(design), -1.0)):
+        turns = sign * phi1, sign * phi2
+        outline = pinion_outline(pair)
+        for gear_part, points in gear_points(pair).items():
+            section = to_pinion_section(pair, *turns, TOOTH_NUMBERS).points(points)
+            distance, nearest = signed_distance(pair, outline, section, 0.5 * design.module)
+            for number, pinion_part in enumerate(PINION_PARTS):
+                part_distance = np.where(outline.part[nearest] == number, distance, np.inf)
+                row, tooth, point = at = np.unravel_index(np.argmin(part_distance), part_distance.shape)
+                key, gap = (pinion_part, gear_part), float(part_distance[at])
+                if gap < (gaps[key].gap if key in gaps else np.inf):
+                    spot = (points[[point]], turns[0][[row]], turns[1][[row]], TOOTH_NUMBERS[[tooth]])
+                    lever = _lever(pair, spot, outline.normals[nearest[at]])
+                    approach = gap * design.gear_base_radius / lever if lever else copysign(inf, gap)
+                    radius = float(np.hypot(*points[point, :2]))
+                    gaps[key] = Gap(gap, approach, *key, radius, float(phi1[row]), side)
+    return gaps
+
+
+def _lever(design: PairDesign, spot: tuple[Array, Array, Array, Array], normal: Array) -> float:
+    """Change of the distance along `normal` per turn of the gear (m/rad)."""
+    points, phi1, phi2, teeth = spot
+    step = 1e-6
+    after, before = (
+        to_pinion_section(design, phi1, phi2 + turn, teeth).points(points) for turn in (step, -step)
+    )
+    return float((after - before).ravel()[:2] @ normal) / (2 * step)
+
+
+def gear_points(design: PairDesign) -> dict[str, Array]:
+    """Return points of the gear's left side in the body frame of its tooth 0.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    dict of (n, 3) arrays
+        Points by part, m.
+    """
+    face = design.face_gear
+    radius = np.linspace(face.inner_radius, face.outer_radius, 27)[None, :]
+    top, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll = top + np.linspace(0, 1, 12)[1:, None] * (design.shaper_tip_roll - top)
+    slopes = face_gear_fillet.fillet_slopes(design, radius, np.linspace(0, 1, 12)[:, None])
+    half_pitch = pi / face.teeth
+    land = np.linspace(half_pitch - face_gear_fillet.root_half_angle(design), half_pitch, 4)[:, None]
+    points = {
+        "tip edge": flank_as_made(design, top, psi),
+        "flank": flank_as_made(design, roll, face_gear.psi_at(design, radius, roll)),
+        "fillet": fillet_as_made(design, radius, slopes),
+        "root land": face_gear.cylindrical(radius, land, design.gear_root_plane),
+    }
+    return {name: part.reshape(-1, 3) * [-1, 1, 1] for name, part in points.items()}

@@ -1,0 +1,172 @@
+"""Relative curvatures of pinion and face gear where they touch, and radii of their fillets."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.arrays import Array
+from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth.design import PairDesign
+from facegear.teeth.limits import sharpest_fillet_radius
+from facegear.teeth.modifications import added_curvatures, derivative
+
+
+def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array, Array]:
+    """Compute relative curvatures at a point of the gear flank, in the nominal assembly, convex counted
+    positive.
+
+    The pinion's radius of curvature on the same normal is r_b th - lift sin psi: exact for N_s = N1
+    everywhere, for N_s > N1 on the contact path, where psi is the pressure angle.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Larger and smaller relative curvature, 1/m, and the contact line's slope to the pinion axis, rad.
+    """
+    roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
+    base, ratio, space, lift = face_gear.shaper_numbers(design)
+    turn = ratio * (psi - roll - space)
+    c, s = np.cos(turn), np.sin(turn)
+    profile = np.stack([np.sin(psi) * c, np.sin(psi) * s, -np.cos(psi)], axis=-1)
+    axial = np.stack([-s, c, np.zeros_like(turn)], axis=-1)
+    nominal = 1 / (base * roll - lift * np.sin(psi)), 0.0, 0.0
+    return _principal(design, roll, psi, profile, axial, nominal)
+
+
+def opposite_curvatures(
+    design: PairDesign,
+    pinion_place: tuple[ArrayLike, ArrayLike],
+    roll: ArrayLike,
+    psi: ArrayLike,
+    to_gear: Array,
+) -> tuple[Array, Array, Array]:
+    """Compute relative curvatures of a pinion point and the opposite gear flank point, in any assembly.
+
+    Crownings of the gear and deviations of both count; modifications of the pinion, whose curvature is far
+    smaller, are left out.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    pinion_place : tuple of (...) array_like
+        Roll (rad) and y (m) on the pinion.
+    roll : (...) array_like
+        Roll angle th on the gear, rad.
+    psi : (...) array_like
+        Slope of the normal on the gear, rad.
+    to_gear : (..., 3, 3) array
+        Rotation from the pinion's body frame to that of the gear's flank, dimensionless, see
+        `placement.to_left_flank`.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Larger and smaller relative curvature, 1/m, and the contact line's slope to the pinion axis, rad.
+    """
+    pinion_roll, y, roll, psi = np.broadcast_arrays(
+        *(np.asarray(part, float) for part in (*pinion_place, roll, psi))
+    )
+    nx, nz = pinion.involute_normal(design, pinion_roll)
+    tangent = np.stack([-nz, np.zeros_like(nx), nx], axis=-1)
+    profile = np.einsum("...ij,...j->...i", to_gear, tangent)
+    axial = np.broadcast_to(to_gear[..., :, 1], profile.shape)
+    across, along, twist = added_curvatures(design, face_gear.flank_point(design, roll, psi))
+    own_curvatures = _pinion_deviation(design, pinion_roll, y)
+    curvature = (
+        1 / (design.pinion_base_radius * pinion_roll) + across * profile[..., 2] ** 2 + own_curvatures[0]
+    )
+    # depth below the gear's tip plane and roll both fall along the profile's tangent
+    total_twist = -profile[..., 2] * twist + own_curvatures[2]
+    return _principal(design, roll, psi, profile, axial, (curvature, along + own_curvatures[1], total_twist))
+
+
+def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Curvatures (1/m) that deviations of the pinion add, convex positive: across the profile, where its arc
+    grows by r_b th dth, along the axis, and their twist.
+    """
+    grid, at = design.pinion.flanks.right, pinion.deviation_place(design, roll, y)
+    slope = derivative(grid, *at, (0, 1)) / (design.pinion_base_radius * roll**3)
+    across = slope - derivative(grid, *at, (0, 2)) / roll**2
+    return across, -derivative(grid, *at, (2, 0)), derivative(grid, *at, (1, 1)) / roll
+
+
+def _principal(
+    design: PairDesign,
+    roll: Array,
+    psi: Array,
+    profile: Array,
+    axial: Array,
+    extra_curvatures: tuple[Array, Array | float, Array | float],
+) -> tuple[Array, Array, Array]:
+    """Return principal curvatures from the gear's shape operator in the directions of the pinion's tangents.
+
+    extra_curvatures: curvatures (1/m) in these directions, and their twist, that the gear's nominal flank
+    does not have, the pinion's among them.
+    """
+    _, ratio, space, _ = face_gear.shaper_numbers(design)
+    turn = ratio * (psi - roll - space)
+    c, s = np.cos(turn), np.sin(turn)
+    around = np.stack([-np.cos(psi) * s, np.cos(psi) * c, np.zeros_like(turn)], axis=-1)
+    normal_psi = np.stack([-np.sin(psi) * c, -np.sin(psi) * s, np.cos(psi)], axis=-1) + ratio * around
+    tangents = np.stack(face_gear.flank_tangents(design, roll, psi), axis=-1)
+    changes = np.stack([-ratio * around, normal_psi], axis=-1)
+    basis = np.stack([profile, axial], axis=-2)
+    shape = (basis @ changes) @ np.linalg.inv(basis @ tangents)
+    shape = (shape + np.swapaxes(shape, -1, -2)) / 2
+    shape[..., 0, 0] += extra_curvatures[0]
+    shape[..., 1, 1] += extra_curvatures[1]
+    shape[..., 0, 1] += extra_curvatures[2]
+    shape[..., 1, 0] += extra_curvatures[2]
+    values, vectors = np.linalg.eigh(shape)
+    order = np.argsort(np.abs(values), axis=-1)
+    small, large = (np.take_along_axis(values, order[..., i : i + 1], -1)[..., 0] for i in (0, 1))
+    line = np.take_along_axis(vectors, order[..., None, :1], -1)[..., 0]
+    return large, small, np.arctan(line[..., 0] / line[..., 1])
+
+
+SAMPLES = 401
+"""Points of a section, evenly in its parameter."""
+
+
+def smallest_radius(design: PairDesign, body: str) -> float:
+    """Compute the smallest radius of curvature of a fillet's sections: the pinion's, or the gear's over its
+    face.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : str
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    if body == "pinion":
+        gamma = np.linspace(design.pressure_angle, np.pi / 2, SAMPLES)
+        radius, angle = pinion.trochoid_point(design, gamma)
+        return _sharpest(radius * np.sin(angle), radius * np.cos(angle))
+    ends = design.face_gear.inner_radius, design.face_gear.outer_radius
+    radii = []
+    for gear_radius in (*ends, float(np.clip(sharpest_fillet_radius(design), *ends))):
+        slopes = face_gear_fillet.fillet_slopes(design, gear_radius, np.linspace(0.0, 1.0, SAMPLES))
+        angle, z = face_gear_fillet.fillet_section(design, gear_radius, slopes)
+        radii.append(_sharpest(gear_radius * angle, z))
+    return min(radii)
+
+
+def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
+    dx, dz = np.gradient(x), np.gradient(z)
+    bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
+    return float(1.0 / bend[2:-2].max())

@@ -1,0 +1,231 @@
+"""Results of the geometry stage as a record and as arrays, with separation contours of the flanks."""
+
+from dataclasses import asdict, dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from facegear.arrays import AnyArray, Array, Mask
+from facegear.teeth import face_gear, face_gear_fillet, pinion
+from facegear.teeth.analysis import PairAnalysis, path_curvatures
+from facegear.teeth.clearance import Gap, pinion_outline
+from facegear.teeth.design import PairDesign
+from facegear.teeth.placement import conjugate_angle
+from facegear.teeth.rays import FLANK
+from facegear.teeth.separation import separation
+from facegear.teeth.surfaces import flank_points
+from facegear.teeth.unloaded import UnloadedContact
+
+
+@dataclass(frozen=True)
+class EaseOff:
+    """On a grid (n_profile, n_width) of pinion flank points, roll (rad) and y (m).
+
+    gap: smallest separation (m) from the gear's flank while the tooth passes through the mesh; facing:
+    whether the point meets the gear's flank at all (gap, radius, height are zero where not); radius,
+    height: where on the gear (gear radius and z, m).
+    """
+
+    roll: Array
+    y: Array
+    gap: Array
+    facing: Mask
+    radius: Array
+    height: Array
+
+
+def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, int] = (25, 25)) -> EaseOff:
+    """Compute the ease-off of the drive side.
+
+    The separation is sampled over three pitches and its smallest value taken from the parabola through the
+    three samples around it.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    transmission_error : float
+        Mean unloaded transmission error, m, see `unloaded`.
+    shape : tuple[int, int]
+        Number of points along profile and width.
+
+    Returns
+    -------
+    EaseOff
+        Grid of gaps, m.
+    """
+    gear = design.face_gear
+    half = design.pinion.width / 2
+    first = max(gear.inner_radius, design.mean_radius - half)
+    last = min(gear.outer_radius, design.mean_radius + half)
+    rolls = np.linspace(pinion.junction_roll(design), design.pinion_tip_roll, shape[0])
+    roll, y = np.meshgrid(rolls, np.linspace(first, last, shape[1]), indexing="ij")
+    phi1 = np.linspace(-1.5, 1.5, 61) * 2 * pi / design.pinion.teeth
+    phi2 = conjugate_angle(design, phi1) + transmission_error / design.gear_base_radius
+    separations = separation(design, flank_points(design, roll, y).flat(), phi1, phi2)
+    gap = np.where(separations.part == FLANK, separations.gap, np.inf)
+    best = np.clip(np.argmin(gap, axis=0), 1, len(phi1) - 2)
+    points = np.arange(gap.shape[1])
+    before, middle, after = (gap[best + step, points] for step in (-1, 0, 1))
+    is_facing = np.isfinite(before) & np.isfinite(middle) & np.isfinite(after)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        min_gap = middle - (after - before) ** 2 / (8 * (before - 2 * middle + after))
+    hit = face_gear.flank_point(design, separations.u[best, points], separations.v[best, points])
+    radius = np.hypot(hit[:, 0], hit[:, 1])
+
+    def facing_values(values: Array) -> Array:
+        return np.where(is_facing, values, 0.0).reshape(shape)
+
+    return EaseOff(
+        roll=roll,
+        y=y,
+        gap=facing_values(min_gap),
+        facing=is_facing.reshape(shape),
+        radius=facing_values(radius),
+        height=facing_values(hit[:, 2]),
+    )
+
+
+def pair_record(design: PairDesign, analysis: PairAnalysis) -> dict[str, Any]:
+    """Return the content of `geometry/pair.json`: radii, limits, contact ratio and path, backlash, smallest
+    gaps.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    analysis : PairAnalysis
+        Its geometry.
+
+    Returns
+    -------
+    dict[str, Any]
+        Values by key, units in the keys.
+    """
+    limits = analysis.limits
+    roll, large, small, slope = path_curvatures(design)
+    return {
+        "design_si": asdict(design),
+        "radii_mm": {
+            "pinion_base": 1e3 * design.pinion_base_radius,
+            "pinion_pitch": 1e3 * design.pinion_pitch_radius,
+            "pinion_tip": 1e3 * design.pinion_tip_radius,
+            "pinion_root": 1e3 * design.pinion_root_radius,
+            "pinion_fillet_start": 1e3 * float(pinion.trochoid_point(design, design.pressure_angle)[0]),
+            "gear_base": 1e3 * design.gear_base_radius,
+            "gear_contact_path_nominal": 1e3 * design.gear_pitch_radius,
+            "gear_inner": 1e3 * design.face_gear.inner_radius,
+            "gear_outer": 1e3 * design.face_gear.outer_radius,
+        },
+        "limits_mm": {
+            "inner_undercut": 1e3 * limits.inner,
+            "outer_pointing": 1e3 * limits.outer,
+            "outer_pointing_planar": 1e3 * limits.outer_planar,
+        },
+        "contact_ratio": analysis.contact_ratio,
+        "backlash_um": {"smallest": 1e6 * analysis.backlash.min(), "largest": 1e6 * analysis.backlash.max()},
+        "unloaded": {"drive": _contact(analysis.drive), "back": _contact(analysis.back)},
+        "path_curvature": {
+            "pinion_roll_rad": roll,
+            "larger_per_m": large,
+            "smaller_per_m": small,
+            "line_slope_deg": np.degrees(slope),
+        },
+        "smallest_gap": _gap(analysis.smallest),
+        "interference": None if analysis.interference is None else _gap(analysis.interference),
+        "gaps": [_gap(gap) for gap in analysis.gaps.values()],
+    }
+
+
+def _contact(contact: UnloadedContact) -> dict[str, Any]:
+    roll, y = contact.path
+    error = 1e6 * contact.transmission_error
+    return {
+        "phi1_rad": contact.phi1,
+        "transmission_error_um": error,
+        "transmission_error_peak_to_peak_um": float(np.ptp(error)),
+        "path_pinion_roll_rad": roll,
+        "path_pinion_y_mm": 1e3 * y,
+        "touching_pair": contact.tooth,
+    }
+
+
+def _gap(gap: Gap) -> dict[str, Any]:
+    return {
+        "gap_um": 1e6 * gap.gap,
+        "along_line_of_action_um": 1e6 * gap.approach if np.isfinite(gap.approach) else None,
+        "pinion_part": gap.pinion_part,
+        "gear_part": gap.gear_part,
+        "gear_radius_mm": 1e3 * gap.radius,
+        "phi1_rad": gap.phi1,
+        "side": gap.side,
+    }
+
+
+def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict[str, Array]:
+    """Return point grids of the right flanks and fillets, in the body frames.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    profile : int
+        Number of points along the profile.
+    width : int
+        Number of points along the width.
+
+    Returns
+    -------
+    dict of (profile, width, 3) arrays
+        Points, m, and `pinion_section` (n, 2), m.
+    """
+    half = design.pinion.width / 2
+    y = np.linspace(design.mean_radius - half, design.mean_radius + half, width)[None, :]
+    roll = np.linspace(design.pinion_tip_roll, pinion.junction_roll(design), profile)[:, None]
+    gamma = np.linspace(design.pressure_angle, np.pi / 2, profile)[:, None]
+    radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, width)[None, :]
+    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    gear_roll = top + np.linspace(0, 1, profile)[:, None] * (design.shaper_tip_roll - top)
+    slopes = face_gear_fillet.fillet_slopes(design, radius, np.linspace(0, 1, profile)[:, None])
+    return {
+        "pinion_flank": pinion.cartesian(*pinion.involute_point(design, roll), y),
+        "pinion_fillet": pinion.cartesian(*pinion.trochoid_point(design, gamma), y),
+        "gear_flank": face_gear.flank_point(design, gear_roll, face_gear.psi_at(design, radius, gear_roll)),
+        "gear_fillet": face_gear.cylindrical(
+            radius, *face_gear_fillet.fillet_section(design, radius, slopes)
+        ),
+        "pinion_section": pinion_outline(design, 200).points,
+    }
+
+
+def contact_arrays(design: PairDesign, analysis: PairAnalysis, contours: EaseOff) -> dict[str, AnyArray]:
+    """Return the arrays that the pictures need: the drive side's contact path and the separation contours
+    (SI).
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    analysis : PairAnalysis
+        Its geometry.
+    contours : EaseOff
+        Ease-off of the drive side.
+
+    Returns
+    -------
+    dict of (...) arrays
+        Arrays by name, in SI units.
+    """
+    roll, y = analysis.drive.path
+    order = np.argsort(roll)
+    record = {f"contour_{name}": value for name, value in asdict(contours).items()}
+    return {
+        **record,
+        "path_roll": roll[order],
+        "path_y": y[order],
+        "phi1": analysis.drive.phi1,
+        "phi2_conjugate": conjugate_angle(design, analysis.drive.phi1),
+        "transmission_error": analysis.drive.transmission_error,
+        "backlash": analysis.backlash,
+    }

@@ -1,0 +1,314 @@
+"""The face gear's flank and fillet in closed form: envelopes of the shaper's involute and of its tip.
+
+Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank its mirror
+image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
+normal. Source: shaper-generated face gears (Litvin and Fuentes 2004, chapter 18),
+with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi). A tip rounded about a
+centre at R_c, which stands chi from the vertical, generates with the same slope psi where
+q = R_c cos(chi - psi) / (m2s cos psi); a sharp tip edge is the rounding of radius zero.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from facegear.arrays import Array
+from facegear.errors import NotConverged
+from facegear.teeth import closed_forms
+from facegear.teeth.design import PairDesign, as_cut
+
+ROUNDING = 16 * np.finfo(float).eps
+
+
+def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
+    """Return the numbers of the shaper that the closed forms take.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[float, float, float, float]
+        Base radius r_b (m), ratio m2s, half space angle th_os (rad) and lift (m).
+    """
+    return (
+        design.shaper_base_radius,
+        design.shaper_ratio,
+        design.shaper_half_space_angle,
+        design.shaper_lift,
+    )
+
+
+def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
+    """Compute points of the flank; roll and slope are broadcast together.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
+    return _stack_components(*_flank_frame(design, roll, psi)[:3])
+
+
+def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
+    """Compute outward unit normals of the flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    (..., 3) array
+        Unit vectors, dimensionless.
+    """
+    _, ratio, space, _ = shaper_numbers(design)
+    roll, psi = _together(roll, psi)
+    return _stack_components(*closed_forms.normal(ratio * (psi - roll - space), psi))
+
+
+def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
+    """Compute the exact derivatives of the position on the flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle th, rad.
+    psi : (...) array_like
+        Slope of the normal, rad.
+
+    Returns
+    -------
+    tuple of (..., 3) arrays
+        Derivatives with respect to th and to psi, m/rad.
+    """
+    frame = _flank_frame(design, roll, psi)
+    return _stack_components(*frame[3:6]), _stack_components(*frame[6:])
+
+
+def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, ...]:
+    return closed_forms.flank_frame(*shaper_numbers(design), *_together(roll, psi))
+
+
+def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
+    arrays = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
+    return arrays[0], arrays[1]
+
+
+def _stack_components(x: Array, y: Array, z: Array) -> Array:
+    return np.stack([x, y, z], axis=-1)
+
+
+def local_pressure_angle(design: PairDesign, radius: ArrayLike) -> Array:
+    """Compute the local pressure angle a_L with cos a_L = m N2 cos a0 / (2 L).
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius L, m.
+
+    Returns
+    -------
+    (...) array
+        rad.
+    """
+    return np.arccos(design.gear_base_radius / np.asarray(radius, float))
+
+
+def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
+    """Compute the slope psi of the flank point with a given roll on the cylinder of a gear radius.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    roll : (...) array_like
+        Roll angle th, rad.
+
+    Returns
+    -------
+    (...) array
+        rad.
+
+    Raises
+    ------
+    NotConverged
+        Where the cylinder does not cut the flank there.
+    """
+    base, ratio, _, _ = shaper_numbers(design)
+    radius, roll = _together(radius, roll)
+
+    def residual(psi: Array) -> tuple[Array, Array]:
+        return closed_forms.radius_at_roll(base, ratio, radius, roll, psi)
+
+    return _newton(residual, local_pressure_angle(design, radius), radius**2, "psi at a gear radius")
+
+
+def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
+    """Compute roll and slope of the flank at a gear radius and a height.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+    z : (...) array_like
+        Height, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        th and psi, rad.
+
+    Raises
+    ------
+    NotConverged
+        Where the cylinder does not cut the flank there.
+    """
+    base, ratio, _, lift = shaper_numbers(design)
+    radius, z = _together(radius, z)
+    height = (lift - z) / base
+
+    def residual(psi: Array) -> tuple[Array, Array]:
+        return closed_forms.radius_at_height(base, ratio, radius, height, psi)
+
+    psi = _newton(residual, local_pressure_angle(design, radius), radius**2, "flank at a height")
+    return closed_forms.roll_at_height(height, psi), psi
+
+
+def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
+    """Compute points of the flank's tip edge.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    radius : (...) array_like
+        Gear radius, m.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
+    return flank_point(design, *roll_and_psi_at_height(design, radius, design.gear_tip_plane))
+
+
+@dataclass(frozen=True, eq=False)
+class TipEdge:
+    """The flank's tip edge, as it is generated: th and gear angle (rad) by gear radius (m)."""
+
+    roll: "scipy.interpolate.CubicSpline"
+    angle: "scipy.interpolate.CubicSpline"
+
+
+def tip_edge_by_radius(design: PairDesign) -> TipEdge:
+    """Return the tip edge of a design; designs with the same gear share it.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    TipEdge
+        Splines of th and gear angle (rad) over gear radius (m).
+    """
+    return _tip_edge_by_radius(as_cut(design))
+
+
+@lru_cache(maxsize=16)
+def _tip_edge_by_radius(design: PairDesign) -> TipEdge:
+    gear = design.face_gear
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
+    roll, psi = roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    point = flank_point(design, roll, psi)
+    angle = np.arctan2(point[:, 0], point[:, 1])
+    return TipEdge(*(scipy.interpolate.CubicSpline(radius, values) for values in (roll, angle)))
+
+
+def _newton(
+    residual: Callable[[Array], tuple[Array, Array]], near: Array, size: Array, task_text: str
+) -> Array:
+    """Return the root near `near` (rad or m) of a difference of numbers of magnitude `size`.
+
+    Near a fold, where steps stay above rounding, the residual decides. Raises NotConverged.
+    """
+    at = near
+    for _ in range(60):
+        value, slope = residual(at)
+        step = np.clip(value / slope, -0.1, 0.1)
+        at = at - step
+        if np.all(np.abs(step) < 1e-14):
+            return at
+        if not np.all(np.isfinite(at)):
+            break
+    if np.all(np.isfinite(at)) and np.all((np.abs(step) < 1e-12) | (np.abs(value) <= ROUNDING * size)):
+        return at
+    raise NotConverged("geometry", task_text, "60 Newton steps")
+
+
+def edge_start(design: PairDesign) -> float:
+    """Compute chi_0, the angle of the centre of the shaper's tip rounding from the vertical at phi_s = 0.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        rad.
+    """
+    roll = design.shaper_rounding_roll
+    return float(design.shaper_half_space_angle + design.shaper_tip_roll - np.arctan(roll))
+
+
+def cylindrical(radius: ArrayLike, beta: ArrayLike, z: ArrayLike) -> Array:
+    """Convert cylindrical coordinates to points of the gear body frame.
+
+    Parameters
+    ----------
+    radius : (...) array_like
+        Gear radius, m.
+    beta : (...) array_like
+        Gear angle, rad.
+    z : (...) array_like
+        Height, m.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
+    x, y, z = np.broadcast_arrays(radius * np.sin(beta), radius * np.cos(beta), z)
+    return np.stack([x, y, z], axis=-1)

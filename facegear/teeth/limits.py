@@ -1,0 +1,260 @@
+"""Radial limits of a face gear's teeth: inner radius from undercut, outer radius from pointing."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
+
+from scipy.optimize import brentq, minimize_scalar
+
+from facegear.errors import GeometryError, NotConverged
+from facegear.teeth import face_gear, face_gear_fillet
+from facegear.teeth.design import PairDesign
+
+ROUNDING = 1e-15
+"""Absolute tolerance (m or rad) of roots: some thousand times less than a limit is printed with."""
+THINNEST_LAND = 0.05
+"""Thinnest tip or root land, in modules: less cannot be cut, nor meshed."""
+
+
+@dataclass(frozen=True)
+class FaceRange:
+    """Gear radii (m) between which a face may lie, and what limits it on either side."""
+
+    inner: float
+    outer: float
+    inner_reason: str
+    outer_reason: str
+
+    def __str__(self) -> str:
+        """The range in mm, as a refusal tells it."""
+        return (
+            f"between {1e3 * self.inner:.3f} ({self.inner_reason}) and {1e3 * self.outer:.3f} "
+            f"({self.outer_reason})"
+        )
+
+
+@dataclass(frozen=True)
+class RadiusLimits:
+    """Inner (undercut) and outer (pointing) gear radii in m; planar: the section taken as a straight rack."""
+
+    inner: float
+    outer: float
+    outer_planar: float
+
+
+def radius_limits(design: PairDesign) -> RadiusLimits:
+    """Compute the limits of the face width for any shaper, addendum and pressure angle.
+
+    Undercut: the singular line th = (tan psi / 2)(1 + sqrt(1 + 4 / (m2s cos psi)^2)) meets the end of the
+    shaper's involute. Pointing: the two flanks meet on the tip plane.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    RadiusLimits
+        Gear radii, m.
+
+    Raises
+    ------
+    GeometryError
+        If the flanks meet on the tip plane at every radius.
+    """
+    return RadiusLimits(undercut_radius(design), *_pointing_radii(design))
+
+
+def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
+    """Compute where the teeth can be cut with a fillet and a tip land; neither radius of the face is needed.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    limits : RadiusLimits
+        Result of `radius_limits`.
+
+    Returns
+    -------
+    FaceRange
+        Gear radii, m.
+
+    Raises
+    ------
+    GeometryError
+        If there is no such place.
+    """
+    tip_undercut = tip_plane_radius(design)
+    inner, inner_reason = max((limits.inner, "undercut"), (tip_undercut * (1 + 1e-9), "tip undercut"))
+    land = _radii_with_land(design, inner, limits.outer) if limits.outer > inner else None
+    if land is None:
+        raise _no_face(design, "the teeth are pointed where they are no longer undercut")
+    if land[0] > inner:
+        inner, inner_reason = land[0], "tips pointed further in"
+    candidates = [(land[1], f"tips pointed at {1e3 * limits.outer:.3f}")]
+    sharpest = sharpest_fillet_radius(design)
+    if _fillet_left(design, sharpest) < 0:
+        last = _last(_fillet_left, design, inner, sharpest)
+        reason = "the shaper's tip leaves no fillet further out; a larger shaper.tip_rounding_modules does"
+        candidates.append((last, reason))
+    outer, outer_reason = min(candidates)
+    face = FaceRange(inner, outer, inner_reason, outer_reason)
+    if outer - inner < 0.5 * design.module:
+        raise _no_face(design, f"less than half a module of face is left {face}")
+    return face
+
+
+def _no_face(design: PairDesign, reason: str) -> GeometryError:
+    tip = round(design.face_gear.addendum / design.module, 6)
+    return GeometryError("face_gear.addendum_modules", tip, f"less: {reason}")
+
+
+def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float, float] | None:
+    """Smallest and largest radius (m) at which the tip land is wide enough; None where it is at no radius.
+
+    The land has one maximum: with many pinion teeth it also vanishes near the radius of tip undercut.
+    """
+    start, end = low * (1 + 1e-9), high * (1 - 1e-6)
+    if end <= start:
+        return None
+    if _land_left(design, start) > 0:
+        return low, _last(_land_left, design, low, high)
+    widest = float(
+        minimize_scalar(
+            lambda radius: -_land_left(design, radius),
+            bounds=(start, end),
+            method="bounded",
+            options={"xatol": 1e-3 * design.module},
+        ).x
+    )
+    if _land_left(design, widest) <= 0:
+        return None
+    first = brentq(lambda radius: _land_left(design, radius), start, widest, xtol=ROUNDING)
+    return float(first), _last(_land_left, design, widest, high)
+
+
+def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:
+    """The largest radius (m) with room left; room falls outwards."""
+    low, high = low * (1 + 1e-9), high * (1 - 1e-6)
+    if high <= low or margin(design, low) <= 0:
+        return low
+    if margin(design, high) >= 0:
+        return high
+    return float(brentq(lambda radius: margin(design, radius), low, high, xtol=ROUNDING))
+
+
+def _land_left(design: PairDesign, radius: float) -> float:
+    """Width (m) of the tip land beyond the thinnest."""
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    return 2 * float(face_gear.flank_point(design, roll, psi)[..., 0]) - THINNEST_LAND * design.module
+
+
+def sharpest_fillet_radius(design: PairDesign) -> float:
+    """Compute the gear radius at which the centre of the shaper's tip rounding rolls on the gear's pitch
+    surface.
+
+    The tip turns about that centre and leaves nothing but its own rounding; a sharp one leaves a corner.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    return design.shaper_rounding_centre / design.shaper_ratio
+
+
+def _fillet_left(design: PairDesign, radius: float) -> float:
+    """Length (m) of the fillet beyond the shortest: the way of the rounding's centre, and its arc."""
+    psi = float(face_gear_fillet.fillet_start(design, radius))
+    way = abs(psi - atan(design.shaper_rounding_roll)) * design.shaper_rounding_centre
+    return way + (pi / 2 - psi) * design.shaper.tip_rounding - THINNEST_LAND * design.module
+
+
+def undercut_radius(design: PairDesign) -> float:
+    """Compute the smallest gear radius at which the shaper's tip does not cut into the flank.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    base, ratio, roll = design.shaper_base_radius, design.shaper_ratio, design.shaper_tip_roll
+
+    def margin(psi: float) -> float:
+        return tan(psi) / 2 * (1 + sqrt(1 + 4 / (ratio * cos(psi)) ** 2)) - roll
+
+    psi = brentq(margin, 0.0, atan(roll), xtol=ROUNDING)
+    return hypot(base * (sin(psi) - roll * cos(psi)), base / (ratio * cos(psi)))
+
+
+def tip_plane_radius(design: PairDesign) -> float:
+    """Compute the smallest gear radius at which the flank reaches the tip plane (the envelope turns back
+    there).
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        m.
+    """
+    base, ratio = design.shaper_base_radius, design.shaper_ratio
+    height = (design.shaper_lift - design.gear_tip_plane) / base
+
+    def slope(psi: float) -> float:
+        """Return the derivative of half the radius squared by psi, over base squared."""
+        outwards = (1 - height * cos(psi)) * (height - cos(psi)) / sin(psi) ** 3
+        return outwards + sin(psi) / (ratio**2 * cos(psi) ** 3)
+
+    psi = brentq(slope, 1e-4, 1.0, xtol=ROUNDING)
+    return hypot(base * (1 - height * cos(psi)) / sin(psi), base / (ratio * cos(psi)))
+
+
+def _pointing_radii(design: PairDesign) -> tuple[float, float]:
+    base, ratio, space = design.shaper_base_radius, design.shaper_ratio, design.shaper_half_space_angle
+    height = (design.shaper_lift - design.gear_tip_plane) / base
+
+    def planar(psi: float) -> float:
+        return psi - height * sin(psi) - space
+
+    def exact(psi: float) -> float:
+        roll = (height - cos(psi)) / sin(psi)
+        return atan(ratio * cos(psi) * (sin(psi) - roll * cos(psi))) - ratio * (psi - roll - space)
+
+    thickest = acos(1 / height) if height > 1 else 1e-6
+    if planar(thickest) >= 0:
+        tip = design.face_gear.addendum / design.module
+        raise GeometryError(
+            "face_gear.addendum_modules", round(tip, 6), "less: the tooth is pointed everywhere"
+        )
+    planar_psi = brentq(planar, thickest, pi / 2, xtol=ROUNDING)
+    exact_psi = _root_near(exact, planar_psi)
+    roll = (height - cos(exact_psi)) / sin(exact_psi)
+    exact_radius = hypot(base * (sin(exact_psi) - roll * cos(exact_psi)), base / (ratio * cos(exact_psi)))
+    return exact_radius, design.gear_base_radius / cos(planar_psi)
+
+
+def _root_near(function: Callable[[float], float], guess: float) -> float:
+    """The planar and the exact limit differ by some 0.03 %: a bracket that grows around the planar one."""
+    width = 1e-3
+    while width < 1.0:
+        low, high = max(guess - width, 1e-3), min(guess + width, pi / 2 - 1e-6)
+        if function(low) * function(high) <= 0:
+            return float(brentq(function, low, high, xtol=ROUNDING))
+        width *= 2
+    raise NotConverged("geometry", "the pointing limit", f"brackets up to 1 rad around {guess:.4f} rad")

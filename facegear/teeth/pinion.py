@@ -1,0 +1,274 @@
+"""The pinion's section: involute, tip chamfer, the root trochoid cut by a rack with a rounded tip, reliefs.
+
+Everything is for the right flank of tooth 0 in the pinion body frame (see `design`): polar angle a from the
+tooth's centre line, so x = r sin a, z = -r cos a. The left flank is the mirror image a -> -a.
+Sources: involute geometry (Litvin and Fuentes 2004, chapter 10); the trochoid is the
+envelope of the rack's tip circle, whose normals pass through the pitch point.
+"""
+
+from math import cos, pi, sin, tan
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.arrays import Array
+from facegear.teeth.design import PairDesign, linear, parabola
+from facegear.teeth.modifications import deviation
+
+
+def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
+    """Compute points of the involute.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Radius, m, and polar angle, rad.
+    """
+    roll = np.asarray(roll, dtype=float)
+    radius = design.pinion_base_radius * np.sqrt(1 + roll**2)
+    return radius, design.pinion_half_base_angle - roll + np.arctan(roll)
+
+
+def involute_normal(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
+    """Compute outward unit normals of the involute.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Components x and z, dimensionless.
+    """
+    tangent_point = design.pinion_half_base_angle - np.asarray(roll, dtype=float)
+    return np.cos(tangent_point), np.sin(tangent_point)
+
+
+def rack_tip_centre(design: PairDesign) -> tuple[float, float]:
+    """Compute the centre of the rack's tip circle.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    tuple[float, float]
+        Distance from the rack tooth's middle, and depth, m.
+    """
+    pinion, angle = design.pinion, design.pressure_angle
+    depth = pinion.dedendum - pinion.rack_tip_radius
+    half_thickness = pi * design.module / 4 + pinion.thinning / (2 * cos(angle))
+    lateral = half_thickness - depth * tan(angle) - pinion.rack_tip_radius / cos(angle)
+    return lateral, depth - pinion.profile_shift
+
+
+def junction_roll(design: PairDesign) -> float:
+    """Compute the roll angle where involute and trochoid meet.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        rad; negative when the rack undercuts the pinion.
+    """
+    _, depth = rack_tip_centre(design)
+    angle = design.pressure_angle
+    return tan(angle) - (depth / sin(angle) + design.pinion.rack_tip_radius) / design.pinion_base_radius
+
+
+def trochoid_point(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
+    """Compute points of the root trochoid.
+
+    gamma runs from the pressure angle (the junction with the involute) to pi/2 (the root circle).
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    gamma : (...) array_like
+        Slope of the normal to the rack's pitch line, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Radius, m, and polar angle, rad.
+    """
+    gamma = np.asarray(gamma, dtype=float)
+    lateral, depth = rack_tip_centre(design)
+    centre = depth / np.tan(gamma)
+    x = centre + design.pinion.rack_tip_radius * np.cos(gamma)
+    height = design.pinion_pitch_radius - depth - design.pinion.rack_tip_radius * np.sin(gamma)
+    rack_rotation = (centre - lateral) / design.pinion_pitch_radius
+    return np.hypot(x, height), pi / design.pinion.teeth - np.arctan2(x, height) + rack_rotation
+
+
+def trochoid_normal(design: PairDesign, gamma: ArrayLike) -> tuple[Array, Array]:
+    """Compute outward unit normals of the root trochoid.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    gamma : (...) array_like
+        Slope of the normal to the rack's pitch line, rad.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Components x and z, dimensionless.
+    """
+    gamma = np.asarray(gamma, dtype=float)
+    lateral, depth = rack_tip_centre(design)
+    rack_rotation = (depth / np.tan(gamma) - lateral) / design.pinion_pitch_radius
+    slope = gamma - rack_rotation - pi / design.pinion.teeth
+    return np.cos(slope), -np.sin(slope)
+
+
+def tip_half_angle(design: PairDesign) -> float:
+    """Compute half the angle of the tip land, chamfer taken off.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        rad; negative for a pointed tooth.
+    """
+    _, angle = involute_point(design, design.pinion_tip_roll)
+    return float(angle) - design.pinion.tip_chamfer / design.pinion_tip_radius
+
+
+def root_half_angle(design: PairDesign) -> float:
+    """Compute half the angle of the root land.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+
+    Returns
+    -------
+    float
+        rad; negative when the rack's tip circles overlap.
+    """
+    return rack_tip_centre(design)[0] / design.pinion_pitch_radius
+
+
+def cartesian(radius: ArrayLike, angle: ArrayLike, y: ArrayLike) -> Array:
+    """Convert polar coordinates to points of the pinion body frame.
+
+    Parameters
+    ----------
+    radius : (...) array_like
+        m.
+    angle : (...) array_like
+        rad.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    (..., 3) array
+        m.
+    """
+    radius = np.asarray(radius)
+    points = np.broadcast_arrays(radius * np.sin(angle), y, -radius * np.cos(angle))
+    return np.stack(points, axis=-1)
+
+
+def removed_depth(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
+    """Compute the material that modifications and deviations take off along the normal.
+
+    Beyond the ends of the involute (in the fillet) the root relief keeps its full amount, and the
+    deviation keeps its value at the end.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle, rad.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    (...) array
+        m; negative where the right flank deviates towards more material.
+    """
+    part = design.pinion
+    reliefs = (part.tip_relief, linear), (part.root_relief, linear), (part.lead_crowning, parabola)
+    roll, y = np.asarray(roll, float), np.asarray(y, float)
+    depth = np.zeros(np.broadcast_shapes(roll.shape, y.shape))
+    for (relief, shape), distance in zip(reliefs, distances(design, roll, y), strict=True):
+        if relief.amount != 0.0:
+            depth += shape(relief, distance)
+    if part.flanks.right is None:
+        return depth
+    return depth - deviation(part.flanks.right, *deviation_place(design, roll, y))
+
+
+def distances(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Compute the distances from where tip relief, root relief and lead crowning are measured.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array
+        Roll angle, rad.
+    y : (...) array
+        Axial position, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Distances for tip relief, root relief and lead crowning, m.
+    """
+    base = design.pinion_base_radius
+    return (
+        base * (design.pinion_tip_roll - roll),
+        base * (roll - junction_roll(design)),
+        abs(y - design.mean_radius),
+    )
+
+
+def deviation_place(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
+    """Compute the coordinates of `DeviationGrid`.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle, rad.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    tuple of (...) arrays
+        Distances along face and profile, m.
+    """
+    on_flank = np.clip(np.asarray(roll, float), junction_roll(design), design.pinion_tip_roll)
+    return np.asarray(y, float) - design.mean_radius, design.pinion_base_radius * on_flank

@@ -1,0 +1,192 @@
+"""Points and normals of flanks in space: the pinion's surface, and nominal points for measuring machines."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.arrays import Array, Integers
+from facegear.bodies import Body
+from facegear.teeth import face_gear, pinion
+from facegear.teeth.design import PairDesign
+from facegear.teeth.modifications import flank_end
+
+
+@dataclass(frozen=True)
+class SurfacePoints:
+    """Points of the right side of pinion tooth 0 in the body frame: position (..., 3) in m, unit normal."""
+
+    position: Array
+    normal: Array
+
+    def flat(self) -> "SurfacePoints":
+        """Return the points and normals as (n, 3) arrays.
+
+        Returns
+        -------
+        SurfacePoints
+            All points in one row.
+        """
+        return SurfacePoints(self.position.reshape(-1, 3), self.normal.reshape(-1, 3))
+
+    def only(self, index: Integers | slice) -> "SurfacePoints":
+        """Return the points at `index`.
+
+        Parameters
+        ----------
+        index : (k,) array
+            Numbers or slice along the first axis.
+
+        Returns
+        -------
+        SurfacePoints
+            Chosen points.
+        """
+        return SurfacePoints(self.position[index], self.normal[index])
+
+    @property
+    def lever_arm(self) -> Array:
+        """Lever arm (m) of the normals about the pinion's axis: speed along the normal per rotation."""
+        x, z = self.position[..., 0], self.position[..., 2]
+        return x * self.normal[..., 2] - z * self.normal[..., 0]
+
+
+def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePoints:
+    """Compute points of the involute; roll and y are broadcast together.
+
+    Modifications move points along the unmodified normal; the normal's own change (1e-3 rad) is left out.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    roll : (...) array_like
+        Roll angle, rad.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    SurfacePoints
+        Points (..., 3), m.
+    """
+    roll, y = np.broadcast_arrays(np.asarray(roll, float), np.asarray(y, float))
+    base, angle = design.pinion_base_radius, design.pinion_half_base_angle - roll
+    length, cosine, sine = base * roll - pinion.removed_depth(design, roll, y), np.cos(angle), np.sin(angle)
+    x, z = base * sine + length * cosine, length * sine - base * cosine
+    return SurfacePoints(_together(x, y, z), _together(cosine, 0.0, sine))
+
+
+def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> SurfacePoints:
+    """Compute points of the trochoid; gamma and y are broadcast together.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    gamma : (...) array_like
+        Slope of the normal, rad, see `pinion.trochoid_point`.
+    y : (...) array_like
+        Axial position, m.
+
+    Returns
+    -------
+    SurfacePoints
+        Points (..., 3), m.
+    """
+    gamma, y = np.broadcast_arrays(np.asarray(gamma, float), np.asarray(y, float))
+    position = pinion.cartesian(*pinion.trochoid_point(design, gamma), y)
+    nx, nz = pinion.trochoid_normal(design, gamma)
+    normal = _together(nx, 0.0, nz)
+    depth = pinion.removed_depth(design, pinion.junction_roll(design), y)
+    return SurfacePoints(position - depth[..., None] * normal, normal)
+
+
+def _together(x: Array, y: Array | float, z: Array) -> Array:
+    vectors = np.empty((*x.shape, 3))
+    vectors[..., 0], vectors[..., 1], vectors[..., 2] = x, y, z
+    return vectors
+
+
+@dataclass(frozen=True)
+class Face:
+    """The flank of a body in the coordinates of `DeviationGrid`: its ends (m) along the face and the profile.
+
+    `middle`: the place at the middle of the face and on the pitch circle or pitch plane, where pitch and
+    thickness are measured.
+    """
+
+    design: PairDesign
+    body: Body
+    face: tuple[float, float]
+    profile: tuple[float, float]
+    middle: tuple[float, float]
+
+
+def flank_face(design: PairDesign, body: Body) -> Face:
+    """Return the flank of a body; the flank of the gear is as deep as at its deepest end.
+
+    Parameters
+    ----------
+    design : PairDesign
+        Pair of gears.
+    body : Body
+        `pinion` or `face_gear`.
+
+    Returns
+    -------
+    Face
+        Ends and middle, m.
+    """
+    if body == "pinion":
+        base, half = design.pinion_base_radius, design.pinion.width / 2
+        ends = base * pinion.junction_roll(design), base * design.pinion_tip_roll
+        return Face(design, body, (-half, half), ends, (0.0, base * float(np.tan(design.pressure_angle))))
+    gear = design.face_gear
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, 33)
+    deepest = float(design.gear_tip_plane - flank_end(design, radius)[:, 2].min())
+    ends = gear.inner_radius, gear.outer_radius
+    return Face(design, body, ends, (0.0, deepest), (design.mean_radius, gear.addendum))
+
+
+def nominal_points(face: Face, side: str, along: Array, across: Array) -> tuple[Array, Array]:
+    """Compute nominal points and outward unit normals of a flank of tooth 0 in its body frame.
+
+    Modifications and deviations are left out.
+
+    Parameters
+    ----------
+    face : Face
+        Flank of a body.
+    side : str
+        `right` or `left`.
+    along : (n,) array
+        Distances along the face, m, as in `DeviationGrid`.
+    across : (m,) array
+        Distances along the profile, m.
+
+    Returns
+    -------
+    tuple of (n, m, 3) arrays
+        Points, m, and normals.
+
+    Raises
+    ------
+    NotConverged
+        Beside the gear's flank.
+    """
+    design = face.design
+    if face.body == "pinion":
+        roll = np.broadcast_to(across / design.pinion_base_radius, (along.size, across.size))
+        points = pinion.cartesian(*pinion.involute_point(design, roll), design.mean_radius + along[:, None])
+        nx, nz = pinion.involute_normal(design, roll)
+        normals = np.stack([nx, np.zeros_like(nx), nz], axis=-1)
+    else:
+        coordinates = face_gear.roll_and_psi_at_height(design, along[:, None], design.gear_tip_plane - across)
+        points, normals = (
+            face_gear.flank_point(design, *coordinates),
+            face_gear.flank_normal(design, *coordinates),
+        )
+    if side == "left":
+        points, normals = (part * np.array([-1.0, 1.0, 1.0]) for part in (points, normals))
+    return points, normals

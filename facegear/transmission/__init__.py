@@ -1,1 +1,0 @@
-"""The lumped model: bodies, meshes, matrices, statics and natural modes."""

@@ -1,1 +1,0 @@
-"""Machines beside that of the config: samples of its tolerances, designs, bins of a duty cycle."""
