@@ -175,7 +175,7 @@ def _in_lanes(periods: Mapping[int, int], fewest: int) -> list[int]:
 
 
 def _busy(lengths: Sequence[int], lanes: int) -> int:
-    """Time that lanes are busy with runs of these lengths, each of which takes the first lane that is free."""
+    """Time that lanes are busy with runs of these lengths, each taken by the first lane that is free."""
     ends = [0] * lanes
     for length in lengths:
         heapreplace(ends, ends[0] + length)

@@ -132,7 +132,7 @@ class Outline:
             return face_gear_fillet.fillet_section(self.design, v, u)
         fraction = np.broadcast_to(fraction[:, None], (len(fraction), len(self.planes)))
         if segment == "root_land":
-            half = pinion if self.body == "pinion" else face_gear
+            half = pinion if self.body == "pinion" else face_gear_fillet
             start = self.half_pitch - half.root_half_angle(self.design)
             angle = start + fraction * (self.half_pitch - start)
             return np.where(fraction == 1, self.half_pitch, angle), np.full_like(angle, self.root_height)
