@@ -11,7 +11,7 @@ from matplotlib.contour import ContourSet
 import facegear
 from facegear.pipeline.arguments import typed_arguments
 from facegear.pipeline.needs import resolved_needs, shared_sources
-from facegear.pipeline.reported import asked_for
+from facegear.pipeline.report_tables import asked_for
 from facegear.pipeline.stage import load
 from facegear.pipeline.table import STAGES
 from facegear.report.figures.draw_matplotlib import draw
