@@ -233,6 +233,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _with_snakemake(options: argparse.Namespace) -> int:
+    """Run the workflow in a subprocess of Snakemake and return its exit code."""
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "workflow" / "Snakefile")]
@@ -270,6 +271,7 @@ def _with_cache(folder: Path) -> dict[str, str]:
 
 
 def _run_here(options: argparse.Namespace) -> int:
+    """Compute the whole case in this process, without Snakemake; refuse single targets and dry runs."""
     if options.targets or options.dry_run:
         hint = "the workflow is not part of an installed package: run this from its repository"
         raise FacegearError(f"run: single files and --dry-run need Snakemake; {hint}")
@@ -280,6 +282,7 @@ def _run_here(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
+    """Write the report as one html file; exit code 1 if a stage could not be computed."""
     gearbox = facegear.load(options.config, options.results)
     path = options.output or Path(f"{gearbox.config.case}.html")
     _say_if_new(path.parent)
@@ -294,6 +297,7 @@ def _report(options: argparse.Namespace) -> int:
 
 
 def _figures(options: argparse.Namespace) -> int:
+    """Draw the named figures, or all, into a folder and print where they are."""
     gearbox = facegear.load(options.config, options.results)
     folder, suffix = options.output, ".png" if options.png else ".svg"
     if folder is None:
@@ -306,6 +310,7 @@ def _figures(options: argparse.Namespace) -> int:
 
 
 def _print_stage(stage: str, summary: str) -> None:
+    """Print one line for a finished stage to standard error."""
     print(f"{stage}: {summary}", file=sys.stderr, flush=True)
 
 
@@ -325,6 +330,7 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _limits(options: argparse.Namespace) -> int:
+    """Print between which radii the face of a gear may lie."""
     print(limits_in_words(**{name: getattr(options, name) for name in LIMITS}))
     return 0
 

@@ -257,6 +257,7 @@ def machine_findings(values: Mapping[str, Any]) -> EarlyFindings:
 
 
 def _interference(analysis: PairAnalysis, from_contact: bool) -> str:
+    """Say in one line where the teeth interfere and what then cannot be computed."""
     gap = analysis.interference
     assert gap is not None
     consequence = (

@@ -304,6 +304,7 @@ def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Tran
 
 
 def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, section: Transmission) -> None:
+    """Refuse an elastic face gear that does not fit the teeth or the kinematics."""
     if section.mesh_kinematics == "printed":
         raise ConfigError(f"{key}.body", "a section", "rigid where mesh_kinematics is printed")
     if teeth.face_gear is None:
@@ -335,6 +336,7 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
 
 
 def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:
+    """Raise ConfigError with the key of the section's dimension that an InvalidInput names."""
     name, value, requirement = KEYS[error.quantity], error.value, error.requirement.replace("`", "")
     if error.quantity == THINNEST:
         name, value = _thinnest_key(body)

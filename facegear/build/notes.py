@@ -104,6 +104,7 @@ def _require_hold(shape: Layout, name: str, single_part: SinglePinion | SingleGe
 
 
 def _require_assembly(section: Transmission, shape: Layout, fit: Assembly) -> None:
+    """Refuse pinions whose teeth cannot mesh with both face gears at their angles."""
     for i in np.flatnonzero(~fit.fits):
         pinion = section.pinions[i]
         key, unit = (
@@ -301,6 +302,7 @@ def turns(transmission: Mapping[str, Any]) -> bool:
 
 
 def _backlash(values: Mapping[str, Any]) -> list[str]:
+    """Note that the given backlash differs from the teeth's own."""
     backlash_um = values["transmission"].get("backlash_um")
     if backlash_um is None or values.get("tooth_pair", {}).get("pinion") is None:
         return []

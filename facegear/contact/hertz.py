@@ -115,6 +115,7 @@ def strip_pressure(
 
 
 def _half_width(load: Array, pressure: Array) -> Array:
+    """Return the half width, m, of a Hertzian line contact from load, N/m, and pressure, Pa."""
     return 2 * load / (pi * np.where(pressure == 0, 1.0, pressure))
 
 

@@ -102,6 +102,7 @@ class Lattice:
 
 @lru_cache(maxsize=8)
 def _interpolation_rows(lattice: Lattice) -> Rows:
+    """Return the interpolation from coarse nodes as arrays of a sparse matrix for the kernel."""
     nodes = np.argwhere(np.ones(lattice.shape)) / lattice.factors
     matrix = interpolation(nodes, lattice.coarse, lattice.linear)
     matrix.eliminate_zeros()

@@ -178,6 +178,7 @@ def unloaded_lines(
 
 
 def _min_roll(design: PairDesign) -> float:
+    """Return the smallest roll angle, rad, of the involute: at the fillet, not below the base circle."""
     return max(pinion.junction_roll(design), 0.0)
 
 

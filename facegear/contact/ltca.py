@@ -128,6 +128,7 @@ class ContactModel:
 
     @property
     def design(self) -> PairDesign:
+        """Design of the pair of gears."""
         return self.flanks.design
 
     def with_assembly(self, errors: AssemblyErrors) -> "ContactModel":
@@ -310,6 +311,7 @@ class _PairAtPosition:
 
     @property
     def base_radius(self) -> float:
+        """Base radius of the pinion, m."""
         return self.position_search.model.design.pinion_base_radius
 
     def contact(self, torques: Array, limit: float) -> PositionContact:

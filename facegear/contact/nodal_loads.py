@@ -121,6 +121,7 @@ def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]
 
 
 def _reactions(surface: PinionSurface, result: LoadedPosition) -> Array:
+    """Return tangential force, axial force and overturning moment (3,), N and N m, of all loads."""
     parts = [_of_spot(surface, result.position, spot) for spot in result.spots]
     return np.sum(parts, axis=0) if parts else np.zeros(3)
 

@@ -123,6 +123,7 @@ class LoadedPosition:
 
     @property
     def pairs_in_contact(self) -> int:
+        """Number of tooth pairs that carry load."""
         return int(np.count_nonzero(self.load_share))
 
 

@@ -337,6 +337,7 @@ def _smooth_load(force: Array, face: Array, weights: Array) -> Array:
 
 
 def _nearest_edge(lines: ContactLines, row: Integers, planes: Integers, width: Array, cut: Mask) -> Integers:
+    """Return for each plane the edge of the flank that its contact reaches, an index of EDGES."""
     to_pinion, to_gear, to_end = (
         values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
     )

@@ -139,6 +139,7 @@ def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, availa
 
 
 def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
+    """Return the number of elements along the face width, not rounded."""
     return (design.face_gear.outer_radius - design.face_gear.inner_radius) / sizes.width
 
 

@@ -192,6 +192,7 @@ def path_by_position(pressure: Arrays) -> pd.DataFrame:
 
 
 def _centroids(pressure: Arrays, keys: list[str]) -> pd.DataFrame:
+    """Return the axial centre of the forces, mm, for each combination of `keys`."""
     force = pressure["force_n"]
     moment = force * 1e3 * pressure["point_m"][:, 1][pressure["node"]]
     frame = pd.DataFrame({key: pressure[key] for key in keys} | {"force": force, "moment": moment})

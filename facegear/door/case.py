@@ -37,6 +37,7 @@ class Case:
 
     @cached_property
     def _values(self) -> dict[str, Any]:
+        """Plain values of the config, complete with derived keys."""
         return resolved_values(self.config)
 
     def with_values(self, changes: Mapping[str, Any]) -> Self:
@@ -92,6 +93,7 @@ class Case:
         return self._with_changes("branches", {"branches": {**section, **inner}})
 
     def _with_changes(self, label: str, changes: Mapping[str, Any]) -> Self:
+        """Return a case with a changed config that shares this one's store; itself without changes."""
         if not changes:
             return self
         config = changed_config(self.config.model_dump(mode="json"), plain(changes), label)
@@ -99,6 +101,7 @@ class Case:
 
     @cached_property
     def _chain(self) -> Chain:
+        """Chain of stages that computes the answers of this config."""
         return Chain(self._values, self.store)
 
 

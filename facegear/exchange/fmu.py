@@ -248,6 +248,7 @@ def _header(model: Model, speed_rpm: float) -> str:
 
 
 def _function(name: str, values: AnyArray) -> str:
+    """Return a C++ function that returns an array as a vector."""
     kind = "Index" if values.dtype.kind == "i" else "double"
     return f"inline std::vector<{kind}> {name}() {{ return {_list(values)}; }}"
 
@@ -284,14 +285,17 @@ def _series(values: AnyArray) -> str:
 
 
 def _value(value: Any) -> str:
+    """Return an array or a number as C++ text."""
     return _list(value) if isinstance(value, np.ndarray) else _text_of(value)
 
 
 def _list(values: AnyArray) -> str:
+    """Return an array as a C++ initialiser list, in row-major order."""
     return "{" + ", ".join(_text_of(value) for value in values.ravel().tolist()) + "}"
 
 
 def _text_of(value: float | bool) -> str:
+    """Return a number or a boolean as C++ text."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return repr(value).replace("inf", "infinity")
@@ -303,6 +307,7 @@ def _mesh_period(machine: Machine, speed_rpm: float) -> float:
 
 
 def _description(variables: Sequence[Variable], mesh_period: float, token: str) -> str:
+    """Return `modelDescription.xml`: variables, units, default experiment and structure."""
     root = Xml.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -350,6 +355,7 @@ def _description(variables: Sequence[Variable], mesh_period: float, token: str) 
 
 
 def _build_description() -> str:
+    """Return `buildDescription.xml`: how the sources of the FMU are compiled."""
     root = Xml.Element("fmiBuildDescription", fmiVersion="3.0")
     build = Xml.SubElement(root, "BuildConfiguration", modelIdentifier=IDENTIFIER)
     sources = Xml.SubElement(build, "SourceFileSet", language="C++17")
@@ -359,5 +365,6 @@ def _build_description() -> str:
 
 
 def _text(root: Xml.Element) -> str:
+    """Return an XML tree as indented text with its declaration."""
     Xml.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + Xml.tostring(root, encoding="unicode") + "\n"

@@ -86,6 +86,7 @@ class _Model:
         )
 
     def component(self, kind: str, name: str, *attributes: tuple[str, str, float | None]) -> int:
+        """Add a component with its attributes and return its id."""
         number = len(self.components) + 1
         element = Xml.SubElement(self.components, "component", id=str(number), type=kind, name=name)
         for key, unit, value in attributes:
@@ -94,6 +95,7 @@ class _Model:
         return number
 
     def relation(self, kind: str, *members: tuple[str, int]) -> None:
+        """Add a relation between components in their roles."""
         element = Xml.SubElement(self.relations, "relation", id=str(len(self.relations) + 1), type=kind)
         for role, number in members:
             hint = self.components[number - 1].attrib["type"]
@@ -140,6 +142,7 @@ def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
 
 
 def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -> None:
+    """Add the spur gear of a pinion to its shaft, with teeth, flanks and material."""
     sizes = (
         ("number_of_teeth", "none", spur.teeth),
         ("normal_module", "mm", spur.module),
@@ -209,6 +212,7 @@ class _Fault(Exception):
 
 
 def _unit(root: Xml.Element) -> Unit:
+    """Read the gear unit from the root of the file."""
     parts: Parts = {}
     for part in root.iter("component"):
         number = _attribute(part, "id")
@@ -240,6 +244,7 @@ Relations = list[tuple[str, dict[str, str]]]
 
 
 def _of_kind(parts: Parts, *types: str) -> Iterable[str]:
+    """Return the ids of components of the given types."""
     return (number for number, part in parts.items() if part.attrib["type"] in types)
 
 
@@ -254,6 +259,7 @@ def _attribute(element: Xml.Element, name: str) -> str:
 
 
 def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
+    """Read a shaft with its first cylindrical gear and its bearing."""
     gears = [
         members["part"]
         for kind, members in relations
@@ -278,6 +284,7 @@ def _shaft(number: str, parts: Parts, relations: Relations) -> Shaft:
 
 
 def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
+    """Read a spur gear; refuse a helical one and one without teeth or module."""
     count, module = (_value(parts[gear], key) for key in ("number_of_teeth", "normal_module"))
     if count is None or module is None:
         raise _Fault(f"gear {gear} has no number of teeth or no normal module")
@@ -383,6 +390,7 @@ def _pinion(name: str, body: Body, spur: Spur) -> Shaft:
 
 
 def _gear(name: str, body: Body) -> Shaft:
+    """Return a face gear as a shaft of its name, mass and bearing."""
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z)
 

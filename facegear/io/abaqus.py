@@ -61,5 +61,6 @@ def _rows(stream: TextIO, line: str, table: Array | Integers) -> None:
 
 
 def _list(stream: TextIO, labels: Integers) -> None:
+    """Write labels in lines of twelve."""
     for start in range(0, len(labels), 12):
         stream.write(", ".join(map(str, labels[start : start + 12].tolist())) + "\n")

@@ -108,6 +108,7 @@ def _make(folder: Path) -> None:
 
 
 def _cannot_be_written(error: OSError) -> str:
+    """Return in words why the system refused to write."""
     reason = NO_SPACE_HINT if error.errno in NO_SPACE else (error.strerror or str(error)).lower()
     return f"cannot be written ({reason})"
 
@@ -155,6 +156,7 @@ def require_manifest(path: str | Path) -> None:
 
 
 def _files(manifest: Path) -> Mapping[str, Any]:
+    """Return the files that a manifest lists, with their checksums."""
     try:
         files = json.loads(manifest.read_text(encoding="utf-8"))["files"]
     except (ValueError, KeyError, TypeError):

@@ -256,6 +256,7 @@ def concatenate(parts: Sequence[Loads]) -> Loads:
 
 
 def _contact(torque: float, contact_places: ContactPoints, hats: HatSlip) -> LoadedContact:
+    """Combine points of contact and slip of basis functions at one torque."""
     positions, row = np.unique(np.concatenate([contact_places.position, hats.position]), return_inverse=True)
     line = row * PAIRS.size + np.concatenate([contact_places.tooth, hats.tooth]) - PAIRS[0]
     count, planes = (
@@ -277,6 +278,7 @@ def _contact(torque: float, contact_places: ContactPoints, hats: HatSlip) -> Loa
 
 
 def _fill_edges(lines: ContactLines) -> ContactLines:
+    """Fill curvature and slope of contact lines beyond the flank by their nearest values."""
     return replace(lines, curvature=_nearest(lines.curvature), slope=_nearest(lines.slope))
 
 

@@ -395,6 +395,7 @@ def _heat(loads: MeshLoads, loss: Array, warm: Array) -> Array:
 
 
 def _machine_loss_of(loads: MeshLoads, curves: MeshCurves, speed: float, bulk: Array) -> MachineLoss:
+    """Return losses, temperatures and film of all meshes at given bulk temperatures, C."""
     loss, warm = _losses(loads, curves, speed)
     flash, film_ratio, micropitting = curves.at(loads.peak, "flash", "film_ratio", "micropitting")
     torque_range = OverTorque(curves.torques, curves.torques)

@@ -235,4 +235,5 @@ class Oil:
 
 
 def _double_log(viscosity: float) -> float:
+    """Return the left side of the Walther equation (ASTM D341) for a viscosity, m^2/s."""
     return log10(log(1e6 * viscosity + SHIFT) / log(10.0))

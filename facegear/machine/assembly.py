@@ -76,12 +76,14 @@ def assembly(
 
 @kept_by_content(4)
 def _without_errors(layout: Layout, half_backlash: Array, clocking: Array) -> Assembly:
+    """Compute the assembly without manufacturing errors; equal arguments share the result."""
     return _assembly(layout, half_backlash, clocking, None)
 
 
 def _assembly(
     layout: Layout, half_backlash: Array, clocking: Array, errors: Imperfections | None
 ) -> Assembly:
+    """Compute which teeth meet, the play of each pinion, and whether its teeth can mesh."""
     count = len(layout.pinions)
     pitches = np.array([pinion.pitches for pinion in layout.pinions])
     if len(layout.gears) < 2:

@@ -177,11 +177,13 @@ def static_unknowns(machine: Machine) -> tuple[Integers, Array]:
 
 
 def _frame_of(machine: Machine) -> _Frame:
+    """Return the factorised blocks of a machine, shared by machines that differ in errors alone."""
     return _frame(machine.without_errors)
 
 
 @lru_cache(maxsize=8)
 def _frame(machine: Machine) -> _Frame:
+    """Divide the equations of statics into blocks of pinions that only the gears couple."""
     layout, linear = machine.layout, machine.linear
     stiffness, rows, lengths = linear.stiffness, linear.rows, linear.lengths
     coordinates, scale = _select_unknowns(layout, lengths)
@@ -193,6 +195,7 @@ def _frame(machine: Machine) -> _Frame:
 
 
 def _blocks(layout: Layout, coordinates: Integers, stiffness: Array, rows: Array) -> bool:
+    """Whether the pinions couple only through the gears and the springs of their own meshes."""
     size, pinions = len(stiffness), len(layout.pinions)
     group = np.full(size, -1)
     group[coordinates[: 3 * pinions]] = np.repeat(np.arange(pinions), 3)
@@ -228,6 +231,7 @@ def _springs(layout: Layout, coordinates: Integers, scale: Array, bearing: Array
 
 
 def _select_unknowns(layout: Layout, every_length: Array) -> tuple[Integers, Array]:
+    """Return coordinates that statics solves for, and a length scale for each."""
     coordinates: list[int] = []
     lengths: list[float] = []
     pinions, bodies = len(layout.pinions), len(layout.bodies)

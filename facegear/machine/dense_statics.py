@@ -161,9 +161,11 @@ class _Springs:
     rings: _Rings
 
     def deflections(self, q: Array) -> Array:
+        """Return the deflection of every contact, m, at displacements `q`."""
         return self.jacobian @ q - self.contacts.error
 
     def forces(self, q: Array) -> Array:
+        """Return the force of every contact, N, at displacements `q`."""
         return self.contacts.forces(self.contacts.beyond(self.deflections(q)))
 
     def balance(self, q: Array, forces: Array) -> Array:
@@ -209,6 +211,7 @@ class Line:
     bearings: Callable[[Array], Array] | None = None
 
     def _forces(self, s: Array | float) -> Array:
+        """Return the forces, N, of the contacts at a step `s` along the line."""
         return self.contacts.forces(self.contacts.beyond(self.deflections + s * self.rates))
 
     def slopes(self, s: Array) -> Array:

@@ -126,6 +126,7 @@ class ElasticGears:
         )
 
     def _with_gear(self, model: LinearModel, gear: int, body: ReducedBody) -> LinearModel:
+        """Add the elastic coordinates of one face gear to the linear model."""
         layout, face_gear = self.layout, self.layout.gears[gear]
         elastic = coordinates(body, face_gear.sign, layout.angles, layout.pressure_angle)
         old, new = model.size, len(elastic.letters)

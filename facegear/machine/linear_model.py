@@ -282,6 +282,7 @@ def flank_jacobian(layout: Layout) -> Array:
 
 
 def _tilts(layout: Layout) -> list[Tilt]:
+    """Return the tilts of the gears that may tilt."""
     return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]
 
 
@@ -347,6 +348,7 @@ def _alone(layout: Layout) -> LinearModel:
 
 
 def _rings(layout: Layout, clearance: Array) -> Rings:
+    """Return the bearings with clearance: body, radial stiffness, N/m, and clearance, m."""
     body = np.flatnonzero(clearance > 0.0)
     return Rings(body, np.array([layout.pinions[i].body.bearing[0] for i in body]), clearance[body])
 

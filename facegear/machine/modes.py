@@ -183,6 +183,7 @@ def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeN
 
 
 def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) -> ModeName:
+    """Name the modes of one frequency by their class and the coordinates that move most."""
     energy = np.real(shapes.conj() * linear.momentum(shapes)).sum(axis=1)
     pinions = np.concatenate([linear.of_body(pinion.name) for pinion in layout.pinions])
     pinion_fraction = float(energy[pinions].sum() / energy.sum())

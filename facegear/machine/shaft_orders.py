@@ -130,6 +130,7 @@ def _errors_of(machine: Machine, gear: str) -> Machine:
 
 
 def _flat(curves: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return zeros in place of two curves."""
     return np.zeros_like(curves[0]), np.zeros_like(curves[1])
 
 

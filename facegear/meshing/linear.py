@@ -89,10 +89,12 @@ class LinearLaw:
 
     @property
     def _amplitudes(self) -> Array:
+        """Amplitude of each order of the stiffness series of each kind of contact."""
         return np.hypot(self.fourier[:, 0], self.fourier[:, 1])
 
     @property
     def _bounds(self) -> Array:
+        """Upper bound of the stiffness of each kind of contact."""
         pieces = np.array([np.abs(piece.coefficients).sum() for piece in self.pieces] or [0.0])
         return np.asarray(self._amplitudes.sum(axis=1) + pieces)
 

@@ -55,6 +55,7 @@ class PiecewiseCubics:
         return np.moveaxis(values.reshape(contacts.shape), 0, -1)
 
     def _at_phases(self, cycles: Array) -> "_AtPhases":
+        """Return the cubics at mesh phases, from a cache of at most MAX_PHASE_SETS sets."""
         phases, cache = cycles.tobytes(), self.cache
         at_phases = cache.get(phases)
         if at_phases is None:
@@ -136,10 +137,12 @@ class LoadDependentLaw:
 
     @cached_property
     def _levels(self) -> Array:
+        """Deflection levels of each kind of contact, m."""
         return np.array([table.levels for table in self.tables])
 
     @cached_property
     def _coefficients(self) -> Array:
+        """Coefficients of the cubics between levels, as Fourier series over the phase."""
         forces, slopes = (
             np.array([getattr(table, name) for table in self.tables]) for name in ("forces", "slopes")
         )
@@ -181,6 +184,7 @@ class LoadDependentLaw:
 
     @cached_property
     def _pieces(self) -> PiecewiseCubics:
+        """Cubics between levels, evaluated at phases."""
         return PiecewiseCubics(self._levels, self._coefficients)
 
     def mean(self) -> "LoadDependentLaw":
@@ -195,6 +199,7 @@ class LoadDependentLaw:
 
     @cached_property
     def _mean(self) -> "LoadDependentLaw":
+        """Law of the mean force over the phase."""
         return self._with_series(
             [(table.forces[..., :1], table.slopes[..., :1]) for table in self.tables], self.kind
         )
@@ -221,6 +226,7 @@ class LoadDependentLaw:
         return self._with_series(series, self.kind)
 
     def _with_series(self, series: Sequence[tuple[Array, Array]], kind: Integers) -> "LoadDependentLaw":
+        """Return a law with the same levels and other series of forces and slopes."""
         tables = zip(self.tables, series, strict=True)
         return LoadDependentLaw(
             tuple(ForceTable(table.levels, *table_series) for table, table_series in tables), kind

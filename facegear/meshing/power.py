@@ -169,13 +169,16 @@ class PowerLaw:
         return (3.0 - n) * x ** (n - 2.0), (n - 2.0) * x ** (n - 3.0)
 
     def _factor(self, cycles: Array) -> Array:
+        """Return the factor by which the force varies with the mesh phase, in cycles."""
         return np.asarray(1.0 + self.depth * np.cos(2.0 * np.pi * cycles))
 
     def _shape(self, x: Array) -> Array:
+        """Return the force at compressions `x`, m: a power law, cubic below `level`."""
         a, b = self._start
         return self.size * np.where(x < self.level, x**2 * (a + b * x), x**self.exponent)
 
     def _slope(self, x: Array) -> Array:
+        """Return the derivative of the force by the compression, N/m."""
         a, b = self._start
         high = self.exponent * np.maximum(x, self.level) ** (self.exponent - 1.0)
         return self.size * np.where(x < self.level, x * (2.0 * a + 3.0 * b * x), high)

@@ -98,6 +98,7 @@ class _BearingMaps(NamedTuple):
 
 @lru_cache(maxsize=8)
 def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
+    """Return the matrices from reduced displacement and velocity to bearing forces."""
     linear = machine.linear
     displacement_columns, velocity_columns = _force_matrices(linear, reduction, linear.translations.ravel())
     in_rings = np.zeros(linear.translations.shape, dtype=bool)

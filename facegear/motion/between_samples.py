@@ -232,6 +232,7 @@ def finer(values: Array, factor: int, wraps: bool) -> Array:
 
 
 def _located_maxima(values: Array, wraps: bool) -> Array:
+    """Return the largest value of each column between the samples, by local polynomials."""
     largest = np.asarray(values.max(axis=0))
     if len(values) <= 2 * REACH:
         return largest

@@ -158,6 +158,7 @@ def _run(
 
 
 def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions: int) -> Array:
+    """Return the forces of all flanks, N, from reduced coordinates over mesh cycles."""
     machine, flanks = model.machine, model.system.contacts
     at = _instants(cycles, positions)
     error = stacked_values(stack_series(error_series(machine)), at) + slow_errors(machine, at)
@@ -166,6 +167,7 @@ def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions:
 
 
 def _instants(cycles: Integers, positions: int) -> Array:
+    """Return the instants of mesh cycles, in cycles."""
     return (cycles[:, None] + np.arange(positions) / positions).ravel()
 
 

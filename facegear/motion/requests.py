@@ -183,6 +183,7 @@ def _busy(lengths: Sequence[int], lanes: int) -> int:
 
 
 def _alone(stretch: RunRequest, last_periods: int | None) -> RunResult | NotConverged:
+    """Run one request by itself; return its failure if it does not converge."""
     try:
         run = stretch.run()
     except NotConverged as failure:

@@ -188,6 +188,7 @@ class _Search:
     def _extend(
         self, contacts: list[int], signs: list[float], fits: AnyArray
     ) -> Iterator[tuple[Integers, Array]]:
+        """Yield permutations of contacts with signs that extend a partial one and keep the equations."""
         index, pairs = len(contacts), self.system.pairs
         if index == self.count:
             yield np.array(contacts, dtype=np.int64), np.array(signs)
@@ -377,6 +378,7 @@ def _only_direction(rows: Array) -> Array:
 
 
 def _rank(rows: Array) -> int:
+    """Return the numerical rank of rows."""
     return int(np.linalg.matrix_rank(rows, tol=SYMMETRIC * np.linalg.norm(rows, 2)))
 
 

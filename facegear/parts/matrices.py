@@ -177,6 +177,7 @@ def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> P
 
 
 def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array) -> Polynomial:
+    """Build the matrices of a bilinear form as a polynomial in the circumferential order."""
     cross_terms = form(elements, plain, tensor, by_order)
     parts = (
         form(elements, plain, tensor, plain),

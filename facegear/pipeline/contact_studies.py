@@ -91,6 +91,7 @@ def friction_cases(case: Case) -> list[Wildcards]:
 
 
 def _cases(case: Case, selection: Points) -> list[Wildcards]:
+    """Return the wildcards of the case itself and of the selected study points."""
     point_cases = ({"case": _id(case, *point[:2])} for point in selection[1:])
     return [{"case": str(case.values["case"])}, *point_cases]
 

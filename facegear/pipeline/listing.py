@@ -25,6 +25,7 @@ def listing() -> str:
 
 
 def _row(stage: Stage, is_source: bool) -> str:
+    """Return the row of a stage in the table of stages of the documentation."""
     before = dict.fromkeys(source.stage for source in stage.upstream.values())
     sections = dict.fromkeys(name for need in stage.needs.values() for name in _sections(need))
     cells = (

@@ -129,6 +129,7 @@ def shared_sources(cases: Mapping[str, Values], stage: str) -> dict[str, str]:
 
 
 def _resolve_need(need: Need, case: Case) -> Any:
+    """Return the value of one need of a stage from the config of a case."""
     if isinstance(need, ComputedValue):
         return need.function(case)
     if isinstance(need, str):
@@ -205,10 +206,12 @@ def _keys_read(case: Case) -> Iterator[str]:
 
 
 def _is_below(key: str, sections: list[str]) -> bool:
+    """Whether a config key lies in one of the sections."""
     return any(f"{key}.".startswith(f"{section}.") for section in sections)
 
 
 def _keys(need: Need) -> tuple[str, ...]:
+    """Return the config keys that a need reads."""
     if isinstance(need, ComputedValue):
         return need.sections
     return (need,) if isinstance(need, str) else need
@@ -229,6 +232,7 @@ def _unread(section: Mapping[str, Any], read: set[str], above: str = "") -> Iter
 
 
 def _is_given(file_values: Mapping[str, Any], key: str) -> bool:
+    """Whether the config file gives a value for a key."""
     inside: Any = file_values
     for part in key.split("."):
         if not isinstance(inside, Mapping) or part not in inside:

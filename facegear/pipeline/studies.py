@@ -234,4 +234,5 @@ def has_studies(case: Case) -> bool:
 
 
 def _id(case: Case, study: str, point: str) -> str:
+    """Return the name of a study point as a case."""
     return f"{case.values['case']}/studies/{study}/{point}"

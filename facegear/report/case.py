@@ -230,6 +230,7 @@ def with_study_titles(
 
 
 def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:
+    """Return the tables of a chapter."""
     if title == "Loaded contact" and "by_torque" in tables:
         return [Table(BY_TORQUE, tables["by_torque"], main=BY_TORQUE_SHOWN)]
     if title == "Root stress" and "root_stress" in tables:
@@ -293,6 +294,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
 
 
 def _rating_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """Return the tables of the rating with loads of its bins."""
     safety_table = tables["safety"].dropna(axis="columns", how="all")
     report_tables = [
         Table(SAFETY, safety_table, main=SAFETY_SHOWN),
@@ -306,6 +308,7 @@ def _rating_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
 
 
 def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """Return the tables of friction and heat."""
     friction_table = tables["friction"].dropna(axis="columns", how="all")
     sources = friction_table.pop(SOURCE).dropna().unique() if SOURCE in friction_table else []
     title = ". Allowed contact temperature: ".join(["One mesh at the nominal speed, by torque", *sources])
@@ -379,6 +382,7 @@ def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
 
 
 def _scorecard(frame: pd.DataFrame) -> Chapter:
+    """Return the chapter on the paper's numbers beside ours."""
     text = (
         "Every number and statement of the paper beside ours; a row that differs says why. Numbers that the "
         "paper repeats and remarks on other studies are left out of the totals. Criteria, tolerances and "
@@ -417,6 +421,7 @@ def bearing_reactions(bearings: pd.DataFrame) -> pd.DataFrame:
 
 
 def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
+    """Return the chapter on the numerical errors of the results."""
     rows = []
     if "ltca" in tables:
         rows.append(("largest KKT residual of all contacts, relative", tables["ltca"]["kkt_residual"].max()))
@@ -439,6 +444,7 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
 
 
 def _provenance(manifests: Sequence[Mapping[str, Any]]) -> Chapter:
+    """Return the chapter on what made each file."""
     columns = ["rule", "summary", "seconds", "made_at", "code"]
     stage_manifests = [manifest for manifest in manifests if not manifest["rule"].endswith("_figures")]
     rows = [{name: manifest.get(name) for name in columns} for manifest in stage_manifests]

@@ -121,4 +121,5 @@ def pinion_span(pair: Mapping[str, Any]) -> tuple[int, float]:
 
 
 def _mm(length: float) -> str:
+    """Return a length in mm as text with DECIMALS decimals."""
     return f"{length:.{DECIMALS}f}"

@@ -69,6 +69,7 @@ def shortened(svg: str) -> str:
 
 
 def _round_numbers(attribute: re.Match[str]) -> str:
+    """Round the coordinates of an attribute to DECIMALS."""
     parts = NUMBER.split(attribute[2])
     parts[1::2] = [f"{round(float(number_text), DECIMALS):g}" for number_text in parts[1::2]]
     return f'{attribute[1]}="{GAPS.sub(" ", "".join(parts)).strip()}"'
@@ -201,10 +202,12 @@ def render(title: str, lead: str, chapters: Sequence[Chapter], first: FirstScree
 
 
 def _own_file(name: str) -> str:
+    """Return the text of a file beside this module."""
     return (FOLDER / name).read_text(encoding="utf-8")
 
 
 def _json(content: Any) -> bytes:
+    """Return plain values as compact JSON."""
     return json.dumps(content, separators=(",", ":")).encode()
 
 

@@ -159,6 +159,7 @@ def _changes(loaded_meshes: pd.DataFrame) -> str:
 
 
 def _force(meshes: pd.DataFrame) -> str:
+    """Say in words which mesh force the pose changes most."""
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
     row = (after - before).abs().idxmax()
     return (

@@ -179,20 +179,24 @@ def closed_form_line(curves: pd.DataFrame, reasons: pd.DataFrame) -> str:
 
 
 def _change(row: pd.Series) -> str:
+    """Say in words what a change is and what it gives."""
     return f"{row['change']} ({row['from_to']}): {_from_to(row)}"
 
 
 def _from_to(row: pd.Series) -> str:
+    """Say in words the factor before and after a change."""
     measure = "P95 of K_gamma" if row["kind"] == "idlers" else "K_gamma"
     return f"{measure} from {row['k_gamma']:.3f} to {row['found']:.3f}"
 
 
 def _prediction(row: pd.Series) -> str:
+    """Say in words the gain beside that of the closed form, if there is one."""
     if pd.isna(row["predicted_gain"]):
         return ""
     return f", a gain of {row['gain']:.3f} (closed form {row['predicted_gain']:.3f})"
 
 
 def _capital(words: object) -> str:
+    """Return words with a capital at the beginning."""
     text = str(words)
     return text[:1].upper() + text[1:]

@@ -215,6 +215,7 @@ def _load_sharing(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
 
 
 def _why_no_k_gamma(values: Mapping[str, Any]) -> str:
+    """Say in words why there is no load sharing factor."""
     machine = values["transmission"]
     roles = [] if machine is None else [pinion["role"] for pinion in machine["pinions"]]
     if len(roles) == len(set(roles)):
@@ -362,4 +363,5 @@ def status_line(judgements: Sequence[Verdict], summary: str) -> tuple[str, str, 
 
 
 def _sentence(text: str) -> str:
+    """Return text with a capital at the beginning."""
     return text[:1].upper() + text[1:]

@@ -130,6 +130,7 @@ class MeshStiffness(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "MeshStiffness":
+        """Refuse keys that the source of the stiffness lacks or does not use."""
         if self.source != "harmonics" and self.table:
             refuse("source", self.source, "harmonics, as a table is given")
         if self.source == "fem_scaled" and self.mean_n_per_m is None:
@@ -246,6 +247,7 @@ def _harmonics(rows: Sequence[CsvRow]) -> tuple[dict[str, Any], ...]:
 
 
 def _harmonic(row: CsvRow) -> dict[str, Any]:
+    """Return the harmonic of a line of a csv file; refuse an invalid order."""
     order = row.values["order"]
     if order != round(order) or not 0 <= order <= MAX_ORDER:
         raise CsvFault(f"line {row.line}: order = {order:.10g} is not a whole number from 0 to {MAX_ORDER}")

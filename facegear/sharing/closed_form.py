@@ -120,6 +120,7 @@ class SplitMachine:
         return float(self.inputs / self.idlers * (1.0 + bending))
 
     def _softness(self, input_bearing: float) -> float:
+        """Return by which factor the bearings of the inputs soften their meshes, dimensionless."""
         return 1.0 + 2.0 * self.mesh_stiffness / input_bearing
 
 

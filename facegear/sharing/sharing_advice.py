@@ -97,6 +97,7 @@ def advice(machine: Machine, options: MapOptions) -> pd.DataFrame:
 
 
 def _is_loaded(mapped: MappedMachine, group: LoadGroup) -> bool:
+    """Whether a group carries a load and its even shares are known."""
     return bool(np.isfinite(mapped.even(group)).all()) and mapped.load(group) > 0.0
 
 

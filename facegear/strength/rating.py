@@ -198,6 +198,7 @@ def _rate_failure(
     limits: PittingLimits | BendingLimits,
     pressure: ContactPressure,
 ) -> FailureRating:
+    """Rate one failure by one method: damage, safety and life under the duty cycle."""
     harm = damage(by_load, duty.cycles, allowed_stress, limits.life)
     total = float(harm.sum())
     loads = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]

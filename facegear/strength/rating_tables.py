@@ -201,6 +201,7 @@ def damage_table(
 
 
 def _subject(rating: FailureRating) -> tuple[str, ...]:
+    """Return the columns that identify a rating: body, gear, flank, failure, method."""
     return rating.duty.body, rating.duty.gear, rating.duty.flank, rating.failure, rating.method
 
 

@@ -237,6 +237,7 @@ def stress_correction(slenderness: float, notch_parameter: float) -> float:
 
 
 def _tangent_angle(g: float, h: float, teeth: int) -> float:
+    """Solve for the angle of the critical section's tangent, rad, by fixed-point iteration."""
     angle = pi / 6.0
     for _ in range(ITERATIONS):
         next_angle = 2.0 * g / teeth * tan(angle) - h

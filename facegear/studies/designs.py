@@ -125,6 +125,7 @@ def assessor(
 def _goal(
     goal: ObjectiveSection, names: Sequence[str], nominal: Quantities, sample_quantities: Sequence[Quantities]
 ) -> float:
+    """Return the value of an objective or constraint: nominal, or a percentile over samples."""
     columns = [name for start in goal.quantities for name in matching_names(start, names)]
     worst = min if goal.large else max
     if goal.percentile is None:

@@ -355,6 +355,7 @@ def judge(
 
 
 def _ask(question: Question) -> Callable[[Machine, float, Guide | None], MachineQuantities]:
+    """Return the function that answers a question on a machine, at rest or in motion."""
     if not question.dynamic:
         return lambda lumped_machine, speed, guide: quasi_static_quantities(
             at_rest(lumped_machine), question.cycles
@@ -364,5 +365,6 @@ def _ask(question: Question) -> Callable[[Machine, float, Guide | None], Machine
 
 
 def _precision(question: Question) -> tuple[Settings, SharingOptions]:
+    """Return settings of the motion and of load sharing for samples."""
     precise = settings(Accuracy.of_config(question.accuracy))
     return precise, replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)

@@ -89,6 +89,7 @@ class VariedBodies:
         return replace(machine, bodies=elastic, softening=elastic.softening())
 
     def _body(self, section: BodySection, pair: ToothPair) -> ReducedBody:
+        """Return a reduced face gear from the cache, or compute it; the oldest one goes."""
         key = _key(section, pair)
         if key not in self.cache:
             if len(self.cache) >= CACHED_BODIES:
@@ -113,6 +114,7 @@ def _nominal_teeth(design: PairDesign) -> Hashable:
 
 
 def _solve_body(section: BodySection, pair: ToothPair) -> ReducedBody:
+    """Compute the reduced model of a face gear that bends."""
     shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
     solution = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
     return reduced_body(solution, contact_patch(section, pair), *section.damping)

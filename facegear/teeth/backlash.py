@@ -44,6 +44,7 @@ def normal_backlash(design: PairDesign, beside: tuple[float, ...] = ()) -> float
 
 
 def _search_backlash(design: PairDesign, beside: tuple[float, ...]) -> float:
+    """Return the smallest play, m, of the drive and back flank over a pitch, by a search over the flanks."""
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
     from facegear.teeth.unloaded_contact import unloaded_motion
 

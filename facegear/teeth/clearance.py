@@ -87,10 +87,12 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
 
 
 def _upright(normal: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return a normal with its second component reversed."""
     return normal[0], -normal[1]
 
 
 def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array, Array]]:
+    """Return points and normals along the chamfer of a pinion's tip."""
     (r0, a0) = design.pinion_tip_radius, pinion.tip_half_angle(design)
     r1, a1 = (float(part) for part in pinion.involute_point(design, design.pinion_tip_roll))
     start, end = (np.array([r * np.sin(a), r * np.cos(a)]) for r, a in ((r0, a0), (r1, a1)))

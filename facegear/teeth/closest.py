@@ -186,6 +186,7 @@ def bounds(design: PairDesign) -> tuple[Array, Array]:
 
 
 def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tuple[Closest, Array]:
+    """Return the smallest gap of each pair on coarse grids, and which pairs may be the closest."""
     low, high = bounds(design)
     face = design.face_gear
     first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)

@@ -332,11 +332,13 @@ def _nearest(design: PairDesign, contact: ConjugateContact) -> float:
 
 
 def _rotate(vector: tuple[float, float, float], angle: float) -> tuple[float, float, float]:
+    """Rotate a vector about z by an angle, rad."""
     x, y, z = vector
     return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z
 
 
 def _dot(first: tuple[float, float, float], second: tuple[float, float, float]) -> float:
+    """Return the dot product of two vectors."""
     return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
 
 

@@ -167,6 +167,7 @@ def smallest_radius(design: PairDesign, body: str) -> float:
 
 
 def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
+    """Return the smallest radius of curvature of a curve given by points, m."""
     dx, dz = np.gradient(x), np.gradient(z)
     bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
     return float(1.0 / bend[2:-2].max())

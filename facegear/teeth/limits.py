@@ -107,6 +107,7 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
 
 
 def _no_face(design: PairDesign, reason: str) -> GeometryError:
+    """Return the error of a design whose face has no width."""
     tip = round(design.face_gear.addendum / design.module, 6)
     return GeometryError("face_gear.addendum_modules", tip, f"less: {reason}")
 
@@ -226,6 +227,7 @@ def tip_plane_radius(design: PairDesign) -> float:
 
 
 def _pointing_radii(design: PairDesign) -> tuple[float, float]:
+    """Return the radii, m, at which the tip of the tooth becomes pointed."""
     base, ratio, space = design.shaper_base_radius, design.shaper_ratio, design.shaper_half_space_angle
     height = (design.shaper_lift - design.gear_tip_plane) / base
 

@@ -28,6 +28,7 @@ _VTK_FACES = [(0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2)]
 
 
 def _index(positions: list[tuple[int, int, int]]) -> np.ndarray:
+    """Return the numbers of nodes in a 27-node element by their places along its three axes."""
     return np.array([i + 3 * j + 9 * k for i, j, k in positions])
 
 
@@ -99,6 +100,7 @@ def gmsh_model(sector: SectorMesh) -> Iterator[NDArray[np.uint64]]:
 
 
 def _fill(sector: SectorMesh) -> NDArray[np.uint64]:
+    """Give nodes, elements and surfaces of a sector to gmsh, and return their numbers."""
     names = [name for name in sector.tooth.faces if len(sector.faces(name))]
     for number in range(1, len(names) + 1):
         gmsh.model.addDiscreteEntity(2, number)

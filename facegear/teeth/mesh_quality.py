@@ -123,5 +123,6 @@ def volume(nodes: Array, hexes: Integers) -> float:
 
 
 def _batches(mesh: MeshHex2) -> Iterator[Integers]:
+    """Yield the numbers of elements in batches of ELEMENTS_AT_ONCE."""
     for start in range(0, mesh.nelements, ELEMENTS_AT_ONCE):
         yield np.arange(start, min(start + ELEMENTS_AT_ONCE, mesh.nelements))

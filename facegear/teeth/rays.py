@@ -113,10 +113,12 @@ def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
 
 @lru_cache(maxsize=16)
 def _of_generated(design: PairDesign) -> tuple[Blank, FlankSample]:
+    """Return blank and sampled flank of a design's generated teeth; kept for each design."""
     return blank(design), _flank_sample(design)
 
 
 def _flank_sample(design: PairDesign) -> FlankSample:
+    """Sample the flank on a grid from which searches along rays begin."""
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, SAMPLES)[:, None]
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)

@@ -162,6 +162,7 @@ def _cut(half: HalfTooth) -> Array:
 
 
 def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
+    """Return the patches of half a pinion tooth: flank, fillet, lands and bore."""
     part, few = design.pinion, (profile - 1) // 4 + 1
     y = np.linspace(design.mean_radius - part.width / 2, design.mean_radius + part.width / 2, width)[None, :]
     bounds = _roll_bounds(design)
@@ -197,6 +198,7 @@ def _roll_bounds(design: PairDesign) -> list[float]:
 
 
 def _polar(points: Array) -> tuple[Array, Array]:
+    """Return radius, m, and angle, rad, of points about the pinion's axis."""
     return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
 
 
@@ -210,6 +212,7 @@ def _arc(start: Array, end: Array, count: int) -> Array:
 
 
 def _between(start: Array, end: Array, count: int) -> Array:
+    """Return grids of points on straight lines from `start` to `end`."""
     fraction = np.linspace(0.0, 1.0, count)[:, None, None]
     points = start + fraction * (end - start)
     points[-1] = end
@@ -217,11 +220,13 @@ def _between(start: Array, end: Array, count: int) -> Array:
 
 
 def _onto_bore(points: Array, bore: float) -> Array:
+    """Project points onto the pinion's bore."""
     _, angle = _polar(points)
     return pinion.cartesian(bore, angle, points[..., 1])
 
 
 def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
+    """Return the patches of half a gear tooth: flank, fillet, lands and back."""
     gear, few = design.face_gear, (profile - 1) // 4 + 1
     radius = np.linspace(gear.inner_radius, gear.outer_radius, width)[None, :]
     fraction = np.linspace(0.0, 1.0, profile)[:, None]

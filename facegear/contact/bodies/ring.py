@@ -87,6 +87,7 @@ def apart(stiffness: Array) -> bool:
 
 
 def _almost_apart(stiffness: Array) -> bool:
+    """Whether the coupling of the two ends of a chain is at most APART of its stiffness."""
     s = len(stiffness) // 2
     return bool(np.abs(stiffness[:s, s:]).max(initial=0.0) <= APART * np.abs(stiffness.diagonal()).max())
 

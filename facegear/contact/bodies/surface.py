@@ -203,6 +203,7 @@ def _by_point(basis: Basis) -> tuple[Integers, Array]:
 
 
 def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
+    """Build a sparse matrix with a row of weights for each point on its element's nodes."""
     pointer = np.arange(0, nodes.size + 1, nodes.shape[1])
     return sp.csr_matrix((values.ravel(), nodes.ravel(), pointer), shape=(len(nodes), count))
 

@@ -173,6 +173,7 @@ class _Runs:
 
 
 def _run_until_settled(period_map: PeriodMap, u: float, z: Array, settings: Settings) -> SettledMotion:
+    """Run from a state until it settles; locate the periodic orbit if there is one."""
     system, frequency = period_map.family.at(float(np.exp(u)))
     response = steady_state(system, frequency, settings, period_map.state(z, u))
     end_state = period_map.to_weighted(response.state, u)

@@ -284,6 +284,7 @@ def _gradient(
 
 
 def _point(problem: LocusProblem, x: Array, borders: Borders, forward: Array, sharp: bool) -> LocusPoint:
+    """Return a point of a locus with its borders, gradient and tangent."""
     linear, surface, _ = _surface(problem, x)
     matrix = problem.matrix(linear)
     fresh = borders_of(matrix, borders)

@@ -53,6 +53,7 @@ def coexistence_table(
 
 
 def _branch_of(motion: SettledMotion, branches: Sequence[Branch]) -> str:
+    """Return the number of the branch on which a motion lies, as text, or why there is none."""
     if motion.point is None:
         return IRREGULAR
     for number, branch in enumerate(branches):
@@ -154,6 +155,7 @@ def swept_table(
 
 
 def _not_followed(period: int, longest: int) -> str:
+    """Say why the orbit of a period lies on no branch."""
     if period > longest:
         return f"the orbit is found; periods above longest_start_period = {longest} are not followed"
     return "not followed"

@@ -170,6 +170,7 @@ class PeriodMap:
         return integrator.by_time(self._by_phase(integrator, z))
 
     def _by_phase(self, integrator: Integrator, z: Array) -> Array:
+        """Return the state by phase (2, n) from weighted coordinates."""
         return (z / self.weights(integrator)).reshape(2, -1)
 
     def to_weighted(self, state: State, u: float) -> Array:

@@ -213,6 +213,7 @@ def correct(
 
 
 def _describe_location(period_map: PeriodMap, x: Array) -> str:
+    """Return name and value of the parameter at a point."""
     return f"{period_map.family.name} = {np.exp(x[-1]):.9g}"
 
 
@@ -281,6 +282,7 @@ def _by_chord(
 
 
 def _newton_step(linear: Linear, gap: Array, row: Array, displacement: Array) -> Array:
+    """Return the Newton step of the bordered system, neutral directions excluded."""
     right = np.zeros(gap.size + 1 + linear.neutral.shape[1])
     right[: gap.size], right[gap.size] = -gap, -row @ displacement
     right[gap.size + 1 :] = -linear.neutral.T @ displacement[:-1]

@@ -153,6 +153,7 @@ class Segment:
         return size * self.period_map.matrix_rate(point.x, direction, point.linear)
 
     def _near(self, fraction: float) -> BranchPoint:
+        """Return the computed point whose fraction along the segment is nearest."""
         return self.points_by_fraction[
             min(self.points_by_fraction, key=lambda candidate: abs(candidate - fraction))
         ]

@@ -99,6 +99,7 @@ def evidence(
 
 
 def _nearest(values: ComplexArray, goal: float) -> complex:
+    """Return the complex value nearest to a real goal."""
     return complex(values[np.argmin(np.abs(values - goal))])
 
 

@@ -182,10 +182,12 @@ def _gauss(count: int) -> tuple[Array, Array]:
 
 
 def _contiguous(values: Array) -> Array:
+    """Return values as a contiguous array of doubles, as kernels take them."""
     return np.ascontiguousarray(values, dtype=float)
 
 
 def _coupling(coupling: Coupling | None, n: int) -> Array:
+    """Return the four coupling matrices as one array, empty without coupling."""
     if coupling is None:
         return np.zeros((0, n, n))
     return np.array([coupling.dampers, coupling.gyroscopic, coupling.circulatory, coupling.centrifugal])

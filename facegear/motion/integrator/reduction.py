@@ -155,6 +155,7 @@ class Coupling:
 
     @property
     def _matrices(self) -> tuple[Array, Array, Array, Array]:
+        """Matrices of dampers, gyroscopic, circulatory and centrifugal terms."""
         return self.dampers, self.gyroscopic, self.circulatory, self.centrifugal
 
 
@@ -374,6 +375,7 @@ def _coupling(linear: LinearModel) -> Coupling | None:
 
 
 def _ring_rows(linear: LinearModel) -> list[Array]:
+    """Return the rows that give the displacement of each bearing with clearance."""
     rows = np.zeros((len(linear.ring_coordinates), 3, linear.size))
     for row, coordinates in zip(rows, linear.ring_coordinates, strict=True):
         row[[0, 1], coordinates] = 1.0

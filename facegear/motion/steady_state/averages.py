@@ -164,6 +164,7 @@ class Averages:
         return replace(self, **{name: getattr(self, name)[batches] for name in names})
 
     def _whole(self, batches: Array) -> Array:
+        """Return the weighted mean of batches."""
         return np.tensordot(self.weight / self.weight.sum(), batches, 1)
 
 

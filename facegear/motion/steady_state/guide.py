@@ -127,6 +127,7 @@ def settle_by_guide(integrator: Integrator, state: Array, guide: Guide) -> Settl
 
 
 def _follow_guide(integrator: Integrator, state: Array, guide: Guide) -> SettlingResult | None:
+    """Run a few periods and solve for an orbit near the guide's; None if there is none."""
     ends = state[None]
     for block in BLOCKS:
         run = integrator.run(ends[-1], block)

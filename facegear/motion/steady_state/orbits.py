@@ -342,6 +342,7 @@ def shortest_period(integrator: Integrator, start: Array, ends: Array, residual:
 
 
 def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orbit:
+    """Build an orbit with its multipliers, checked against Liouville's formula."""
     multipliers = tangent.multipliers
     sign, volume = np.linalg.slogdet(tangent.matrix)
     condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(

@@ -398,6 +398,7 @@ def response_summary(response: SteadyState) -> str:
 
 
 def _period_label(period: int) -> str:
+    """Name the period of a motion; 0 is irregular."""
     return f"period-{period}" if period else "irregular"
 
 

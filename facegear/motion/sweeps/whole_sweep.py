@@ -330,5 +330,6 @@ def jump_margin(model: Model, speed_rpm: float, within: JumpRange) -> float:
 
 
 def _distance(jump: Jump, speed: float) -> float:
+    """Return by how much a speed lies outside a jump's interval, rpm."""
     low, high = sorted((jump.before.speed, jump.after.speed))
     return max(low - speed, speed - high, 0.0)

@@ -228,6 +228,7 @@ class Closure:
         yield from (Node("whole", origin) for _, origin, name in module.source.imports if name == "*")
 
     def _load_module(self, name: str, module: _Module) -> Iterator[Node]:
+        """Yield all that runs when a module is loaded: parents, imports and statements with effects."""
         parents = name.split(".") if not module.is_script else []
         yield from (Node("loaded", ".".join(parents[:n])) for n in range(1, len(parents)))
         yield from self._load_imports(module.source.imports)
@@ -295,6 +296,7 @@ class Closure:
         return self._modules[name]
 
     def _read(self, path: Path, name: str, is_script: bool = False) -> _Module:
+        """Read a module and index its statements and imports by the names that they bind."""
         self._states[str(path)] = _state(str(path))
         source = source_of(path, name)
         statements: dict[str, list[int]] = {}
@@ -308,5 +310,6 @@ class Closure:
 
 
 def _state(path: str) -> tuple[int, int]:
+    """Return size and time of change of a file."""
     status = os.stat(path)
     return status.st_size, status.st_mtime_ns

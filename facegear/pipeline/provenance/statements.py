@@ -143,6 +143,7 @@ class _Scope:
 
 
 def _statement(statement: ast.stmt, part: Part, scope: _Scope, walk: "Walk") -> Statement:
+    """Return the record of a module's statement: names, code, uses and imports."""
     signature = Part()
     if isinstance(statement, Function):
         signature = walk.collect_annotations(statement)

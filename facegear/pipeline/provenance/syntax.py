@@ -202,6 +202,7 @@ class Walk:
                 self.part.code.append(repr(value))
 
     def _visit_list(self, values: Sequence[object]) -> None:
+        """Record a list of nodes and plain values, without statements that have no effect."""
         self.part.code.append("[")
         for value in values:
             if isinstance(value, ast.AST):
@@ -212,6 +213,7 @@ class Walk:
         self.part.code.append("]")
 
     def _visit_name(self, node: ast.Name) -> None:
+        """Record a name as used or as bound."""
         self.part.code.append(node.id)
         if isinstance(node.ctx, ast.Load):
             self._use(node.id)
@@ -219,6 +221,7 @@ class Walk:
             self.part.bound.add(node.id)
 
     def _visit_attribute(self, node: ast.Attribute) -> None:
+        """Record a dotted name, and each part of it as used."""
         chain: list[str] = []
         root: ast.expr = node
         while isinstance(root, ast.Attribute):
@@ -232,11 +235,13 @@ class Walk:
             self.visit(root)
 
     def _use(self, name: str) -> None:
+        """Record the use of a name; a dynamic look-up uses the whole module."""
         if name in DYNAMIC or name == "sys.modules" or name.startswith("sys.modules."):
             self.part.uses.add(WHOLE_MODULE)
         self.part.uses.add(name)
 
     def _visit_call(self, node: ast.Call) -> None:
+        """Record a call; an import by name uses the named module, or anything if the name is computed."""
         if "import_module" in (getattr(node.func, "id", ""), getattr(node.func, "attr", "")):
             match node.args:
                 case [ast.Constant(str(module))] if is_in_packages(module):
@@ -249,9 +254,11 @@ class Walk:
         self._visit_list(node.keywords)
 
     def _visit_constant(self, node: ast.Constant) -> None:
+        """Record a literal value."""
         self.part.code.append(repr(node.value))
 
     def _visit_import(self, node: ast.Import | ast.ImportFrom) -> None:
+        """Record an import, from these packages as a dependency, else as a bound name."""
         for binding in find_imports(node, self.package):
             self.part.code.append(repr(binding))
             if is_in_packages(binding[1]):
@@ -260,6 +267,7 @@ class Walk:
                 self.part.bound.add(binding[0])
 
     def _visit_if(self, node: ast.If) -> None:
+        """Record a condition; the body of `if TYPE_CHECKING` never runs and is left out."""
         if is_guard(node, "TYPE_CHECKING"):
             self._visit_list(node.orelse)
             return
@@ -285,12 +293,14 @@ class Walk:
                 self.part.uses |= {f"{POSSIBLE_NAME}{word}" for word in re.findall(r"[\w.]+", inner.value)}
 
     def _visit_annotations(self, node: Function) -> None:
+        """Record the annotations of a function's arguments and result."""
         for argument in _arguments(node.args):
             if argument.annotation:
                 self.part.code.append(argument.arg)
                 self._visit_annotation(argument.annotation)
 
     def _visit_class(self, node: ast.ClassDef) -> None:
+        """Record a class with decorators, bases and body; names that its body binds are its own."""
         self.part.code.append(f"class {node.name}")
         self.part.bound.add(node.name)
         for part in (node.decorator_list, node.bases, node.keywords):
@@ -318,12 +328,14 @@ class Walk:
         outer.bound |= part.bound
 
     def _visit_lambda(self, node: ast.Lambda) -> None:
+        """Record a lambda; its arguments are bound names."""
         self.part.code.append("lambda")
         self._visit_signature(node.args)
         self.part.bound |= {argument.arg for argument in _arguments(node.args)}
         self.visit(node.body)
 
     def _visit_signature(self, node: ast.arguments) -> None:
+        """Record the arguments of a function with their kinds and defaults."""
         self.part.code.append(f"{len(node.posonlyargs)} {node.vararg is not None} {len(node.kwonlyargs)}")
         self.part.code += [argument.arg for argument in _arguments(node)]
         for default in (*node.defaults, *node.kw_defaults):
@@ -333,6 +345,7 @@ class Walk:
                 self.visit(default)
 
     def _visit_caught(self, node: ast.ExceptHandler) -> None:
+        """Record an except clause; its name is bound."""
         self.part.bound.add(node.name or "")
         self.part.code.append(f"except {node.name}")
         if node.type:
@@ -340,6 +353,7 @@ class Walk:
         self._visit_list(node.body)
 
     def _visit_pattern(self, node: ast.MatchAs | ast.MatchStar | ast.MatchMapping) -> None:
+        """Record a pattern of a match statement; the name that it captures is bound."""
         name = node.rest if isinstance(node, ast.MatchMapping) else node.name
         self.part.bound.add(name or "")
         self.part.code.append(f"{type(node).__name__} {name}")
@@ -368,11 +382,13 @@ METHODS: Mapping[type, Callable[..., None]] = {
 
 
 def _last_name(decorator: ast.expr) -> str:
+    """Return the last part of a decorator's dotted name."""
     node = decorator.func if isinstance(decorator, ast.Call) else decorator
     return str(getattr(node, "attr", getattr(node, "id", "")))
 
 
 def _arguments(node: ast.arguments) -> list[ast.arg]:
+    """Return all arguments of a signature, variadic ones last."""
     variadic = [argument for argument in (node.vararg, node.kwarg) if argument]
     return [*node.posonlyargs, *node.args, *node.kwonlyargs, *variadic]
 

@@ -124,11 +124,13 @@ class PartialResults:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _subfolder(self, stages: list[str], key: str) -> Path:
+        """Return the folder of a stage's results, named by its needs and the code of all stages."""
         codes = [stage_fingerprint(STAGES[stage].functions, ROOT) for stage in stages]
         digest = hashlib.sha256("\n".join([key, *codes]).encode()).hexdigest()
         return self.folder / f"{stages[0]}_{digest[:16]}"
 
     def _keep(self, subfolder: Path, name: str, parts: Mapping[str, Any], summary: str, start: float) -> None:
+        """Write the parts of a stage with their manifest."""
         for file, content in parts.items():
             write_part(str(subfolder / file), content)
         seconds = time.perf_counter() - start
@@ -137,6 +139,7 @@ class PartialResults:
 
 
 def _name(part: str, file: File) -> str:
+    """Return the file name of a part."""
     return part + Path(file.path).suffix
 
 
@@ -257,6 +260,7 @@ class Store:
         return json.dumps([name, part, needs])
 
     def _read_stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
+        """Return the stored output of a stage if it is complete and up to date, else None."""
         summary, files = "", STAGES[name].readable
         for file in files.values():
             manifest = self._current_manifest(folder / file.path, values)
@@ -267,6 +271,7 @@ class Store:
         return None if content is None else StageOutput(content, summary, "stored")
 
     def _current_manifest(self, path: Path, values: Values) -> Mapping[str, Any] | None:
+        """Return the manifest of a file if it is up to date, else None."""
         return current_manifest(
             path,
             lambda rule: stage_needs(rule, values) if rule in STAGES else None,

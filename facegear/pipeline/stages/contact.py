@@ -217,6 +217,7 @@ def tooth_errors(
 
 
 def _curve_orders(curve: Array) -> Array:
+    """Return the amplitudes of the first ORDERS orders of a curve over one period."""
     return (2.0 * np.abs(np.fft.rfft(curve)) / curve.size)[1 : ORDERS + 1]
 
 

@@ -110,6 +110,7 @@ def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout
 
 
 def _reduce_body(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
+    """Reduce a face gear that bends to its modes, with the teeth's contact patch and damping."""
     return reduced_body(body, contact_patch(section, tooth_pair), *section.damping)
 
 
@@ -156,6 +157,7 @@ def _parts(
 
 
 def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
+    """Say in one line mass and lowest frequency of each gear."""
     parts = []
     for row in bodies.itertuples():
         gear_modes = modes[modes["gear"] == row.gear]

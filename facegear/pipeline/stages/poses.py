@@ -308,6 +308,7 @@ def _check(
 
 
 def _summary(meshes: pd.DataFrame, leaving_loads: pd.DataFrame, worst: int, result: OperatingPose) -> str:
+    """Say in one line how the search for the loaded position ended and which mesh it changes most."""
     row = meshes.iloc[worst]
     text = (
         f"converged in {result.steps} steps; contact of {row['mesh']} at {row['unloaded_path_mm']:.2f} mm, "

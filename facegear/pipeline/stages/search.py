@@ -88,6 +88,7 @@ def search(islands: Sequence[pd.DataFrame], **machine_fields: Any) -> Outcome:
 
 
 def _spread(volumes: pd.DataFrame) -> str:
+    """Say in words how far the hypervolumes of different seeds lie apart."""
     if volumes.empty:
         return "none of them holds every limit"
     last = volumes.groupby("seed")["hypervolume"].last()

@@ -124,6 +124,7 @@ def root_contents(
 
 
 def _passing(body: Body, flank: GearFlank, loads: Arrays, variant: int, face_error: float) -> RootStress:
+    """Compute the root stress of a body over a passage; the error along the face is added to its own."""
     root = passing(body, flank, loads, variant)
     return replace(root, error=root.error + face_error)
 
@@ -140,6 +141,7 @@ def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[
 
 
 def _summary(table: pd.DataFrame) -> str:
+    """Say in one line the largest root stress of each body."""
     worst = table[table["torque_n_m"] == table["torque_n_m"].max()]
     peaks = worst.groupby("body", sort=False)["largest_mpa"].max()
     text = ", ".join(f"{body.replace('_', ' ')} {peak:.0f} MPa" for body, peak in peaks.items())

@@ -44,8 +44,8 @@ def tolerances_chunk(
     """Compute samples `first` to `last` of a machine with its tolerances.
 
     A sample that cannot be built or computed is a row with its error. The columns MISSED hold, for the first
-    CHECKED_SAMPLES samples, what the mesh cycles taken miss; SIMPLIFICATION_ERRORS what is missed by the few points of
-    the contact that friction is taken at. They are empty in other rows.
+    CHECKED_SAMPLES samples, the errors of the mesh cycles left out; SIMPLIFICATION_ERRORS hold the errors of
+    computing friction at few contact points. They are empty in other rows.
 
     Parameters
     ----------
@@ -187,6 +187,7 @@ def tolerances(
 
 
 def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
+    """Say in words loss and contact temperature that 1 % of the samples exceed."""
     rows = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
     if CONTACT_TEMPERATURE not in rows:
         return []
@@ -194,6 +195,7 @@ def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
 
 
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
+    """Say in words the largest errors of the simplifications of the samples."""
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
     max_samples = sampling["samples"].max()
     cycles = [part for part in parts if part.partition(" ")[0] in CYCLE_SELECTION_ERRORS]

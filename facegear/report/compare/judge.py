@@ -143,6 +143,7 @@ def tables_not_stored(folder: Path) -> set[str]:
 
 
 def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
+    """Judge all values of a table that stands in one or both folders."""
     if old is None or new is None:
         return _one_sided(name, ["whole table"], Verdict.ONLY_IN_NEW if old is None else Verdict.ONLY_IN_OLD)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
@@ -199,6 +200,7 @@ def _by_row(frame: pd.DataFrame, table: Table, speeds: pd.Series | None) -> pd.D
 
 
 def _value_text(value: object) -> str:
+    """Return a value as text of at most ten digits."""
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
@@ -247,6 +249,7 @@ def _without_item(frame: pd.DataFrame, table: Table) -> pd.Series:
 def _judge_column(
     name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str, group: pd.Series
 ) -> pd.DataFrame:
+    """Judge the values of one column row by row, with their errors."""
     old, new = before[column], after[column]
     numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
     rows = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
@@ -333,6 +336,7 @@ def _same_but_for_items(
 
 
 def _by_group(by_size: pd.DataFrame, quantity: pd.Series) -> pd.Series:
+    """Return the quantity at the rows of another table's order."""
     return pd.Series(quantity.to_numpy()[by_size.index])
 
 
@@ -377,5 +381,6 @@ def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
 
 
 def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:
+    """Return rows that stand in one folder only, with their verdict."""
     frame = pd.DataFrame({"file": name, "row": rows}, columns=list(COLUMNS))
     return frame.assign(verdict=verdict)

@@ -117,6 +117,7 @@ def _parts(branch: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
+    """Yield the special points of a branch as marks by kind."""
     for kind, marker in MARKERS.items():
         rows = special[special["kind"] == kind]
         if len(rows):
@@ -125,12 +126,14 @@ def _points(branch: pd.DataFrame, special: pd.DataFrame) -> Iterator[Curve]:
 
 
 def _colour(period: int) -> str:
+    """Return the colour of a period."""
     return PERIOD_COLOURS[
         LABELLED_PERIODS.index(period) if period in LABELLED_PERIODS else len(LABELLED_PERIODS)
     ]
 
 
 def _keys(branches: pd.DataFrame) -> Iterator[Key]:
+    """Yield the entries of the legend: periods, stable and unstable lines."""
     for name, colour in dict.fromkeys(_motion(f"period-{period}") for period in _by_size(branches["period"])):
         yield Key(name, colour, width=1.6)
     yield Key("stable", grey(0.3), width=1.6)
@@ -222,6 +225,7 @@ def fractions(table: pd.DataFrame) -> Figure:
 
 
 def _array_of(value: float) -> Array:
+    """Return a number as an array of one value."""
     return np.array([float(value)])
 
 

@@ -83,6 +83,7 @@ def scale_colours(name: str, positions: Iterable[float]) -> list[str]:
 
 @cache
 def _scale_colour(name: str, position: float) -> str:
+    """Return the colour of a matplotlib scale at a position from 0 to 1."""
     from matplotlib import colormaps, colors  # a figure is data: only its drawing and scales need the library
 
     return str(colors.to_hex(colormaps[name](position)))

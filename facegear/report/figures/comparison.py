@@ -109,6 +109,7 @@ def front_figure(
 
 
 def _axis(objective: str) -> Axis:
+    """Return the axis of an objective or of the generations."""
     return Axis(objective.replace("_", " "), "", integer=objective == "generation")
 
 

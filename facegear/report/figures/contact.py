@@ -405,6 +405,7 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
 
 
 def _operating_pose_title(words: str, path_mm: float, arrays: Arrays) -> str:
+    """Return the title of a panel with the radius of the contact path and the largest pressure."""
     pressure = 1e-6 * float(np.nanmax(arrays["line_pressure_pa"], initial=0.0))
     return f"{words}: path at {format_number(path_mm, 4)} mm, {format_number(pressure)} MPa"
 

@@ -190,6 +190,7 @@ def _height(figure: Figure) -> float:
 
 
 def _lines(text: str) -> int:
+    """Count the lines of a text."""
     return text.count("\n") + 1 if text else 0
 
 
@@ -203,6 +204,7 @@ def _columns(keys: Sequence[Key], width: float) -> int:
 
 
 def _legend_height(keys: Sequence[Key], width: float) -> float:
+    """Return the height of the legend, inches."""
     return LINE_HEIGHT * 1.1 * ceil(len(keys) / _columns(keys, width)) + 0.05 if keys else 0.0
 
 
@@ -232,6 +234,7 @@ def _axes_of(mpl_figure: MplFigure, figure: Figure) -> list[Axes]:
 
 
 def _draw_panel(on: Axes, panel: Panel) -> None:
+    """Draw the marks of a panel, its axes and its title."""
     if panel.ground:
         on.set_facecolor(panel.ground)
     for order, mark in enumerate(panel.marks):
@@ -267,6 +270,7 @@ def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
 
 
 def _ticks(on: Any, axis: Axis, decades: float, letter: str) -> None:
+    """Set the ticks of an axis: named ones, or round numbers."""
     if axis.ticks:
         positions, names = zip(*axis.ticks, strict=True)
         upright = letter == "x" and len(names) >= UPRIGHT and max(map(len, names)) > 3
@@ -284,6 +288,7 @@ def _ticks(on: Any, axis: Axis, decades: float, letter: str) -> None:
 
 
 def _frame_in_space(on: Any, panel: Panel) -> None:
+    """Label and limit the three axes of a panel in space."""
     for letter in "xyz":
         axis = getattr(panel, letter)
         getattr(on, f"set_{letter}label")(axis.label)
@@ -311,6 +316,7 @@ def _legend_above(on: Axes, keys: Sequence[Key], width: float) -> None:
 
 
 def _handle(key: Key) -> Any:
+    """Return matplotlib's handle of an entry of the legend."""
     if key.area:
         return Patch(color=key.colour, alpha=key.opacity, lw=0, label=key.name)
     return Line2D(

@@ -107,6 +107,7 @@ def write(figure: Figure, path: Path) -> None:
 
 
 def _axis_id(letter: str, number: int) -> str:
+    """Return plotly's name of an axis: x, x2, and so on."""
     return letter if number == 0 else f"{letter}{number + 1}"
 
 
@@ -142,6 +143,7 @@ def _domains(figure: Figure) -> tuple[list[tuple[float, float]], list[tuple[floa
 
 
 def _lines(text: str) -> int:
+    """Count the lines of a text at the width of a narrow screen."""
     return narrow(text).count("\n") + 1 if text else 0
 
 

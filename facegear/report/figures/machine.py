@@ -273,6 +273,7 @@ def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
 
 
 def _title(orders: tuple[int, ...], mode: pd.Series) -> str:
+    """Return the title of a mode's panel: numbers, frequency and symbols."""
     if len(orders) == 1:
         return f"Mode {orders[0]}, {format_number(mode['frequency_hz'], 4)} Hz\n{mode['symbols']}"
     order_text = (

@@ -443,11 +443,13 @@ def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMa
 
 
 def _waterfall(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
+    """Draw the spectra of the last shown pinion's first mesh."""
     mesh_name = f"{machine.pinions_shown[-1]}/{machine.sides[0]}"
     return waterfall(tables["waterfall"], machine.meshes.index(mesh_name), mesh_name, machine.teeth)
 
 
 def _campbell(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
+    """Draw the Campbell diagram up to the last speed of the sweep."""
     last = tables["sweep"]["speed_rpm"].max()
     return campbell(tables["frequencies"], tables["resonances"], tables["jumps"], machine.teeth, last)
 

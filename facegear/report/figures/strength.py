@@ -67,6 +67,7 @@ def along_face_figure(table: pd.DataFrame) -> Figure:
 
 
 def _both_fillets_figure(table: pd.DataFrame, coordinate: str, along: Axis) -> Figure:
+    """Draw stress over a coordinate, a panel for each body, a colour for each torque."""
     torques = np.sort(table["torque_n_m"].unique())
     panels = []
     for body, name in BODIES.items():
@@ -183,6 +184,7 @@ def _of(table: pd.DataFrame, row: Any) -> pd.DataFrame:
 
 
 def _subject(row: Any) -> str:
+    """Return body, flank and method of a rating in words."""
     body = BODIES.get(row.body, row.body.capitalize())
     return f"{body}, {row.flank} flank, {row.method}"
 

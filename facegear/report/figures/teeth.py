@@ -133,6 +133,7 @@ def _quads(grid: Array) -> Array:
 
 
 def _pinion_section(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    """Return the panel of a pinion tooth's section with its radii."""
     half = 1e3 * flanks["pinion_section"]
     tooth = np.concatenate([half[::-1], half * [-1, 1]])
     foot = half[:, 1].min() - 1.5
@@ -176,6 +177,7 @@ def path_text(record: Mapping[str, Any]) -> str:
 
 
 def _gear_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Panel:
+    """Return the panel of a gear tooth's sections at three radii, with its limits."""
     right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
     width = right.shape[1]
     radius = np.hypot(right[0, :, 0], right[0, :, 1])

@@ -296,6 +296,7 @@ def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFram
 
 
 def _exceedance(values: Array, percentiles: pd.DataFrame) -> Iterator[Curve | Line | Span]:
+    """Yield the fraction of samples above each value, with percentiles and their intervals."""
     sorted_values = np.sort(values)
     above = 100.0 * (1.0 - np.arange(1, sorted_values.size + 1) / sorted_values.size)
     for row in percentiles.itertuples():
