@@ -26,11 +26,13 @@ from facegear.questions import OPTIONS, QUESTIONS, complete_answers, flag, reade
 from facegear.schema.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[1]
+"""Folder of the repository, in which the workflow lies if it is at hand."""
 INTERRUPTED = 130
 """Exit code of a command that was stopped by Ctrl-C, as shells have it."""
 STOPPED = {"new": "; no file was written", "report": "; the same command goes on from here"}
 """Rest of the line of a command that was stopped by Ctrl-C: what the user has or can do."""
 CONFIG = "config file (yaml)"
+"""Help text of the argument `config`."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -145,33 +145,40 @@ PRINTED_NOTE = (
     "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's "
     "(docs/explanation/theory.md)"
 )
+"""Note on printed kinematics."""
 SLOW = (
     "transmission: runouts and cumulative pitch deviations enter the hunting cycle, at rest and running, and "
     "the vibration at the orders of turns; steady states and sweeps leave them out "
     "(docs/explanation/theory.md)"
 )
+"""Note on errors that turn slowly, and which results have them."""
 EXTERNAL = (
     "transmission: external forces on {} act at rest and in motion, the same at every speed and torque of a "
     "duty cycle"
 )
+"""Note on external forces; the bodies are filled in."""
 UNREPEATED = (
     "transmission.excitations: {} do not repeat with the mesh; the vibration at the orders of turns has them "
     "(dynamics/excited.csv), and motion in time refuses them"
 )
+"""Note on excitations that do not repeat with the mesh; their names are filled in."""
 WITHOUT_FRICTION = (
     "lubrication.friction.effect = excitation: {} leave out how friction disturbs the motion; loss, "
     "temperature and film of samples are those of the forces without it (docs/explanation/friction.md)"
 )
+"""Note on results that leave out how friction disturbs the motion; their names are filled in."""
 
 AS_ASSEMBLED = (
     "transmission.operating_pose = static: friction, loss, temperature and film take the contact of teeth as "
     "assembled (docs/explanation/poses.md)"
 )
+"""Note on friction, which takes the contact of teeth as assembled."""
 SINGLE_TEETH = (
     "{}: deviations of single teeth enter the hunting cycle, at rest and running, duty loads, and the "
     "vibration at the orders of turns (dynamics/shaft_orders.csv); steady states, sweeps, branches, samples "
     "and designs take the mean flank (docs/how_to/measured_flanks.md)"
 )
+"""Note on deviations of single teeth, and which results have them; the keys are filled in."""
 
 
 def notes(values: Mapping[str, Any]) -> list[str]:

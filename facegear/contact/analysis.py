@@ -249,6 +249,7 @@ def _solve_model(
 
 
 ONE_FLANK = np.zeros((2, 2), dtype=int)
+"""Numbers of the contact that each flank of each gear uses where all flanks are alike: always 0."""
 
 
 @dataclass(frozen=True, eq=False)

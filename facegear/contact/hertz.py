@@ -22,6 +22,7 @@ SLENDEREST, ROUNDEST = 1e-6, 1.0 - 1e-6
 """Ratios of semi-axes between which the ratio of an ellipse is searched."""
 
 HALVINGS = 60
+"""Number of bisections; 60 halve any interval to the rounding of a double."""
 
 STEPS = 8
 """Number of steps of the fixed-point iteration of pressure and half-width, each of which gains more than a

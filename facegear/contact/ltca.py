@@ -289,6 +289,8 @@ class _PositionSearch:
         margin, width, near = self.margin(row), WIDTH, np.zeros((0, 0), bool)
         if self.known_contact is not None:
             width, near = KNOWN_WIDTH, self.known_contact.near[row, np.searchsorted(PAIRS, teeth)]
+        # The kernel counts in parts of the limit, which a smaller margin makes smaller: the factor keeps the
+        # same rotation.
         return SearchStrip(GAP * MARGIN / margin, width, WIDER, START_GAP / margin, START_WIDTH, near)
 
     @cached_property

@@ -95,6 +95,7 @@ def loads_by_tooth(
 
 
 REACTION_COLUMNS = ("torque_n_m", "tangential_n", "axial_n", "overturning_n_m")
+"""Columns of the table of contact reactions on the pinion; units stand in the names."""
 
 
 def touching_reactions(surface: PinionSurface, results: Sequence[LoadedPosition]) -> pd.DataFrame:

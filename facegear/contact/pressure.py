@@ -25,6 +25,7 @@ from facegear.teeth.design import Material, PairDesign
 from facegear.teeth.surfaces import flank_points
 
 INSIDE, PINION_TIP, GEAR_TIP, END = range(len(EDGES))
+"""Index in EDGES of the place where a plane carries its load."""
 
 KERNEL = np.array([1.0, 2.0, 1.0]) / 4
 """Weights of neighbouring planes, over an element of the face: forces alternate between its nodes."""

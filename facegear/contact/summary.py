@@ -32,12 +32,14 @@ COLUMNS = (
     "fillet_share",
     "interference_um",
 )
+"""Columns of table `by_torque`; units stand in the names."""
 
 BY_FLANK_COLUMNS = (
     *("gear", "flank", "offset_um", "shaft_angle_error_deg", "axial_shift_um"),
     *COLUMNS,
     "path_radius_mm",
 )
+"""Columns of table `by_flank`: the flank with its assembly errors, and COLUMNS."""
 
 
 def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:

@@ -28,10 +28,13 @@ SLOWEST_RPM = 1.0
 KERNELS = "facegear._kernels", "src"
 """Package and folder of the sources of the motion."""
 INCLUDES = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+"""Header that a C++ source includes by its path below the kernels' sources."""
 IDENTIFIER = "facegear_machine"
+"""Name of the FMU's library, as FMI asks for one."""
 UNITS = {"m": {"m": "1"}, "N": {"kg": "1", "m": "1", "s": "-2"}, "N.m": {"kg": "1", "m": "2", "s": "-2"}}
 """Units by their exponents of base units; rpm has a factor."""
 LETTERS = "xyz"
+"""Directions of the forces on bearings."""
 COUPLING = ("dampers", "gyroscopic", "circulatory", "centrifugal")
 """Matrices that couple coordinates, in the order of the integrator's argument."""
 SERIES = ("error", "load", "rubbing_ratios", "fourier", "factor")

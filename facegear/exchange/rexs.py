@@ -14,6 +14,7 @@ from facegear.io.atomic import atomic_path
 from facegear.machine.layout import Body
 
 VERSION = "2.0"
+"""Version of the REXS standard that files are written in."""
 LOST_CONTENT = (
     "face gears: their teeth and shapes; each is a shaft with its mass and bearing alone",
     "distribution angles, torques with their excitations, backlash, errors and damping",

@@ -13,7 +13,9 @@ from typing import Any
 from facegear.errors import CorruptFile, FacegearError
 
 NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
+"""Numbers of the system's errors for a full disk or quota."""
 NO_SPACE_HINT = "no space left on the disk; free some and run again"
+"""Advice for a full disk."""
 
 
 @contextmanager
@@ -114,6 +116,7 @@ def _cannot_be_written(error: OSError) -> str:
 
 
 MANIFEST_SUFFIX = ".provenance.json"
+"""End of the name of a manifest's file."""
 
 
 def sha256(path: str | Path) -> str:

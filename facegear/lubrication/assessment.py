@@ -196,7 +196,7 @@ def position_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
 
 
 def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
-    """Return loss, friction coefficient and sliding over the positions of a pitch."""
+    """Return loss, flash temperature and film over the positions of a pitch."""
     torque, points, hats = contact.torque, contact.points, contact.hats
     factor = loss_factors(hats)
     rows = np.searchsorted(factor.positions, hats.position)

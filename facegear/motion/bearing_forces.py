@@ -31,6 +31,7 @@ BEARING_COLUMNS = (
     "peak_n",
     "class",
 )
+"""Columns of the table of bearing forces; forces in N."""
 
 
 def bearing_history(model: Model, response: SteadyState) -> Array:

@@ -276,3 +276,4 @@ def _values_between() -> Array:
 
 
 _POLYNOMIAL = _values_between()
+"""Matrix from values at neighbouring samples to values of their polynomial between them."""

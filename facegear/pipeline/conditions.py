@@ -10,6 +10,7 @@ from facegear.pipeline.stage import Case
 from facegear.schema.contact import modes_need_contact
 
 BODIES = ("pinion", "face_gear")
+"""Names of the bodies of a pair, pinion first."""
 CONTACT = ("tooth_pair", "mesh", "contact")
 """Sections of the config that a contact analysis takes."""
 PAIR_SECTIONS = (*CONTACT, "mesh_stiffness")

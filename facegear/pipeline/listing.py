@@ -9,7 +9,9 @@ HEAD = (
     "| stage | what it does | made where | takes from | of the config | writes |",
     "|---|---|---|---|---|---|",
 )
+"""Head of the table of stages, in Markdown."""
 EMPTY_CELL = "-"
+"""Text of a cell without content."""
 
 
 def listing() -> str:

@@ -61,6 +61,7 @@ FOLLOWING_TITLE = (
     "k_gamma k_v with "
     "half of the samples; memory: difference between two starts after the lead, over the largest force"
 )
+"""Caption of the table of the running machine."""
 
 
 BINS = {"0": "nominal", "-1": "all bins"}
@@ -71,6 +72,7 @@ LOSSES = (
     "The machine at its nominal load and in every bin of its duty cycle. power through meshes: of all meshes "
     "together, over the power in"
 )
+"""Caption of the table of losses."""
 
 
 def case_report(

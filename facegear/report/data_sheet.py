@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 DATA_SHEET = "Gear data, as on a drawing"
+"""Caption of the data sheet."""
 DECIMALS = 3
 """Decimals of lengths in mm: micrometres, as drawings give them."""
 

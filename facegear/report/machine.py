@@ -112,6 +112,7 @@ KINEMATICS = {
     "geometric": "geometric, lever arms and signs as gears have them",
     "printed": "printed, equation (13) of the source paper to the letter (docs/explanation/theory.md)",
 }
+"""Mesh kinematics in words."""
 NAMES = ("case", "reproduction")
 """Keys that say nothing of the machine."""
 

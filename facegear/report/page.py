@@ -26,7 +26,9 @@ DECIMALS = 2
 UNESCAPED_CHARACTERS = frozenset(f'{ascii_letters}{digits}_.-~ !"$()*+,/:;=?@[]^`{{|}}')
 """Characters that a data URI between single quotes may hold as they are."""
 GAPS = re.compile(r"\s+")
+"""White space that one blank can stand for."""
 NUMBER = re.compile(r"(-?\d+\.\d+(?:e[-+]?\d+)?)")
+"""Decimal number in a svg."""
 
 
 def data_uri(still: str) -> str:
@@ -76,7 +78,9 @@ def _round_numbers(attribute: re.Match[str]) -> str:
 
 
 FOLDER = Path(__file__).parent
+"""Folder of the page's parts."""
 TEMPLATE = FOLDER / "page.html.j2"
+"""Template of the page."""
 LIBRARY = FOLDER / "plotly-cartesian.min.js"
 """plotly.js as its makers publish it, the part with curves, bars and maps; its licence stands beside it."""
 

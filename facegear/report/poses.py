@@ -13,30 +13,38 @@ MESHES = (
     "machine puts it and as assembled; to inner and outer end: from the unloaded path to the ends of the "
     "face; by pose: change at the mesh's own load"
 )
+"""Caption of the table of meshes."""
 POSE_COLUMNS = (
     *("mesh", "force_n", "unloaded_path_mm", "path_mm", "path_as_assembled_mm"),
     *("to_inner_end_mm", "to_outer_end_mm"),
     *("stiffness_by_pose_percent", "pressure_by_pose_percent", "face_gear_root_by_pose_percent"),
 )
+"""Columns of the table of meshes."""
 POSE = (
     "Every mesh in full. offset, axial shift, shaft angle: errors of assembly that the motions of both "
     "bodies amount to; outward: how far they move the unloaded contact; closing: what the flanks close "
     "beyond the deflection of the mesh"
 )
+"""Caption of the table of poses."""
 LEAVING_COLUMNS = (
     "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
     "of the face"
 )
+"""Caption of the table of contacts that leave the face."""
 EDGES = (
     "Distance of the contact pattern of every mesh, as it runs, to both ends of the face, to the tips of "
     "pinion and gear, and to the radii where undercut begins and tips are pointed"
 )
+"""Caption of the table of distances to edges."""
 STRESS = (
     "Pressure and root stress of every mesh at its own torque, from contact solved where the machine's own "
     "forces put its teeth, and as assembled"
 )
+"""Caption of the table of stress at the pose."""
 PATTERN = "pattern_to_"
+"""Beginning of the names of columns with distances of the contact pattern to edges."""
 CHECK = "The surface beside the contact solved directly, for the mesh that its pose changes most"
+"""Caption of the table that compares the surface with direct solutions."""
 CHANGE_COLUMNS = {
     "stiffness_by_pose_percent": "stiffness",
     "pressure_by_pose_percent": "pressure",

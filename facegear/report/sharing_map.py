@@ -16,6 +16,7 @@ POINTS = (
     "load of all meshes of the group; p50, p95, p99: percentiles over the drawn errors of the idlers. An "
     "input has one value"
 )
+"""Caption of the table of the machine's points."""
 ADVICE = (
     "Each change of the machine by itself, at its nominal torque, and what it does to {group}: K_gamma is "
     "{now:.3f} before. found: by the statics of the changed machine; gain: what K_gamma falls by; predicted "
@@ -25,16 +26,20 @@ ADVICE = (
 MORE_ADVICE = "Changes and {group}: K_gamma is {now:.3f} before{note}"
 """Caption of the tables of advice below it."""
 PERCENTILE_NOTE = ". Idlers are judged by the 95th percentile over their drawn errors"
+"""Note on the percentile of idlers, behind a caption."""
 CURVES = (
     "Curves of the idlers. all carry: fraction of the drawn machines in which every path carries, where the "
     "closed form may hold"
 )
+"""Caption of the table of the idlers' curves."""
 INPUTS = "Curves of the inputs, for each stiffness of their bearings; closed: the loop formula"
+"""Caption of the table of the inputs' curves."""
 VISIBLE = 1e-3
 """Fall of K_gamma below which a change is not named: three digits stand in the text."""
 BEST = 3
 """Changes that are named for the machine as a whole."""
 MAIN_COLUMNS = ("change", "from_to", "found", "gain", "predicted_gain")
+"""Columns of the advice that are not folded."""
 
 
 def sharing_map_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:

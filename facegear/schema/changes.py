@@ -7,8 +7,11 @@ from typing import Any
 from facegear.errors import ConfigError
 
 SPEED = "dynamics.speed_rpm"
+"""Key of the operating speed."""
 MACHINE = "transmission."
+"""Beginning of the keys of the machine."""
 PAIR = "tooth_pair."
+"""Beginning of the keys of the tooth pair."""
 LUBRICATION = "lubrication."
 """Dotted key of the nominal speed, and beginnings of the dotted keys of three sections."""
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")

@@ -276,7 +276,7 @@ def read_flanks(path: str | Path, body: str) -> dict[str, Any]:
 
 
 def _header(remarks: Iterable[str]) -> str:
-    """Return the unit of positions that the remarks of a file state."""
+    """Return what the remarks of a file say of the pitch deviations: included or left out."""
     for remark in remarks:
         name, _, remark_value = remark.partition(":")
         if name.strip() == HEADER:

@@ -12,6 +12,7 @@ from facegear.schema.csv_file import CsvFault, read_flanks
 
 Side = Literal["right", "left"]
 SIDES: tuple[Side, ...] = ("right", "left")
+"""Flanks of a tooth."""
 
 
 LARGEST = 500.0

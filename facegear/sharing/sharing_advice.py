@@ -27,6 +27,7 @@ ADVICE_COLUMNS = (
     *("group", "kind", "change", "from_to", "k_gamma", "found", "gain", "predicted_gain"),
     *("worst", "worst_found"),
 )
+"""Columns of the table of advice."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,7 @@ Entries = tuple[Array, Integers, Integers, Integers, Array]
 BLOCK = 256
 """Number of columns that are cleared together."""
 SINGULAR = "the stiffness matrix is singular: the body is not held or its mesh is broken"
+"""Message for a matrix that has no factor."""
 
 
 @dataclass(frozen=True, eq=False)

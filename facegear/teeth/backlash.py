@@ -9,6 +9,7 @@ from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import mirror_design, pinion_angle
 
 POSITIONS = 4
+"""Number of positions of a pitch at which backlash is searched; without assembly errors it is constant."""
 
 
 @lru_cache(maxsize=256)

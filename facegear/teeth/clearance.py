@@ -14,7 +14,9 @@ from facegear.teeth.modifications import fillet_as_made, flank_as_made
 from facegear.teeth.placement import mirror_design, to_pinion_section
 
 PINION_PARTS = ("tip land", "chamfer", "flank", "fillet", "root land")
+"""Parts of a pinion tooth, from tip to root."""
 _MODIFIED_PARTS = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
+"""Indices of the parts that modifications change."""
 
 
 @dataclass(frozen=True)
@@ -145,6 +147,7 @@ def signed_distance(
 
 
 TOOTH_NUMBERS = np.arange(-2.0, 3.0)
+"""Numbers of the teeth that may come near each other."""
 
 
 @dataclass(frozen=True)

@@ -93,9 +93,12 @@ _ACROSS, _ALONG = (part.ravel() for part in np.meshgrid(*2 * [np.linspace(-1.0, 
 _ON_BORDER = np.stack([np.abs(_ACROSS) == 1.0, np.abs(_ALONG) == 1.0], axis=-1)
 """Mask (25, 2) of the points that are on the border, across the roll and along y."""
 _SHRINK, _GROWTH, _MAX_STEPS = 0.55, 1.5, 60
+"""Factors on a grid's size where its middle or its border holds the minimum, and the largest number of grids.
+Free choices that affect time alone; the minimum is polished after them."""
 _GAIN = 1e-13
 """By how much (m) a gap must be less to count as such."""
 _STENCIL = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1)])
+"""Steps of a 3 x 3 grid around its middle."""
 _STEP = np.array([2e-4, 1e-4])
 """Distance of the stencil's points, in roll (rad) and y (m)."""
 _FIRST, _LEVELS = 5, 10
@@ -186,7 +189,7 @@ def bounds(design: PairDesign) -> tuple[Array, Array]:
 
 
 def _coarse(design: PairDesign, phi1: Array, phi2: Array, margin: float) -> tuple[Closest, Array]:
-    """Return the smallest gap of each pair on coarse grids, and which pairs may be the closest."""
+    """Return the closest points of each pair by coarse grids, and the size of a grid's cell."""
     low, high = bounds(design)
     face = design.face_gear
     first, last = max(low[1], face.inner_radius - 0.02 * design.module), min(high[1], face.outer_radius)

@@ -21,6 +21,7 @@ from facegear.teeth import pinion
 from facegear.teeth.design import AssemblyErrors, GearModifications, PairDesign
 
 STEPS = 60
+"""Largest number of Newton steps; a search that needs more has no solution."""
 ROUNDING = 1e-12
 """Step of psi (rad) by which differences for the slope are off."""
 

@@ -22,6 +22,7 @@ from facegear.teeth import closed_forms
 from facegear.teeth.design import PairDesign, as_cut
 
 ROUNDING = 16 * np.finfo(float).eps
+"""Residual over the size of its terms that counts as zero: a few roundings of a double."""
 
 
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:

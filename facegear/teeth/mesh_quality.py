@@ -40,6 +40,7 @@ def hex_mesh(nodes: Array, hexes: Integers) -> tuple[MeshHex2, Integers]:
 
 
 ELEMENTS_AT_ONCE = 2000
+"""Number of elements judged together, which bounds memory; results do not depend on it."""
 DEGREE = 5
 """Degree of the quadrature of volumes: the determinant of the 27-node geometry has at most the degree 5 each
 way."""

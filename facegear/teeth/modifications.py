@@ -18,6 +18,7 @@ from facegear.teeth.design import (
 )
 
 CUBIC = 3
+"""Degree of the spline through deviations, where there are enough lines for it."""
 
 
 def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -> Array:

@@ -140,6 +140,7 @@ def _flank_sample(design: PairDesign) -> FlankSample:
 
 
 NO_PART, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
+"""Part of the face gear that a ray meets first."""
 
 
 def cut(

@@ -197,6 +197,7 @@ GROWTH = 2.0
 SHARP = 0.6
 """Deepest first row below a fillet in its smallest radius."""
 ROUNDING = 1e-9
+"""Part of a column by which a coordinate may be off by rounding, dimensionless."""
 
 
 @dataclass(frozen=True)

@@ -181,6 +181,7 @@ def _has_same_sections(u: Array, v: Array) -> tuple[Array, Array]:
 
 
 PLANES, POINTS = 8, 129
+"""Numbers of Gauss points along the face and of points along the profile by which a tooth is integrated."""
 
 
 def tooth_fill(design: PairDesign) -> tuple[float, float]:

@@ -28,6 +28,7 @@ PARTS = ("none", "flank", "fillet", "tip land", "root land")
 __all__ = ["PARTS", "Separation", "separation", "separation_each"]
 
 RAYS_AT_ONCE = 60_000
+"""Number of rays searched together, which bounds memory; results do not depend on it."""
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from facegear.sparse.matrices import cholesky, forward, inverse, plus_square, so
 APART = 3e-9
 """Stiffness between the ends of a chain, over the largest of it, whose square is rounding."""
 LEFT, RIGHT = 0, 1
+"""Ends of a chain of teeth, as first index of arrays."""
 
 
 def join_chains(first: Array, second: Array) -> Array:

@@ -209,6 +209,7 @@ def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
 
 
 GAUSS = 1.0 / np.sqrt(3.0)
+"""Coordinate of the points of the two-point Gauss rule on [-1, 1], dimensionless."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ from facegear.motion.plan import Motion
 IRREGULAR = "not periodic"
 """Entry of `branch` for motions that no branch of periodic motions can contain."""
 NEUTRAL = "on it but for the place of a body that touches nothing, which is free"
+"""Note on a row that lies on its branch but for the free position of a body without contact."""
 
 
 def coexistence_table(

@@ -12,6 +12,7 @@ from facegear.motion.integrator.reduction import Coupling
 from facegear.motion.integrator.system import System
 
 TAU = 2.0 * np.pi
+"""Length of a mesh period in phase, rad."""
 MIN_CLEARANCE = 1e-12
 """Clearance, over the length scale, up to which it is rounding."""
 

@@ -25,6 +25,7 @@ from facegear.motion.integrator.reduction import Coupling, Reduction
 RING_ROWS = 3
 """Rows of a bearing with clearance: x and y of the body, and one of zeros."""
 NO_ERROR = Harmonics(np.zeros(1), np.zeros(1))
+"""Fourier series of an error that is zero."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -229,6 +229,7 @@ JUMP_COLUMNS = (
     "after_irregular",
     "symmetry_broken",
 )
+"""Columns of the table of jumps; units stand in the names."""
 RESONANCE_COLUMNS = (
     "direction",
     "speed_rpm",
@@ -245,6 +246,7 @@ RESONANCE_COLUMNS = (
     "after_irregular",
     "symmetry_broken",
 )
+"""Columns of the table of peaks and the modes nearest to them; units stand in the names."""
 
 
 def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) -> pd.DataFrame:

@@ -18,6 +18,7 @@ from facegear.motion.sweeps.sweep import Piece, collect, join_pieces, run_chunk,
 from facegear.motion.symmetries import Symmetry, mesh_images, symmetries
 
 NAMES = tuple(Piece.__dataclass_fields__)
+"""Names of the arrays of a part of a sweep."""
 MAY_LACK = (
     "leading_multiplier",
     "exponent_per_period",
@@ -48,6 +49,7 @@ _PER_PART: dict[str, tuple[int | None, ...]] = {
     **{name: (None,) * DIMENSIONS[name] for name in NAMES},
     **{f"{name}_known": (None,) for name in MAY_LACK},
 }
+"""Shape of each stored array; None stands for any length."""
 SHAPES = {f"{part}_{name}": shape for part in ("before", "own") for name, shape in _PER_PART.items()}
 """Arrays of a file with their shapes; None is any length."""
 

@@ -27,10 +27,12 @@ FIELDS = {
     for kind in vars(ast).values()
     if isinstance(kind, type) and issubclass(kind, ast.AST)
 }
+"""Fields of each kind of syntax node that affect what code does."""
 Import = tuple[str, str, str]
 """Name that an import binds, module, and name in the module (empty for the module itself)."""
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 SCOPES = (ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+"""Kinds of expressions with a scope of their own."""
 
 
 def is_in_packages(module: str) -> bool:
@@ -379,6 +381,7 @@ METHODS: Mapping[type, Callable[..., None]] = {
     ast.MatchStar: Walk._visit_pattern,
     ast.MatchMapping: Walk._visit_pattern,
 }
+"""Method of Walk that records each kind of node; other kinds are recorded field by field."""
 
 
 def _last_name(decorator: ast.expr) -> str:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 STUDY = "compared"
+"""Name under which compared machines stand in tables, as points of one study."""
 
 
 class LoadSharingResult(Result):

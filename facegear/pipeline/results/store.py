@@ -25,6 +25,7 @@ from facegear.pipeline.stage import File, Wildcards
 from facegear.pipeline.table import STAGES
 
 ROOT = Path(__file__).parents[3]
+"""Folder of the packages, whose code fingerprints are taken from."""
 MANIFEST = "partial.provenance.json"
 """Record beside the files of a stage; it is written last."""
 COMMAND = "facegear report"

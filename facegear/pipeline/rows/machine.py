@@ -170,3 +170,4 @@ ROWS = (
         local=True,
     ),
 )
+"""Stages on bodies, poses, ratings, shafts and modes of the machine."""

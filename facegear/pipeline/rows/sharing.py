@@ -15,6 +15,7 @@ from facegear.pipeline.rows.common_needs import (
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Stage, from_stage
 
 CASE_COLUMNS = ("study", "point", "label")
+"""Columns that identify a point of a study."""
 
 ROWS = (
     Stage(
@@ -209,3 +210,4 @@ ROWS = (
         condition=machine_conditions.follows_rotation,
     ),
 )
+"""Stages on load sharing."""

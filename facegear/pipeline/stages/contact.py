@@ -143,6 +143,7 @@ def contact_studies(
 
 
 ORDERS = 6
+"""Number of orders of a gear's turn that the table of tooth errors lists; higher ones stay in the curves."""
 
 
 def tooth_errors(
@@ -222,6 +223,7 @@ def _curve_orders(curve: Array) -> Array:
 
 
 DEFAULT = ContactOptions()
+"""Options of contact of a pair for which the config says nothing."""
 
 
 def mesh_law(

@@ -84,6 +84,7 @@ COLUMNS = (
     *("bin", "torque_n_m", "mesh", "flank"),
     *("force_n", "unloaded_path_mm", "shaft_angle_error_deg", "stiffness_factor"),
 )
+"""Columns of table `duty_poses`; units stand in the names."""
 
 
 def duty_poses(

@@ -207,11 +207,14 @@ COLUMNS = (
     *("turning", "order", "of_mesh", "frequency_hz", "mesh"),
     *("error_um", "force_n", "force_at_rest_n"),
 )
+"""Columns of the orders of turns; errors in µm, forces in N."""
 EXCITED = (
     *("speed_rpm", "body", "order", "of_mesh", "frequency_hz", "part"),
     *("force_n", "torque_n_m"),
 )
+"""Columns of the response to periodic torques; forces in N, torques in N m."""
 OVER_SPEED = ("speed_rpm", "turning", "order", "of_mesh", "frequency_hz", "mesh", "force_n")
+"""Columns of the orders of turns over speed."""
 
 
 def shaft_orders(

@@ -125,6 +125,7 @@ EVENTS = {
     PAST_LAW: "some mesh is past the last level of its load-dependent law",
     UNSOLVED: "some mesh loses under a torque outside those of the contact analysis",
 }
+"""Events whose fraction of samples is listed, in words."""
 CHECKS = {
     **CYCLE_SELECTION_ERRORS,
     **{f"{name}, of few places of the contact": column for name, column in SIMPLIFICATION_ERRORS.items()},
@@ -216,6 +217,7 @@ COLUMNS = (
     *("torque_factor", "speed_rpm", "quantity", "percentile"),
     *("value", "low", "high", "samples", "failed"),
 )
+"""Columns of the map of percentiles over torque and speed."""
 
 
 def tolerances_map(partial: str | Path | None = None, code: str = "", **machine_fields: Any) -> Outcome:

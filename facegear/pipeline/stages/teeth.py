@@ -23,6 +23,7 @@ from facegear.teeth.solids import solid, teeth_of, triangles
 from facegear.teeth.tooth_mesh import SectorMesh, gear_tooth, pinion_tooth, sector
 
 EASE_OFF_GRID = (37, 29)
+"""Points along profile and width of the separation's map; only the drawing depends on it."""
 
 
 def geometry(tooth_pair: ToothPair) -> Outcome:
@@ -85,6 +86,7 @@ def topography(tooth_pair: ToothPair) -> Outcome:
 
 
 KINDS = ("msh", "vtu", "inp")
+"""Endings of the mesh files."""
 
 
 def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:

@@ -29,6 +29,7 @@ UNDETERMINED = ("shapes.csv",)
 NOT_STORED = "not_stored.json"
 """Record inside a stored answer: the tables that were too large for it."""
 COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerical_error", "verdict")
+"""Columns of the rows of a comparison."""
 
 
 class Verdict(StrEnum):
@@ -336,7 +337,7 @@ def _same_but_for_items(
 
 
 def _by_group(by_size: pd.DataFrame, quantity: pd.Series) -> pd.Series:
-    """Return the quantity at the rows of another table's order."""
+    """Return the values of a quantity in the order of the rows of `by_size`."""
     return pd.Series(quantity.to_numpy()[by_size.index])
 
 

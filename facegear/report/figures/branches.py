@@ -16,18 +16,24 @@ from facegear.report.figures.motion import rms_axis, select
 PERIOD_COLOURS = (BLUE, RED, GREEN, PURPLE)
 """Colours of period 1, 2, 4 and any other."""
 LABELLED_PERIODS = (1, 2, 4)
+"""Periods with a colour of their own, mesh periods."""
 MARKERS = {
     "fold": "triangle-up",
     "period doubling": "square",
     "Neimark-Sacker": "diamond",
     "branch point": "circle",
 }
+"""Marker of each kind of special point."""
 SWEEPS = {"up": ("y-up", grey(0.45)), "down": ("y-down", grey(0.7))}
+"""Marker and colour of the jumps of a sweep by its direction."""
 IRREGULAR = grey(0.55)
+"""Colour of motions that are not periodic."""
 MIN_FRACTION_SHOWN = 0.06
 """Smallest fraction of a bar that has room for its number."""
 LOCI: Mapping[str, tuple[str, LineStyle]] = {"fold": (BLUE, "solid"), "period doubling": (RED, "dash")}
+"""Colour and line of each kind of locus."""
 UNIT_CIRCLE = 2.0 * np.pi * np.arange(361) / 360
+"""Angles at which the unit circle is drawn, rad."""
 
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:

@@ -69,7 +69,9 @@ def split_label(label: str) -> tuple[str, str]:
 
 
 MARKERS = ("square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+"""Markers of the winners, in their order."""
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dot", "dashdot")
+"""Lines of the seeds, in their order."""
 
 
 def front_figure(

@@ -26,6 +26,7 @@ from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.marks import ColourScale, Curve, Line, LineStyle, Look, Map
 
 PAIR_NAMES = ("-2", "-1", "0", "1", "2")
+"""Numbers of the tooth pairs, as their legend has them."""
 
 MARKS = (
     (("pinion tip", "gear tip"), "square", BLUE, "tip edge: line load only"),
@@ -235,6 +236,7 @@ def contact_figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
 
 
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+"""Lines of the cases after the colours are used up."""
 
 
 def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:

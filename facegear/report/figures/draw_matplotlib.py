@@ -44,6 +44,7 @@ STYLE = {
     "svg.hashsalt": "facegear",
     "svg.fonttype": "path",
 }
+"""Settings of matplotlib for all figures."""
 
 
 LETTER, HANDLE, LINE_HEIGHT = 0.064, 0.53, 0.18

@@ -21,6 +21,7 @@ from facegear.report.figures.plotly_values import (
 )
 
 DPI = 96
+"""Pixels of an inch, as browsers count."""
 GAP, TITLE, LINE, EDGE, TICKS = 8, 13, 18, 22, 26
 """In pixels: between a panel, or its title, and the legend; size of a panel's title; height of a line; room
 for half of a number at the right; height of the numbers below an axis.
@@ -38,6 +39,7 @@ UPRIGHT, LABEL = 7, 48
 BAR = 58
 """Pixels of a bar of colours that lies above all panels, with its numbers and its label."""
 LETTERS: tuple[Letter, Letter] = ("x", "y")
+"""Axes of a panel."""
 APART = 0.2
 """Room between columns of panels, in the width of all."""
 SHORT = 1.3

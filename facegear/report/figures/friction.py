@@ -15,6 +15,7 @@ from facegear.report.figures.description import Axis, Figure, Panel
 from facegear.report.figures.marks import Bars, ColourScale, Curve, Levels, Look, Map
 
 FLANK_COLOURS = {"drive": BLUE, "back": ORANGE}
+"""Colour of each flank."""
 
 
 def figures(local: Arrays, pressure: Arrays, map_table: pd.DataFrame) -> tuple[Figure, ...]:

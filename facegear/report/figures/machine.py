@@ -19,10 +19,13 @@ from facegear.schema.shafts import ShaftSection
 from facegear.schema.transmission import Transmission
 
 ROLE_COLOUR = {Role.INPUT: BLUE, Role.IDLER: grey(0.55), Role.TAIL: PURPLE}
+"""Colour of the pinions of each role."""
 OPACITY = 0.55
 """Opacity of a drawn pinion."""
 MESH, BEARING = RED, GREEN
+"""Colours of the forces of meshes and on bearings."""
 ON_BEARINGS = "force on bearings, same scale"
+"""Legend of the forces on bearings."""
 LONGEST = 0.55
 """Longest arrow over the mesh radius."""
 HALF_FACE = 0.06
@@ -301,10 +304,12 @@ def modal_figures(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> tuple[Figu
 
 
 SHAFT, BORE, PINION = grey(0.75), WHITE, ORANGE
+"""Colours of the parts of a shaft."""
 CURVES: Mapping[str, tuple[str, str, LineStyle]] = {
     "x": ("tangential to the gear (x)", BLUE, "solid"),
     "y": ("along the gear's axis (y)", RED, "dash"),
 }
+"""Legend, colour and line of the deflection in each direction."""
 MARGIN = 0.06
 """Room beside a shaft, in its length."""
 

@@ -30,6 +30,7 @@ from facegear.report.figures.marks import (
 )
 
 LINES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-.", "none": "none"}
+"""Matplotlib's name of each kind of line."""
 MARKERS = {
     "": "",
     "dot": ".",

@@ -14,11 +14,13 @@ from facegear.report.figures.description import Axis, Figure, Panel, apart, stem
 from facegear.report.figures.marks import ColourScale, Curve, Line, LineStyle, Look, Map, Text
 
 DIRECTION_STYLES: Mapping[str, tuple[str, LineStyle]] = {"up": (RED, "solid"), "down": (BLUE, "dash")}
+"""Colour and line of each direction of a sweep."""
 AXIS_STYLES: Mapping[str, tuple[str, LineStyle]] = {
     "x": (RED, "solid"),
     "y": (BLUE, "dash"),
     "z": (GREEN, "dot"),
 }
+"""Colour and line of each translation."""
 RMS_HEIGHT = 1.3
 """Inches of a panel of RMS over speed."""
 
@@ -174,6 +176,7 @@ def jump_ticks(jumps: pd.DataFrame) -> Iterator[Line]:
 
 
 LINES: Mapping[str, LineStyle] = {"up": "solid", "down": "dash"}
+"""Line of each direction of a sweep, where colours tell machines apart."""
 
 
 def mesh_sweeps_beside(sweeps: Mapping[str, pd.DataFrame], meshes: Sequence[str]) -> Figure:
@@ -214,6 +217,7 @@ def mesh_sweeps_beside(sweeps: Mapping[str, pd.DataFrame], meshes: Sequence[str]
 ORDER_LINES = (1.0, 2.0, 3.0)
 """Multiples of the mesh frequency that are always drawn, beside those of the marks."""
 CLASS_COLOURS = {"pinion": BLUE, "face gear": ORANGE, "pinion coupled face gear": GREEN}
+"""Colour of each class of modes."""
 
 
 def campbell(
@@ -325,8 +329,11 @@ def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: in
 
 
 SIDE_STYLES: Mapping[str, tuple[str, LineStyle]] = {"upper": (RED, "solid"), "lower": (BLUE, "dash")}
+"""Colour and line of the meshes of each face gear."""
 SHOWN_CYCLES = 16
+"""Largest number of mesh cycles drawn; more would hide the curve's shape."""
 SHOWN_ORDERS = 4
+"""Largest multiple of the mesh frequency drawn."""
 APART = 0.04
 """Orders by which the lines of the two gears stand apart, so that neither hides the other."""
 VISIBLE = 1e-3

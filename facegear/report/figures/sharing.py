@@ -17,10 +17,12 @@ from facegear.schema.transmission import Transmission
 from facegear.sharing.sharing_map import AS_GIVEN
 
 LINES: tuple[LineStyle, ...] = ("solid", "dash", "dashdot", "dot")
+"""Lines of the points of a study, in their order."""
 LABEL = {
     "inputs": "Load sharing coefficient\nof upper and lower face gear",
     "idlers": "Load sharing coefficient\nof idlers and tail rotor idler",
 }
+"""Label of the coefficient's axis by kind of group."""
 ENVELOPE = 0.02
 """An envelope narrower than this is a line, and not drawn."""
 
@@ -121,6 +123,7 @@ def load_sharing_figures(
 
 
 CYCLE_LINES: Mapping[str, LineStyle] = {"geometric": "solid", "printed": "dash"}
+"""Line of each kinematics."""
 MAX_BARS = 20
 """Bars of the sensitivity chart."""
 
@@ -272,6 +275,7 @@ ALL_CARRY = 1.0 - 1e-9
 HOLDS = 0.02
 """Relative difference from the statics below which a closed form is drawn: little beside what it explains."""
 CLOSED_NAME = "closed form"
+"""Legend of the closed form."""
 
 
 def sharing_map_figures(
@@ -371,9 +375,11 @@ def _closed_form(number: pd.Series, values: pd.Series, is_first: bool) -> Curve:
 
 
 MARKERS = ("circle", "square", "diamond", "triangle-up", "triangle-down", "cross", "star")
+"""Markers of the meshes by colour."""
 WIDE = 30.0
 """Ratio of the largest number to the smallest from which the axis is logarithmic."""
 PERIODIC = "period-1"
+"""Class of a motion that repeats with the mesh cycle."""
 
 
 def study_forces_figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:

@@ -15,19 +15,23 @@ from facegear.report.figures.motion import DIRECTION_STYLES
 PART_SHOWN = 0.02
 """Fraction of the largest stress above which the passage is drawn."""
 BODIES = {"pinion": "Pinion", "face_gear": "Face gear"}
+"""Bodies in words."""
 COLOURS = {"pinion": BLUE, "face_gear": ORANGE}
+"""Colour of each body."""
 LINES: Mapping[str, LineStyle] = {
     "finite elements": "solid",
     "ISO 6336-3": "dash",
     "contact analysis": "solid",
     "ISO 6336-2": "dash",
 }
+"""Line of each method of rating."""
 MARKS = {
     "finite elements": "circle",
     "ISO 6336-3": "x",
     "contact analysis": "square",
     "ISO 6336-2": "triangle-up",
 }
+"""Marker of each method of rating."""
 
 
 def passage_figure(table: pd.DataFrame) -> Figure:
@@ -233,8 +237,11 @@ PANELS = {
     "pressure_mpa": ("Pressure", "MPa"),
     "dynamic_factor": ("Dynamic factor", ""),
 }
+"""Columns drawn over speed, with name and unit."""
 BRANCH: Look = {"colour": grey(0.6), "line": "none", "marker": "dot", "size": 3.0}
+"""Look of stable branches."""
 BEYOND = "beyond the torques of the contact analysis"
+"""Legend of the shaded range."""
 
 
 def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
