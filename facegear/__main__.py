@@ -317,7 +317,7 @@ def _print_stage(stage: str, summary: str) -> None:
 
 
 def _check(options: argparse.Namespace) -> int:
-    """Exit code 1 where a run would fail."""
+    """Print mistakes and implausible values of a config; exit code 1 if a run would fail."""
     result = check_config(load_config(options.config), read_yaml(options.config))
     for line in result.remarks:
         print(line)
@@ -338,7 +338,9 @@ def _limits(options: argparse.Namespace) -> int:
 
 
 def _compare(options: argparse.Namespace) -> int:
-    """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
+    """Compare two folders of results; exit code 1 if a value moved beyond its numerical error or a label
+    changed.
+    """
     from facegear.report.compare import answers, judge, page  # these draw, and bring matplotlib
 
     if options.page:

@@ -230,7 +230,7 @@ def _tilt(section: TiltSection) -> Tilt:
 def _inertias(
     section: PinionBody | GearBody, single_part: SinglePinion | SingleGear | None
 ) -> tuple[float, float]:
-    """Mass and inertia."""
+    """Return mass, kg, and inertia, kg m^2, of a body; values given for the single body go first."""
     single_part = single_part or LIKE_ALL_PINIONS
     return (
         section.mass_kg if single_part.mass_kg is None else single_part.mass_kg,

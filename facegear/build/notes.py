@@ -221,7 +221,7 @@ def notes(values: Mapping[str, Any]) -> list[str]:
 
 
 def _without_friction(values: Mapping[str, Any]) -> list[str]:
-    """Samples of tolerances and designs where friction disturbs the motion of the machine itself."""
+    """Note that samples and designs leave out how friction disturbs the motion."""
     oil = values.get("lubrication")
     if not oil or oil["friction"]["effect"] == "loss_only":
         return []
@@ -231,7 +231,7 @@ def _without_friction(values: Mapping[str, Any]) -> list[str]:
 
 
 def _single_teeth(values: Mapping[str, Any]) -> list[str]:
-    """Gears with deviations of single teeth."""
+    """Note which gears have deviations of single teeth."""
     pair = values.get("tooth_pair") or {}
     keys = [
         f"tooth_pair.{gear}.flanks"
@@ -245,7 +245,9 @@ def _single_teeth(values: Mapping[str, Any]) -> list[str]:
 
 
 def _preloads(values: Mapping[str, Any]) -> list[str]:
-    """Pinions and meshes that errors press together at rest: bearings and teeth give, and carry that load."""
+    """Note pinions and meshes that errors press together at rest: bearings and teeth give, and carry that
+    load.
+    """
     if "tooth_pair" not in values or values["transmission"].get("backlash_um") is None:
         return []
     lines = preloads(*lumped_sections(values["transmission"], values["tooth_pair"]))
@@ -253,7 +255,7 @@ def _preloads(values: Mapping[str, Any]) -> list[str]:
 
 
 def _pushes(transmission: Mapping[str, Any]) -> list[str]:
-    """Bodies with an external force."""
+    """Note which bodies have an external force."""
     singles = {**transmission["single_pinions"], **transmission["single_gears"]}
     bodies = [
         name for name, single_part in singles.items() if any((single_part.get("force_n") or {}).values())
@@ -262,7 +264,7 @@ def _pushes(transmission: Mapping[str, Any]) -> list[str]:
 
 
 def _unrepeated(values: Mapping[str, Any]) -> list[str]:
-    """Periodic torques that no mesh harmonic has."""
+    """Note which periodic torques are at no harmonic of the mesh frequency."""
     transmission = values["transmission"]
     if not transmission["excitations"]:
         return []
@@ -277,7 +279,7 @@ def _unrepeated(values: Mapping[str, Any]) -> list[str]:
 
 
 def _sums(values: Mapping[str, Any]) -> list[str]:
-    """Numbers that several causes of the tolerances move: as in a chain of tolerances, or by mistake."""
+    """Note keys that several causes of the tolerances move, as in a chain of tolerances or by mistake."""
     causes = (values.get("tolerances") or {}).get("causes", ())
     movers: dict[str, list[str]] = {}
     for cause in causes:

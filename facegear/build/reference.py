@@ -91,7 +91,7 @@ def _options(field: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 
 
 def _plain(schema: Mapping[str, Any], field: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A field with its reference followed."""
+    """Return the schema of a field, its reference to a definition replaced by the definition."""
     if "$ref" not in field:
         return field
     return schema["$defs"][field["$ref"].rsplit("/", 1)[-1]]

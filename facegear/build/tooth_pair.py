@@ -166,7 +166,7 @@ def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, 
 
 
 def _nominal(section: ToothPair) -> PairDesign:
-    """The pair with all flanks as designed."""
+    """Return the design of a pair with all flanks as designed, without measured deviations."""
     m = 1e-3 * section.module_mm
     pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
     if pinion is None or gear is None or shaper is None:

@@ -199,7 +199,7 @@ def flank_pressure(
 
 
 def _rows(position: Array, tooth: Integers) -> dict[tuple[float, int], int]:
-    """Number of each line by position and tooth."""
+    """Number the contact lines by position and tooth."""
     return {pair: row for row, pair in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
 
 

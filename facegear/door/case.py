@@ -65,7 +65,9 @@ class Case:
         return self._with_changes("with_values", changes)
 
     def _torques(self, torques: float | Iterable[float] | None) -> dict[str, Any]:
-        """Changed keys of a contact analysis at other torques (N m on the pinion); none for None."""
+        """Return the changes of a contact analysis's keys for other torques, N m on the pinion; none for
+        None.
+        """
         if torques is None:
             return {}
         changes: dict[str, Any] = {
@@ -77,7 +79,7 @@ class Case:
         return changes
 
     def _require_section(self, section: str) -> Mapping[str, Any]:
-        """A section of HOLDS. Raises ConfigError where the config leaves it out."""
+        """Return a section of HOLDS as plain values; raise ConfigError where the config leaves it out."""
         values: Mapping[str, Any] | None = self._values[section]
         if values is None:
             raise ConfigError(section, None, f"a section of the config: {HOLDS[section]}")

@@ -257,7 +257,7 @@ def _function(name: str, values: AnyArray) -> str:
 
 
 def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Statements that fill facegear::motion::System."""
+    """Yield C++ statements that fill facegear::motion::System with the numbers of the machine."""
     rows, n = numbers["jacobian"].shape
     contacts = rows - 3 * numbers["ring_stiffness"].size
     yield f"s.n = {n}, s.m = {rows}, s.contacts = {contacts};"
@@ -271,7 +271,7 @@ def _system_lines(numbers: dict[str, Any]) -> Iterator[str]:
 
 
 def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
-    """Statements that fill one of the laws of facegear::motion."""
+    """Yield C++ statements that fill one of the force laws of facegear::motion."""
     for name, values in numbers.items():
         if name == "table":
             kinds, levels, harmonics = values.shape[:3]
@@ -283,7 +283,9 @@ def _law_lines(numbers: dict[str, Any]) -> Iterator[str]:
 
 
 def _series(values: AnyArray) -> str:
-    """Fourier series (kinds, 2, harmonics + 1) as facegear::motion::FourierRows."""
+    """Return Fourier series (kinds, 2, harmonics + 1) as C++ text that initialises
+    facegear::motion::FourierRows.
+    """
     return f"{{{values.shape[0]}, {values.shape[2]}, {_list(values)}}}"
 
 

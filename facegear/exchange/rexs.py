@@ -250,7 +250,7 @@ def _of_kind(parts: Parts, *types: str) -> Iterable[str]:
 
 
 def _attribute(element: Xml.Element, name: str) -> str:
-    """An attribute that every element of its kind must have."""
+    """Return an attribute that every element of its kind must have; refuse an element without it."""
     if name not in element.attrib:
         attribute_text = (
             ", ".join(f"{key}={value[:40]!r}" for key, value in element.attrib.items()) or "no attribute"
@@ -309,7 +309,7 @@ def _spur(gear: str, parts: Parts, relations: Relations) -> Spur:
 
 
 def _flanks_of(gear: str, relations: Relations) -> list[str]:
-    """The gear itself and its flanks."""
+    """Return the ids of a gear and of its flanks."""
     return [
         number
         for kind, members in relations
@@ -385,7 +385,7 @@ def gear_unit(config: Config) -> Unit:
 
 
 def _pinion(name: str, body: Body, spur: Spur) -> Shaft:
-    """A pinion's own axis is z."""
+    """Return a pinion as a shaft, with its mass, radial and axial bearing stiffness, and spur gear."""
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z, spur)
 

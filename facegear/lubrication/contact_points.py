@@ -283,7 +283,9 @@ def _fill_edges(lines: ContactLines) -> ContactLines:
 
 
 def _nearest(values: Array) -> Array:
-    """Rows (p, n) in which a nan takes the value of the nearest column that has one, if any has."""
+    """Replace each nan of rows (p, n) by the value of the nearest finite column; rows without any
+    stay nan.
+    """
     columns = np.arange(values.shape[1])
     is_finite = np.isfinite(values)
     before = np.maximum.accumulate(np.where(is_finite, columns, -1), axis=1)
@@ -295,7 +297,7 @@ def _nearest(values: Array) -> Array:
 
 
 def _rows(arrays: Arrays) -> Integers:
-    """Contact line (m,) of every loaded plane."""
+    """Return the number of the contact line (m,) to which every loaded plane belongs."""
     keys = zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True)
     row = {key: number for number, key in enumerate(keys)}
     plane_keys = zip(arrays["line_position"].tolist(), arrays["line_tooth"].tolist(), strict=True)
@@ -303,7 +305,7 @@ def _rows(arrays: Arrays) -> Integers:
 
 
 def _half_lengths(arrays: Arrays, row: Integers) -> Array:
-    """Half the loaded length (m,) of the line that each plane belongs to."""
+    """Return half the loaded length (m,), m, of the contact line to which each plane belongs."""
     _, torque = np.unique(arrays["line_torque_n_m"], return_inverse=True)
     _, line = np.unique(torque * (row.max() + 1) + row, return_inverse=True)
     whole = np.zeros(line.max(initial=0) + 1)

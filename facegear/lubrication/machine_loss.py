@@ -224,7 +224,7 @@ class LoadedPair:
         return curves, np.array([state.bulk for state in states])
 
     def _row(self, states: Sequence[Running], speed: float) -> Array:
-        """Fields of MeshCurves (5, t) of one mesh in its states."""
+        """Return the fields (5, t) of MeshCurves of one mesh from its states at t torques."""
         inside = [contact.points.inside for contact in self.contacts]
         rows = [
             (
@@ -380,14 +380,14 @@ def settled_bulk(
 
 
 def _losses(loads: MeshLoads, curves: LossCurves, speed: float) -> tuple[Array, Array]:
-    """Loss (n,) W of every loaded flank, and the part of it that heats the pinion."""
+    """Return the loss (n,) of every loaded flank, and the part of it that heats the pinion, both in W."""
     loss_fraction, fraction = curves.at(loads.torque, "loss_fraction", "heat_fraction")
     loss = loss_fraction * loads.torque * speed
     return loss, fraction * loss
 
 
 def _heat(loads: MeshLoads, loss: Array, warm: Array) -> Array:
-    """Heat (bodies,) W."""
+    """Return the heat (bodies,), W, that every body takes up from its meshes."""
     heat = np.zeros(loads.bodies)
     np.add.at(heat, loads.pinion, warm)
     np.add.at(heat, loads.pinions + loads.gear, loss - warm)

@@ -157,7 +157,7 @@ def _row(state: MachineState) -> dict[str, object]:
 
 
 def _whole(bins: pd.DataFrame) -> dict[str, object]:
-    """The whole duty cycle: means weighted with the hours."""
+    """Return the row of the whole duty cycle: means weighted by the hours of the bins."""
     hours = bins["hours"].sum()
 
     def mean(values: pd.Series) -> float:

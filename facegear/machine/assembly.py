@@ -137,7 +137,9 @@ def _wrap_pitches(pitches: Array) -> Array:
 
 
 def _all_together(left: Array, reach: Array, candidates: Mask) -> Mask:
-    """Mask (pinions,) of the candidates that share one place of the lower gear, chosen by rising |left|."""
+    """Return which candidates (pinions,) can mesh at one common position of the lower gear, chosen by rising
+    |left|.
+    """
     fits = np.zeros(left.size, bool)
     low, high = -np.inf, np.inf
     outwards = np.argsort(np.abs(left)).tolist()

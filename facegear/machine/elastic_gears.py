@@ -168,9 +168,11 @@ class ElasticGears:
 def _hub_terms(
     layout: Layout, gear: int, body: ReducedBody, elastic: Coordinates
 ) -> tuple[Integers, Array, Array]:
-    """Coordinates (h,) of a gear's hub, and its masses and velocity terms (h, k) with those of the body.
+    """Return coordinates (h,) of a gear's hub, and masses and velocity terms (h, k) that couple it to its
+    body.
 
-    A tilt about a height h is that about height 0 and a motion sideways: it moves (-(zeta - h), zeta - h, r).
+    A tilt about a height h is a tilt about height 0 and a motion sideways: it moves (-(zeta - h), zeta - h,
+    r).
     """
     hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
     if layout.gears[gear].body.tilt is None:

@@ -202,7 +202,9 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
 
 
 def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
-    """Who moves and how, from the amplitudes of all DOF as lengths, shape (dof,)."""
+    """Return symbols of the bodies that move in a mode and how, from the amplitudes (dof,) of all coordinates
+    as lengths.
+    """
     letters_of_body: dict[str, set[str]] = {name: set() for name in layout.body_names}
     for label in np.array(labels)[amplitudes > AMPLITUDE_FRACTION * amplitudes.max()]:
         body, _, letter = label.rpartition(":")
@@ -218,8 +220,11 @@ def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
 
 
 def _motion(moves: set[str]) -> str:
-    """`T-R-A-tilt` from the letters of the coordinates that move; a single direction of translation is named,
-    and so is what is neither a motion nor a tilt of the rigid body, up to its first blank.
+    """Return the symbol of a body's motion, such as `T-R-A-tilt`, from the letters of the coordinates that
+    move.
+
+    A single direction of translation is named, and so is a motion that the rigid body does not have, up to
+    its first blank.
     """
     letters = []
     if moves & {"x", "y"}:

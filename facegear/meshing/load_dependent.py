@@ -285,7 +285,9 @@ def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
 
 @lru_cache(maxsize=16)
 def _columns(law: LoadDependentLaw) -> Array:
-    """Coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; shared, only read."""
+    """Return coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; they are shared
+    and must not be changed.
+    """
     return np.ascontiguousarray(np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)))
 
 

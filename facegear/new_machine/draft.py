@@ -278,7 +278,7 @@ class Draft:
         return f"{count} more than the pinion, which spreads the contact: pitting allows no more"
 
     def _reasons(self) -> dict[str, str]:
-        """Reason of each value, or that it was given."""
+        """Return the reason of each value of the config, or that the user gave it."""
         low, high = (1e3 * radius for radius in self.teeth.face_limits)
         face = f"chosen within {low:.4g} to {high:.4g} mm, between undercut and pointed tips"
         soft = "; soft bearings let the inputs share between both gears" if self.wishes.idlers else ""
@@ -358,7 +358,7 @@ def _text(value: float) -> str:
 
 
 def _gears(wishes: MachineWishes) -> tuple[str, ...]:
-    """Face gears; idlers need two."""
+    """Return the face gears that the machine needs: both if there are idlers."""
     return ("lower", "upper") if wishes.idlers else ("upper",)
 
 

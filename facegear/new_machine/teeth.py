@@ -159,7 +159,7 @@ def _require_numbers(wishes: ToothWishes) -> None:
 
 
 def _candidates(wishes: ToothWishes, more_shaper_teeth: int) -> Iterator[PairDesign]:
-    """Teeth without a face yet, the highest first."""
+    """Yield designs of the teeth without a face yet, those with the highest teeth first."""
     module = 1e-3 * wishes.module_mm
     thinning = THINNING * module if wishes.thinning_um is None else 1e-6 * wishes.thinning_um
     heights = _one_or(wishes.pinion_addendum_modules, HEIGHTS)

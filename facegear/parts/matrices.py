@@ -44,12 +44,12 @@ class Polynomial:
     parts: tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]
 
     def at(self, order: int) -> sp.csr_matrix:
-        """Return the matrix of an order.
+        """Return the matrix of one circumferential order.
 
         Parameters
         ----------
         order : int
-            The order n.
+            Circumferential order n, number of nodal diameters.
 
         Returns
         -------
@@ -206,7 +206,7 @@ def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Ar
 
 
 def _free(section: Section, elements: Elements) -> Integers:
-    """Return the degrees of freedom of the shapes that stand on no held edge."""
+    """Return the degrees of freedom of shape functions that are not on a held edge."""
     is_held = np.zeros(elements.shape_points.shape[1], bool)
     points = elements.shape_points.T
     for (first, last), is_fixed in zip(section.edges, section.is_edge_held, strict=True):

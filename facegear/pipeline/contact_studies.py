@@ -119,7 +119,7 @@ def law_points(case: Case) -> Points:
 
 
 def other_laws(case: Case) -> list[Wildcards]:
-    """Return the cases of `law_points` without the machine itself.
+    """Return the studied points whose mesh law is drawn beside the machine's own.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def other_laws(case: Case) -> list[Wildcards]:
     Returns
     -------
     list[Wildcards]
-        `case` of each.
+        Wildcard `case` of each point.
     """
     return _cases(case, law_points(case))[1:]
 

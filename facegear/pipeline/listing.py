@@ -49,7 +49,7 @@ def _made_where(stage: Stage, is_source: bool) -> str:
 
 
 def _sections(need: Need) -> list[str]:
-    """Sections of the config that a value is taken from."""
+    """Return the sections of the config from which a need takes its value."""
     if isinstance(need, ComputedValue):
         return list(need.sections)
     return [key.partition(".")[0] for key in ((need,) if isinstance(need, str) else need)]

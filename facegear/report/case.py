@@ -357,7 +357,9 @@ def bins_in_words(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:
-    """Stress of every motion at the speed nearest to the nominal one, and where each is hardest."""
+    """Return the table of stress at the speed nearest to the nominal one, and where each motion
+    is hardest.
+    """
     if "stress_over_speed" not in tables:
         return []
     table = tables["stress_over_speed"]

@@ -236,7 +236,7 @@ def _less_friction(numbers: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _signed_numbers(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
-    """Safeties, factors of the load and loss, where they were computed."""
+    """Return safeties, load sharing and dynamic factors and loss by name, where they were computed."""
     numbers: dict[str, float] = {}
     if "rating" in tables:
         smallest = tables["rating"].groupby("failure")["safety"].min()

@@ -108,7 +108,7 @@ def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def _path(loaded_meshes: pd.DataFrame) -> list[str]:
-    """The contact that moves most, and the one nearest to an end of the face."""
+    """Say which contact path moves most, and which one is nearest to an end of the face."""
     if loaded_meshes.empty:
         return ["No mesh carries load."]
     shift = loaded_meshes["path_mm"] - loaded_meshes["path_as_assembled_mm"]
@@ -136,7 +136,7 @@ def _path(loaded_meshes: pd.DataFrame) -> list[str]:
 
 
 def _pattern(loaded_meshes: pd.DataFrame) -> str:
-    """At which ends of the face the loaded pattern ends, and which tips carry none of it."""
+    """Say at which ends of the face the loaded pattern ends, and which tooth tips carry no load."""
     if f"{PATTERN}inner_end_mm" not in loaded_meshes or loaded_meshes.empty:
         return ""
     sentences = []
@@ -177,7 +177,7 @@ def _force(meshes: pd.DataFrame) -> str:
 
 
 def _ends(tables: Mapping[str, pd.DataFrame]) -> str:
-    """At which loads contacts leave the face, as far as loads were looked at."""
+    """Say at which loads contacts leave the face, as far as loads were computed."""
     leaving_contacts, largest_percent = (
         tables["poses_leaving"],
         100 * tables["poses_loads"]["load_fraction"].max(),

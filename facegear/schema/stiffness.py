@@ -183,7 +183,7 @@ def given_series(section: MeshStiffness) -> Harmonics:
 
 
 def _check_law(section: MeshStiffness) -> None:
-    """Only contact knows the load, and its law has no variation to be changed by itself."""
+    """Refuse a load-dependent law without contact, and a factor on its variation."""
     if section.source == "harmonics":
         refuse("mesh_law", "load_dependent", "constant_load, where source is harmonics")
     if section.variation != 1.0:
@@ -191,7 +191,9 @@ def _check_law(section: MeshStiffness) -> None:
 
 
 def _check_mean(mean: float | None, first: HarmonicSection) -> None:
-    """The mean comes from the key or from order 0 of the harmonics; where both stand, they agree."""
+    """Refuse a mean that is given by key and by order 0 of the harmonics with different values, or by
+    neither.
+    """
     if first.order > 0:
         if mean is None:
             refuse("mean_n_per_m", None, "given, as the harmonics have no order 0, which is the mean")
@@ -207,7 +209,9 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
 
 
 def _read_csv(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
-    """Rows of `table` from a csv of orders, or from one over the pinion's angle with the pitch it covers."""
+    """Read rows of `table` from a csv file of orders, or from one over the pinion's angle, with the pitch it
+    covers.
+    """
     if CURVE[0] in column_names(name):
         return _of_curve(read_numbers(name, CURVE))
     return _harmonics(read_numbers(name, COLUMNS, UNREAD)), None

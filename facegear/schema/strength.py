@@ -118,7 +118,7 @@ class Strength(Section):
             refuse("duty", [], "at least one bin with hours, here or in duty_csv")
 
     def _check_card(self, name: str) -> None:
-        """The card of a body holds what the rating needs."""
+        """Refuse a material card of a body that lacks limits which the rating needs."""
         card = getattr(self, name).card
         for part in ("pitting", "bending"):
             if getattr(card, part) is None:

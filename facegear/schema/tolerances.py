@@ -68,7 +68,9 @@ class CauseSection(Section):
         return self
 
     def _check_cut(self) -> None:
-        """The part of a distribution that is left can be sampled, and something is cut off."""
+        """Refuse limits that cut off nothing of a distribution, or so much that the rest cannot
+        be sampled.
+        """
         if self.limits is None or self.shape not in ("normal", "rayleigh") or self.spread is None:
             return
         centre = self.centre if self.shape == "normal" else 0.0

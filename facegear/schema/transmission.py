@@ -236,7 +236,9 @@ class Transmission(Section):
                 refuse(key, shown_value, "none where mesh_kinematics is printed")
 
     def _held_once(self) -> None:
-        """Every pinion has a shaft or a bearing stiffness, and no stiffness is given in vain."""
+        """Refuse a pinion with neither a shaft nor a bearing stiffness, and a stiffness that has
+        no effect.
+        """
         key, common = "pinion.bearing_stiffness_n_per_m", self.pinion.bearing_stiffness_n_per_m
         by_common = []
         for pinion in self.pinions:

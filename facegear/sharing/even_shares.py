@@ -87,7 +87,10 @@ def even_shares(machine: Machine) -> Array:
 
 
 def _even_forces(layout: Layout, coefficients: Array, on_gears: Array) -> Array:
-    """Forces (meshes,), positive where the pinion drives; own (pinions,): what each torque asks for."""
+    """Return the forces (meshes,), N, positive where the pinion drives, that share every torque evenly.
+
+    `coefficients` (pinions,): force that each pinion's torque needs; `on_gears`: torque on each gear, N m.
+    """
     if len(layout.gears) == 1:
         return coefficients
     inputs = np.array([pinion.role is Role.INPUT for pinion in layout.pinions])

@@ -75,7 +75,7 @@ def safety_table(ratings: Sequence[FailureRating], pressure: ContactPressure) ->
 
 
 def _worst_ways(ways: Sequence[FailureRating]) -> list[FailureRating]:
-    """Return of each failure the method with the smallest safety."""
+    """Return for each kind of failure the rating method with the smallest safety."""
     return [
         min((rating for rating in ways if rating.failure == failure), key=lambda rating: rating.safety)
         for failure in dict.fromkeys(rating.failure for rating in ways)

@@ -239,7 +239,7 @@ def _bodies(
 
 
 def _tensions(flanks: Flanks) -> Tensions:
-    """They are the same for every Young's modulus."""
+    """Return the passing root stress of each body with gauges; it is the same for every Young's modulus."""
     return {body: PassingTension.of_flank(body, flank) for body, flank in flanks.items() if flank.gauges}
 
 

@@ -99,7 +99,7 @@ class VariedBodies:
 
 
 def _key(section: BodySection, pair: ToothPair) -> Hashable:
-    """All that a body depends on."""
+    """Return a hashable key of everything on which a reduced face gear depends."""
     shape = body_shape(section, pair)
     mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
     fitted_teeth = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
@@ -107,7 +107,7 @@ def _key(section: BodySection, pair: ToothPair) -> Hashable:
 
 
 def _nominal_teeth(design: PairDesign) -> Hashable:
-    """All that the nominal teeth of a face gear depend on."""
+    """Return a hashable key of everything on which the nominal teeth of a face gear depend."""
     gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
     pinion = design.pinion.teeth, design.pinion.profile_shift
     return (design.module, design.pressure_angle, pinion, gear, design.shaper)

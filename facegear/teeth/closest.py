@@ -165,7 +165,7 @@ def closest(
 
 
 def _pairs(design: PairDesign, phi1: Array, phi2: Array) -> FlankGaps:
-    """All pairs at p placements, (5 p,)."""
+    """Return the gaps of all 5 pairs of teeth at p placements, (5 p,)."""
     turns = np.repeat(phi1, len(PAIRS)), np.repeat(phi2, len(PAIRS))
     return FlankGaps.of_pairs(design, *turns, np.tile(PAIRS, len(phi1)).astype(float))
 
@@ -294,7 +294,9 @@ class _Bowl:
 
 
 def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Array, Array, Array]:
-    """One Newton step from a 3 x 3 stencil where the minimum lies inside the flank."""
+    """Improve minima (gap, m, roll, rad, y, m) by one Newton step from a 3 x 3 stencil, where they lie inside
+    the flank.
+    """
     bowl = _bowl(pairs, roll, y, np.tile(_STEP, (len(roll), 1)))
     low, high = bounds(pairs.design)
     new_roll, new_y = roll + bowl.across * _STEP[0], y + bowl.along * _STEP[1]
@@ -312,7 +314,7 @@ def _polished(pairs: FlankGaps, gap: Array, roll: Array, y: Array) -> tuple[Arra
 
 
 def _bowl(pairs: FlankGaps, roll: Array, y: Array, step: Array) -> _Bowl:
-    """The paraboloid through 3 x 3 stencils of steps (n, 2) about roll and y (n,)."""
+    """Return the paraboloid through gaps on 3 x 3 stencils of steps (n, 2) about roll and y (n,)."""
     rolls, ys = (
         at[:, None] + _STENCIL[:, axis] * step[:, axis : axis + 1] for axis, at in ((0, roll), (1, y))
     )

@@ -242,7 +242,11 @@ def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float 
 
 
 def _slope(pair: PairNumbers, errors: AssemblyErrors) -> float | None:
-    """psi by Newton's method from the pressure angle, with differences for the slope; None without any."""
+    """Solve for the angle psi of the contact normal by Newton's method; None where there is no conjugate
+    contact.
+
+    It starts from the pressure angle, with difference quotients for the slope.
+    """
     psi, width = pair.pressure_angle, 1e-5
     for _ in range(STEPS):
         if not abs(psi) < 0.5 * pi - width:
@@ -272,7 +276,9 @@ def _condition(pair: PairNumbers, errors: AssemblyErrors, psi: float) -> float:
 
 
 def _turn(errors: AssemblyErrors, psi: float) -> float:
-    """The normal is square to the pinion's axis."""
+    """Return the rotation of the contact normal about the gear's axis, rad, by which it is square to the
+    pinion's axis.
+    """
     return asin(max(-1.0, min(1.0, tan(psi) * tan(errors.shaft_angle_error))))
 
 

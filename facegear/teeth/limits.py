@@ -137,7 +137,7 @@ def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float
 
 
 def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:
-    """The largest radius (m) with room left; room falls outwards."""
+    """Return the largest radius, m, at which a margin that falls outwards is still positive."""
     low, high = low * (1 + 1e-9), high * (1 - 1e-6)
     if high <= low or margin(design, low) <= 0:
         return low
@@ -252,7 +252,10 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
 
 
 def _root_near(function: Callable[[float], float], guess: float) -> float:
-    """The planar and the exact limit differ by some 0.03 %: a bracket that grows around the planar one."""
+    """Return the root of a function near a guess.
+
+    The guess is the planar limit, from which the exact one differs by some 0.03 %: a bracket grows around it.
+    """
     width = 1e-3
     while width < 1.0:
         low, high = max(guess - width, 1e-3), min(guess + width, pi / 2 - 1e-6)

@@ -149,7 +149,12 @@ def _rectangle(s0: float, s1: float, t0: float, t1: float) -> Array:
 
 
 def _row_quads(column: int, level: int, row: ElementRow, active: bool) -> list[Array]:
-    """Corners (4, 2) ordered (0,0), (1,0), (0,1), (1,1) in local (sigma, t)."""
+    """Return the corners of one row's quadrilaterals in a column of the section mesh.
+
+    They are (4, 2) arrays in local coordinates (sigma, t), ordered (0,0), (1,0), (0,1), (1,1) in each
+    quadrilateral. There are 3**level of them across the column; in an `active` column a row that coarsens
+    joins three to one.
+    """
     divisions = 3**level
     if not (row.coarsens and active):
         edges = column + np.arange(divisions + 1) / divisions

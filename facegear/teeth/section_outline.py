@@ -175,7 +175,7 @@ class Outline:
 
 
 def _has_same_sections(u: Array, v: Array) -> tuple[Array, Array]:
-    """Both arrays at the shape of their product."""
+    """Return both arrays at their common broadcast shape."""
     u, v = np.broadcast_arrays(u, v)
     return u, v
 

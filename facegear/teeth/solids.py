@@ -70,7 +70,9 @@ def solid(
 
 
 def _halves(design: PairDesign, body: Body, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
-    """The right half of a tooth, and the left half in a mirror, which the pair's right flank meets."""
+    """Return the right half of a tooth, and the mirrored left half, which the mirrored pair's right flank
+    touches.
+    """
     if body == "pinion":
         return _pinion_half(design, profile, width), _pinion_half(design.with_swapped_flanks, profile, width)
     return _gear_half(design.with_swapped_flanks, profile, width), _gear_half(design, profile, width)
@@ -156,7 +158,7 @@ def _sides(half: HalfTooth) -> list[Array]:
 
 
 def _cut(half: HalfTooth) -> Array:
-    """The plane through the middle of the space on the right, normal outwards."""
+    """Return the plane through the middle of the tooth space on the right, normal outwards."""
     cut = np.stack([half.surface[-1][-1], half.base[-1][-1]], axis=1)
     return cut[::-1] if half.normal_sign > 0 else cut
 

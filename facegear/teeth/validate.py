@@ -157,7 +157,9 @@ def _check_gear_modifications(design: PairDesign) -> None:
 def _check_crowning_at_end(
     crowning: Relief, half_width: float, max_relief: float, key: str, face: str
 ) -> None:
-    """The parabola of a crowning goes on beyond its length, up to the ends of the face."""
+    """Refuse a crowning whose parabola, which goes on beyond its length, is too deep at the ends of
+    the face.
+    """
     beyond = half_width - crowning.start
     if crowning.amount == 0 or beyond <= 0:
         return

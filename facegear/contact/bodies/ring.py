@@ -94,7 +94,7 @@ def _almost_apart(stiffness: Array) -> bool:
 
 
 def _ends(stiffness: Array) -> Array:
-    """Return the stiffness without the coupling between its ends."""
+    """Return the stiffness (2s, 2s) of a chain with the coupling between its two ends set to zero."""
     s = len(stiffness) // 2
     alone = np.zeros_like(stiffness)
     alone[:s, :s], alone[s:, s:] = stiffness[:s, :s], stiffness[s:, s:]
@@ -220,7 +220,7 @@ def plane_compliance(faces: Array, teeth: int) -> Array:
 
 
 def _seen_from_end(stiffness: Array, near: slice, far: slice, ends: Ends) -> Array:
-    """Stiffness (s, s) of a chain at its near end, the far one free or clamped."""
+    """Return the stiffness (s, s), N/m, of a chain at its near end, with the far end free or clamped."""
     if ends == "clamped":
         return stiffness[near, near]
     follow = solve_factored(cholesky(stiffness[far, far]), stiffness[far, near])

@@ -156,7 +156,9 @@ class PoseSurface:
 
     @property
     def arrays(self) -> dict[str, Array]:
-        """Arrays of the surface, as SURFACE_ARRAYS."""
+        """Surface as named arrays that `of_arrays` reads again, with the shapes of SURFACE_ARRAYS, in SI
+        units.
+        """
         errors = self.nominal
         return {
             "pair": self.pair.array,

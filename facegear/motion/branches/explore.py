@@ -202,9 +202,10 @@ def _is_same_motion(
 
 
 def _apart(z: Array, images: Sequence[Array], loose: tuple[Array, Array]) -> float:
-    """Largest difference of a state from the nearest image of another.
+    """Return the largest difference of a state from the nearest image of another state.
 
-    Shifts along neutral directions do not count; they are those of the orbit with more of them.
+    Shifts along neutral directions do not count; the neutral directions are those of the orbit that has more
+    of them.
     """
     neutral = max(loose, key=lambda shifts: shifts.shape[1])
     apart = np.array(images) - z

@@ -172,7 +172,9 @@ def _same_graze(first: Special, second: Special) -> bool:
 
 
 def _kink(specials: list[Special], low: float, high: float) -> float | None:
-    """Fraction of a graze in a stretch: multipliers bend sharply there, so each side is looked at alone."""
+    """Return the fraction of a graze inside a stretch: multipliers bend sharply there, so each side is
+    searched alone.
+    """
     margin = ASIDE * (high - low)
     inside = (special.after for special in specials if special.kind is Kind.GRAZE)
     return next((fraction for fraction in inside if low + margin < fraction < high - margin), None)
@@ -227,7 +229,7 @@ def _grazing(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> 
 
 
 def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
-    """Changes between two points, and whether more than one of a kind is among them."""
+    """Return the events between two points, and whether more than one of a kind is among them."""
     events, is_ambiguous = _grazing(period_map, first, second)
     plus_ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)

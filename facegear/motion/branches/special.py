@@ -208,7 +208,9 @@ def hidden_change(segment: Segment, low: float, high: float) -> float | None:
 
 
 def _widest_turn(distance: float) -> float:
-    """Angle over which a cubic errs by half the distance of the multipliers from the circle."""
+    """Return the angle, rad, over which a cubic errs by half the distance of the multipliers from the unit
+    circle.
+    """
     if distance < UNDAMPED:
         return WIDEST_TURN
     return float(np.clip((distance / (2.0 * CUBIC_ERROR)) ** 0.25, NARROWEST_TURN, WIDEST_TURN))
@@ -270,9 +272,10 @@ def _returning(surely: Integers, perhaps: Integers) -> int | None:
 
 
 def _approaching(values: ComplexArray, ends: list[float], looks: Array, error: float) -> int | None:
-    """Return the look at which multipliers come so near to the circle that they may pass it, or None.
+    """Return the index of the intermediate point at which multipliers may pass the unit circle, or None.
 
-    `ends` are their distances at both ends of the stretch.
+    `values`: multipliers at the intermediate points; `ends`: distances from the circle at both ends of the
+    stretch; `error`: error of the interpolated multipliers.
     """
     nearest = np.abs(np.abs(values) - 1.0).min(axis=1)
     before = ends[0] + looks * (ends[1] - ends[0])

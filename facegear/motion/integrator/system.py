@@ -163,8 +163,10 @@ def machine_system(machine: Machine, reduction: Reduction) -> System:
 
 @lru_cache(maxsize=8)
 def _kinds(machine: Machine) -> tuple[Array, Integers]:
-    """Different series of e(t) among contacts and rings, and the kind of each; shared, must not be
-    changed.
+    """Return the different series of e(t) among contacts and bearing rings, and the number of each one's
+    series.
+
+    The result is shared and must not be changed.
     """
     return different((*mesh_contacts(machine).error, *3 * machine.linear.rings.body.size * [NO_ERROR]))
 

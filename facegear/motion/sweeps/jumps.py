@@ -257,7 +257,7 @@ def _jump(
 
 
 def _preferred(before: Array, after: Array, images: Integers) -> Integers:
-    """Image (meshes,) of the motion after a jump that is reported.
+    """Return the image, a permutation of the meshes (meshes,), of the motion after a jump that is reported.
 
     Of the images that the symmetries of the motion before the jump allow, it is the one with the largest AC
     RMS in the first mesh in which they differ.

@@ -342,7 +342,7 @@ def _after_irregular(piece: Piece, position: int) -> bool:
 
 
 def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
-    """Columns that name a resonance."""
+    """Return the columns that name a resonance: its kind, order and mode."""
     return {
         "resonance": resonance.name,
         "resonance_rpm": resonance.predicted_rpm,

@@ -195,7 +195,7 @@ class Closure:
         return {node.module for node in nodes if self._modules[node.module]}
 
     def _beside_hash(self, package: str) -> bytes:
-        """Hash of the files that count with a package."""
+        """Return the hash of the files that count with a package, such as templates and kernel sources."""
         if package not in self._beside:
             folder, digest = self.root.joinpath(*package.split(".")), hashlib.sha256()
             for path in sorted(path for pattern in BESIDE for path in folder.glob(pattern)):

@@ -115,7 +115,7 @@ def parts_of(snakemake: Any) -> list[Part]:
 
 
 def _ending(end: str, paths: Paths) -> Paths:
-    """Paths whose names have an ending, under the names without it."""
+    """Return the paths whose names end in `end`, by the names without this ending."""
     return {name.removesuffix(end): path for name, path in paths.items() if name.endswith(end)}
 
 

@@ -115,7 +115,7 @@ class _Scope:
     for_checkers: set[str]
 
     def counted_uses(self, part: Part) -> tuple[str, ...]:
-        """Names that count among those of a part, sorted."""
+        """Return the names that a part uses and that count for its fingerprint, sorted."""
         local = {name for name, *_ in part.imports}
         counted_names = set()
         for use in part.uses:

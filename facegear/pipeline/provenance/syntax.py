@@ -279,7 +279,9 @@ class Walk:
         self._visit_list(node.orelse)
 
     def _visit_annotated(self, node: ast.AnnAssign) -> None:
-        """A field of a class counts with its annotation; other variables do not."""
+        """Record an annotated assignment; a field of a class counts with its annotation, other variables
+        without.
+        """
         self.part.code.append("AnnAssign")
         self.visit(node.target)
         if self.in_class:
@@ -288,7 +290,7 @@ class Walk:
             self.visit(node.value)
 
     def _visit_annotation(self, node: ast.expr) -> None:
-        """Names in strings may be those of types, or the values of a `Literal`."""
+        """Record the names in an annotation; strings in it may name types or be values of a `Literal`."""
         self.visit(node)
         for inner in ast.walk(node):
             if isinstance(inner, ast.Constant) and isinstance(inner.value, str):
@@ -312,7 +314,9 @@ class Walk:
         self.in_class = outer
 
     def _visit_function(self, node: Function) -> None:
-        """Names that the outermost function binds are its own everywhere in it, unless it says `global`."""
+        """Record a function; names that the outermost function binds are local everywhere in it, unless
+        declared `global`.
+        """
         self.part.code.append(f"{type(node).__name__} {node.name}")
         self.part.bound.add(node.name)
         self._visit_list(node.decorator_list)

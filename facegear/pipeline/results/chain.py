@@ -165,7 +165,7 @@ class Chain:
         return parts if source.each_wildcards else parts[0]
 
     def _of(self, case: str | None) -> "Chain":
-        """The chain of another case of the same config; its own without a name."""
+        """Return the chain of another case of the same config; this chain without a name."""
         chain = self.values["case"]
         if case is None or case == chain:
             return self

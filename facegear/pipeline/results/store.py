@@ -256,7 +256,7 @@ class Store:
         return self.outputs[key]
 
     def _key(self, name: str, part: tuple[str, ...], values: Values) -> str:
-        """Everything of the config that a part of a stage depends on, as text."""
+        """Return all values of the config on which a part of a stage depends, as text."""
         needs = [stage_needs(stage, values) for stage in stages_before(name, values)]
         return json.dumps([name, part, needs])
 

@@ -332,7 +332,9 @@ def flank_contacts(
 
 
 def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
-    """Factor of source fem_scaled on forces and slopes, equal to the factor of stage stiffness on k."""
+    """Return the factor by which source fem_scaled multiplies forces and slopes: the factor of stage
+    stiffness on k.
+    """
     if request.source != "fem_scaled":
         return 1.0
     assert request.mean is not None

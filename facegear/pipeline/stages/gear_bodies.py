@@ -136,7 +136,9 @@ def _parts(
     machine: Layout,
     speeds_rpm: tuple[float, float],
 ) -> dict[str, pd.DataFrame]:
-    """Tables of one gear at a pinion speed, and up to the last one."""
+    """Return the tables of one gear: modes at a pinion speed, and crossings with mesh harmonics up to the
+    last one.
+    """
     patch = contact_patch(section, tooth_pair)
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
     speed = speeds_rpm[0] / ratio / body_tables.RPM

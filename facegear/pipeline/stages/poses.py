@@ -285,7 +285,7 @@ def operating_pose(
 def _direct(
     design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed_contact: PosedContact
 ) -> dict[str, AnyArray]:
-    """Quantities of a surface, and REACTIONS of the touching loads."""
+    """Return the quantities of a pose surface, and the REACTIONS, from contact solved directly at a pose."""
     table = posed_contact.reactions[list(REACTION_COLUMNS[1:])].to_numpy()
     return {**quantities(design, flanks, posed_contact), **dict(zip(REACTIONS, table.T, strict=True))}
 

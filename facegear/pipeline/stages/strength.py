@@ -130,7 +130,9 @@ def _passing(body: Body, flank: GearFlank, loads: Arrays, variant: int, face_err
 
 
 def _face_errors(setup: ContactSetup, roots: Mapping[Body, RootStress]) -> dict[Body, float]:
-    """Relative errors of the planes along the face; nan where they are not known."""
+    """Return the relative error of root stress by the planes along the face, by body; nan where it is not
+    known.
+    """
     pair = setup.pair
     materials = {body: pair.material(body) for body in BODIES}
     try:

@@ -356,7 +356,7 @@ def _relative_change(
 
 
 def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
-    """Rows whose motion does not repeat, shape (rows,)."""
+    """Return for which rows (rows,) the motion does not repeat."""
     motions = [frame[column] for column in table.motion if column in frame.columns]
     rows = np.zeros(len(frame), dtype=bool)
     for motion in motions:
@@ -375,7 +375,9 @@ def _both_irregular(old: pd.Series, new: pd.Series, table: Table) -> np.ndarray:
 
 
 def _flagged(frame: pd.DataFrame, column: str) -> np.ndarray:
-    """Rows for which a column of yes and no says yes, shape (rows,); none where there is no such column."""
+    """Return for which rows (rows,) a column of truth values is true; for none where there is no
+    such column.
+    """
     if column not in frame.columns:
         return np.zeros(len(frame), dtype=bool)
     return frame[column].fillna(False).astype(bool).to_numpy()

@@ -148,7 +148,7 @@ def _keys(branches: pd.DataFrame) -> Iterator[Key]:
 
 
 def _by_size(periods: pd.Series) -> list[int]:
-    """Periods with a colour of their own first."""
+    """Return the periods in rising order, those with a colour of their own first."""
     return sorted(periods.unique(), key=lambda period: (period not in LABELLED_PERIODS, period))
 
 

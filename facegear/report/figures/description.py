@@ -344,7 +344,7 @@ def _limits(panels: Sequence[Panel], letter: Letter) -> tuple[float, float]:
 
 
 def _with_margin(values: Array, lows: Sequence[float], highs: Sequence[float]) -> tuple[float, float]:
-    """Ends that are given, and else room beside the values."""
+    """Return the ends of an axis: the given ones, or the extreme values with a margin."""
     low = min(lows) if lows else float(values.min(initial=np.inf))
     high = max(highs) if highs else float(values.max(initial=-np.inf))
     if not np.isfinite([low, high]).all() or high - low <= NO_RANGE * max(abs(low), abs(high)):

@@ -210,7 +210,7 @@ def _legend_height(keys: Sequence[Key], width: float) -> float:
 
 
 def _axes_of(mpl_figure: MplFigure, figure: Figure) -> list[Axes]:
-    """One axes a panel."""
+    """Return one matplotlib axes for each panel."""
     heights = [
         max(panel.height for panel in figure.panels[row * figure.columns : (row + 1) * figure.columns])
         for row in range(figure.rows)
@@ -249,7 +249,7 @@ def _draw_panel(on: Axes, panel: Panel) -> None:
 
 
 def _frame(on: Axes, figure: Figure, number: int, width: float) -> None:
-    """Labels, limits and ticks of a panel."""
+    """Set labels, limits and ticks of a panel."""
     panel = figure.panels[number]
     on.set_title(wrap_text(panel.title, width - 0.4))
     if panel.z:
@@ -306,7 +306,7 @@ def _frame_in_space(on: Any, panel: Panel) -> None:
 
 
 def _legend_above(on: Axes, keys: Sequence[Key], width: float) -> None:
-    """The legend of a panel above it, where it hides no curve and no offset of its numbers."""
+    """Draw the legend of a panel above it, where it hides no curve and no offset of its numbers."""
     if keys:
         columns = _columns(keys, width - 0.5)
         handles = [_handle(key) for key in keys]
@@ -334,7 +334,7 @@ def _handle(key: Key) -> Any:
 
 
 def _colour_bars(mpl_figure: MplFigure, figure: Figure, axes: Sequence[Axes]) -> None:
-    """Bars of colours: one above all panels that share a scale, else one beside each."""
+    """Draw colour bars: one above all panels that share a colour scale, else one beside each panel."""
     if scale := figure.shared_scale:
         mpl_figure.colorbar(_colours(scale), ax=list(axes), location="top", aspect=40, label=scale.label)
         return

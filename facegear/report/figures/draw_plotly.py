@@ -181,7 +181,7 @@ def _list_once(data: Sequence[Part]) -> None:
 
 
 def _title(target: PlotlyAxes) -> Part:
-    """The title above a panel."""
+    """Return plotly's annotation for the title above a panel."""
     return {
         "xref": f"{target.x} domain",
         "yref": f"{target.y} domain",

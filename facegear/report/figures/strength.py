@@ -174,7 +174,7 @@ def damage_by_bin(rating: pd.DataFrame, damage: pd.DataFrame) -> Figure:
 
 
 def _nearest(rating: pd.DataFrame) -> pd.DataFrame:
-    """The flank of all pinions, and of all face gears, that is nearest to each limit."""
+    """Return for pinions and face gears the flank that is nearest to each limit."""
     spare = rating["safety"] / rating["required"]
     return rating.loc[
         spare.groupby([rating["gear"], rating["failure"], rating["method"]], sort=False).idxmin()
@@ -182,7 +182,7 @@ def _nearest(rating: pd.DataFrame) -> pd.DataFrame:
 
 
 def _of(table: pd.DataFrame, row: Any) -> pd.DataFrame:
-    """Rows about the same body, flank, failure and method."""
+    """Return the rows of a table on the same body, flank, failure and method as another row."""
     keys = ("body", "flank", "failure", "method")
     return table[np.logical_and.reduce([table[key] == getattr(row, key) for key in keys])]
 
