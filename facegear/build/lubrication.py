@@ -80,7 +80,7 @@ def contacts_of(ltca: pd.DataFrame, pressure: Arrays, section: ToothPair) -> tup
 
 
 def lubrication_of(section: LubricationSection, teeth: ToothPair) -> Lubrication:
-    """Return how the flanks of the pair are lubricated.
+    """Build the lubrication of the pair's flanks (oil, roughness, friction, bulk temperature) in SI units.
 
     Parameters
     ----------

@@ -267,7 +267,7 @@ class MachineInputs:
         )
 
     def at_torque(self, torque_n_m: float) -> Self:
-        """Return the inputs with another torque.
+        """Return inputs of the machine whose inputs carry another torque.
 
         Parameters
         ----------
@@ -282,7 +282,7 @@ class MachineInputs:
         return replace(self, transmission=at_mesh_torque(self.transmission, torque_n_m))
 
     def build(self) -> Machine:
-        """Build the machine.
+        """Build the lumped machine from the config, the mesh stiffness and everything else that was computed.
 
         Returns
         -------

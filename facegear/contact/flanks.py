@@ -58,7 +58,7 @@ class PinionSurface:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Refined lattice."""
+        """Number of nodes along profile and face of the refined lattice."""
         return self.lattice.shape
 
     def exact(self, at: Array) -> SurfacePoints:
@@ -130,7 +130,7 @@ class PinionSurface:
 
     @property
     def width(self) -> float:
-        """Along the tooth, m."""
+        """Coordinate of the lattice's columns along the tooth, m."""
         return float(np.ptp(self.side.v[0]))
 
     @cached_property

@@ -36,7 +36,7 @@ class Lattice:
 
     @property
     def factors(self) -> Integers:
-        """Refined nodes a coarse one, both ways."""
+        """Number of refined cells in a coarse one, along profile and face."""
         return np.array([self.refinement.profile, self.refinement.width])
 
     @property

@@ -173,7 +173,7 @@ class LoadedContact:
         return point_weights
 
     def at_hats(self, values: Array) -> Array:
-        """Return values of points at every hat.
+        """Average values of contact points over each basis function (hat), weighted by load.
 
         Parameters
         ----------
@@ -191,7 +191,7 @@ class LoadedContact:
 
 
 def loaded_contacts(contact_places: ContactPoints, hats: HatSlip) -> tuple[LoadedContact, ...]:
-    """Separate points and hats by torque.
+    """Separate contact points and basis functions by torque.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ Loads = TypeVar("Loads", ContactPoints, HatSlip)
 
 
 def select(loads: Loads, on: Mask | Integers | slice) -> Loads:
-    """Select some of the points or hats.
+    """Select some of the contact points or basis functions.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def select(loads: Loads, on: Mask | Integers | slice) -> Loads:
 
 
 def concatenate(parts: Sequence[Loads]) -> Loads:
-    """Concatenate points or hats.
+    """Join contact points, or basis functions, of several contacts.
 
     Parameters
     ----------

@@ -89,7 +89,7 @@ class Constant:
     by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
-        """Return the constant.
+        """Return the constant friction coefficient at every point.
 
         Parameters
         ----------
@@ -104,7 +104,7 @@ class Constant:
         return np.full_like(at.line_load, self.value)
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Return no limits.
+        """Return that the constant coefficient has no limits of use.
 
         Parameters
         ----------

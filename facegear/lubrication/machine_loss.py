@@ -42,7 +42,7 @@ class LossCurves:
     heat_fraction: Array
 
     def at(self, torque: Array, *names: str) -> Array:
-        """Interpolate quantities at the torque of each mesh.
+        """Interpolate quantities of each mesh at its torque.
 
         Parameters
         ----------
@@ -86,7 +86,7 @@ class Pair(Protocol):
     def torques(self) -> Array: ...
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the loss of meshes.
+        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -102,7 +102,7 @@ class Pair(Protocol):
         """
 
     def curves(self, speed: float, bulk: Array) -> MeshCurves:
-        """Compute loss, temperature and film of meshes.
+        """Compute loss, temperature and film of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------
@@ -164,7 +164,7 @@ class LoadedPair:
         return [running_at(contact, speed, self.lubrication, bulk) for contact in self.contacts]
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
-        """Compute the loss of meshes.
+        """Compute the friction loss of meshes at every torque, at given bulk temperatures.
 
         Parameters
         ----------

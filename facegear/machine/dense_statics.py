@@ -44,7 +44,7 @@ class Contacts:
     upper: Array
 
     def beyond(self, deflections: Array) -> Array:
-        """Return how far deflections lie beyond the edges.
+        """Return how far deflections of contacts lie beyond the backlash edges, 0 between the edges.
 
         Parameters
         ----------
@@ -250,7 +250,8 @@ class Line:
         return np.concatenate([[0.0], inside, [FARTHEST]])
 
     def minimum(self) -> float:
-        """Return the zero of the slope, which only grows.
+        """Return the step along the line at which the energy is least: the zero of its slope, which only
+        grows.
 
         Returns
         -------

@@ -73,7 +73,7 @@ class DriveLine:
 
     @property
     def tilting(self) -> tuple[int, ...]:
-        """The pinions that tilt."""
+        """Indices of the pinions that tilt."""
         return tuple(i for i, seat in sorted(self.seats.items()) if seat.tilt_inertia is not None)
 
     @property
@@ -126,7 +126,7 @@ class DriveLine:
             first += len(chain)
 
     def torque_coordinates(self) -> Integers:
-        """Return where the torque of every body acts.
+        """Return the coordinate on which the torque of every body acts.
 
         Returns
         -------
@@ -258,7 +258,7 @@ class DriveLine:
         return DriveLine(layout, seats, self.masses)
 
     def static_from_layout(self, model: LinearModel) -> bool:
-        """Whether `extend_displacements` holds.
+        """Whether the static displacement follows from that of the bodies by `extend_displacements`.
 
         Parameters
         ----------

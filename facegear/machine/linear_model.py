@@ -103,7 +103,7 @@ class LinearModel:
 
     @property
     def loads(self) -> Array:
-        """Torques and forces (n,)."""
+        """Constant generalised loads (n,): torques, N m, and forces, N."""
         return self.torques + self.forces
 
     @property
@@ -131,7 +131,7 @@ class LinearModel:
         return self.translations[self.rings.body, :2]
 
     def momentum(self, velocities: AnyArray) -> AnyArray:
-        """Return M times vectors.
+        """Multiply vectors by the mass matrix M.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class LinearModel:
         return slopes
 
     def of_body(self, name: str) -> Integers:
-        """Return which coordinates belong to a body.
+        """Return the indices of the coordinates that belong to a body.
 
         Parameters
         ----------

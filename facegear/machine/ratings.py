@@ -47,7 +47,7 @@ class Ratings:
 
 
 def compute_ratings(machine: Machine, speed_rpm: float) -> Ratings:
-    """Return the ratings at a pinion speed.
+    """Compute speeds, torques, powers and frequencies of the machine at a pinion speed.
 
     Parameters
     ----------

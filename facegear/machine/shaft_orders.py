@@ -58,7 +58,7 @@ class TurnOrders:
     error: ComplexArray
 
     def select(self, rows: Sequence[int]) -> "TurnOrders":
-        """Return some of the orders.
+        """Return the orders in some rows.
 
         Parameters
         ----------
@@ -207,7 +207,7 @@ class LoadedMachine:
         return np.asarray(np.linalg.solve(self._dynamic(speed, omega), torque))
 
     def flank_forces(self, motion: ComplexArray) -> ComplexArray:
-        """Elastic forces of the flanks that carry.
+        """Return the complex amplitudes of the elastic forces of the flanks that carry load.
 
         Parameters
         ----------

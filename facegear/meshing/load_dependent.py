@@ -101,7 +101,7 @@ class LoadDependentLaw:
 
     @property
     def breaks(self) -> Array:
-        """None: Fourier series are smooth in the phase."""
+        """Phases at which the law is not smooth: none, as Fourier series are smooth."""
         return np.zeros(0)
 
     @cached_property
@@ -111,12 +111,12 @@ class LoadDependentLaw:
 
     @property
     def straight(self) -> bool:
-        """The force is a cubic between two levels."""
+        """Whether the force is linear in the deflection beyond the edge: it is cubic between levels."""
         return False
 
     @cached_property
     def steepest(self) -> Array:
-        """Bounds of the slopes, (M,)."""
+        """Upper bound (M,) of the slope of each contact's force over phase and deflection, N/m."""
         return self._steepest[self.kind]
 
     @cached_property
@@ -257,7 +257,7 @@ class LoadDependentLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Its numbers as the integrator takes them."""
+        """Numbers of the law as the integrator's kernels take them."""
         kind = np.ascontiguousarray(self.kind, np.int64)
         return {"table": _columns(self), "levels": self._levels, "kind": kind}
 

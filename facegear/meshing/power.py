@@ -49,22 +49,22 @@ class PowerLaw:
 
     @property
     def breaks(self) -> Array:
-        """None: the law is smooth in the phase."""
+        """Phases at which the law is not smooth: none."""
         return np.zeros(0)
 
     @property
     def straight(self) -> bool:
-        """The force is a power of the amount."""
+        """Whether the force is linear in the deflection beyond the edge: it is a power."""
         return False
 
     @property
     def levels(self) -> Array:
-        """The edge, and where the power begins, (2, M)."""
+        """Deflections (2, M) at which the law's pieces begin: the edge, and where the power begins, m."""
         return np.repeat([[0.0], [self.level]], self.contacts, axis=1)
 
     @property
     def steepest(self) -> Array:
-        """Slope at the largest amount and factor, (M,)."""
+        """Slope (M,) at the largest deflection and phase factor, N/m."""
         return np.full(self.contacts, (1.0 + self.depth) * self._slope(np.array(self.largest)))
 
     @property
@@ -148,7 +148,7 @@ class PowerLaw:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """Its numbers as the integrator takes them."""
+        """Numbers of the law as the integrator's kernels take them."""
         return {
             "factor": np.array([[[0.0, 0.0], [1.0, self.depth]]]),
             "size": self.size,

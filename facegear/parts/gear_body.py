@@ -186,7 +186,7 @@ class SolvedBody:
     changes: tuple[Array, ...]
 
     def static(self, patch: Patch) -> Array:
-        """Return the compliances H_n with the hub held.
+        """Return the static compliances H_n at a mesh by circumferential order, with the hub held.
 
         Parameters
         ----------
@@ -216,7 +216,7 @@ class SolvedBody:
         return np.stack([patch.leaning(order, below[0]) for order, below in enumerate(self.slopes)])
 
     def modal(self, patch: Patch) -> Array:
-        """Return the part of `static` that the modes hold.
+        """Return the part of the static compliances that the computed modes hold.
 
         Parameters
         ----------

@@ -56,7 +56,7 @@ class Layer:
 
     @property
     def depth(self) -> float:
-        """Distance (m) of its faces."""
+        """Distance of the layer's two faces, m."""
         return self.front - self.back
 
     @property
@@ -121,7 +121,7 @@ def rectangle(inner: float, outer: float, back: float, front: float) -> Array:
 
 
 def distinct(corners: Array) -> Array:
-    """Remove the corners that repeat the one before.
+    """Remove each corner that repeats the corner before it.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ TILTS = ("tilt", "hub_tilt", "body")
 
 
 def always(case: Case) -> bool:
-    """Always.
+    """Return True: the condition of a stage that every case needs.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def contact(case: Case) -> bool:
 
 
 def computed_stiffness(case: Case) -> bool:
-    """Whether k(t) follows from the contact.
+    """Whether the mesh stiffness k(t) is computed from contact, not given by the config.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def modes_from_contact(case: Case) -> bool:
 
 
 def root_stress(case: Case) -> bool:
-    """Whether `contact.root_stress` asks for it.
+    """Whether the config asks for root stress by `contact.root_stress`.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ def _with_own(case: Case, stage: str, has: Callable[[Case], bool]) -> Points:
 
 
 def contact_cases(case: Case) -> list[Wildcards]:
-    """Return the cases of `contact_points`.
+    """Return the case itself and the studied cases that have a contact analysis of their own.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def contact_cases(case: Case) -> list[Wildcards]:
 
 
 def friction_cases(case: Case) -> list[Wildcards]:
-    """Return the cases of `friction_points`.
+    """Return the case itself and the studied cases whose mesh losses differ from its own.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def friction_studied(case: Case) -> bool:
 
 
 def contact_studied(case: Case) -> bool:
-    """Whether a study changes the contact.
+    """Whether a study changes the contact of the pair.
 
     Parameters
     ----------

@@ -184,7 +184,7 @@ def lead(values: Mapping[str, Any], manifests: Sequence[Mapping[str, Any]]) -> s
 
 
 def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
-    """Tabulate the modes by frequency.
+    """Tabulate the modes with a row for each frequency.
 
     Parameters
     ----------

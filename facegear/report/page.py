@@ -141,7 +141,7 @@ class View:
     kind: Literal["pair", "body"] = "pair"
 
     def compressed_data(self) -> str:
-        """Return the data as the page carries them.
+        """Return the data as compressed text, which the page's script unpacks.
 
         Returns
         -------

@@ -138,5 +138,7 @@ class Strength(Section):
 
     @property
     def factor(self) -> float:
-        """K_A K_v K_gamma, those of the machine left out."""
+        """Product K_A K_v K_gamma of the load factors that the config gives; factors of the machine are left
+        out.
+        """
         return self.application_factor * self.dynamic_factor * self.mesh_load_factor

@@ -61,7 +61,7 @@ class ObjectiveSection(Section):
 
     @property
     def large(self) -> bool:
-        """Whether it is to be large."""
+        """Whether the objective is to be large, not small."""
         return bool(self.smallest_of)
 
     @property
@@ -88,7 +88,7 @@ class ConstraintSection(ObjectiveSection):
 
     @property
     def limit(self) -> float:
-        """The one that is given."""
+        """Limit of the constraint, in the unit of its quantity: `at_least` or `at_most`."""
         bound = self.at_least if self.large else self.at_most
         assert bound is not None
         return bound

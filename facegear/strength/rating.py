@@ -100,7 +100,7 @@ class FailureRating:
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """Loads whose stress the method does not know."""
+        """Remarks on loads whose stress the rating method does not know."""
         caveats = []
         if self.failure == "pitting" and self.edge_load >= EDGE:
             caveats.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")

@@ -40,7 +40,7 @@ class SearchedMachine(VariedMachine):
 
     @property
     def values(self) -> dict[str, Any]:
-        """Plain values that may be free."""
+        """Plain values of the config that variables may change."""
         return variable_part(self.transmission, self.tooth_pair, self.speed_rpm)
 
 

@@ -37,7 +37,7 @@ class LubricatedTeeth:
     few: FewPlaces
 
     def pair(self, lubrication: LubricationSection, every_place: bool) -> Pair:
-        """Return the pair with a lubrication.
+        """Return the lubricated pair with its contact at every torque.
 
         Parameters
         ----------

@@ -24,7 +24,7 @@ class FlankGaps:
 
     @classmethod
     def of_pairs(cls, design: PairDesign, phi1: Array, phi2: Array, tooth: Array) -> Self:
-        """Return the pairs at given angles.
+        """Return the gaps of pairs of teeth at given angles of both gears.
 
         Parameters
         ----------
@@ -45,7 +45,7 @@ class FlankGaps:
         return cls(design, GearSide.of_design(design), to_left_flank(design, phi1, phi2, tooth))
 
     def only(self, rows: AnyArray) -> Self:
-        """Return some of the pairs.
+        """Return the gaps of some of the pairs.
 
         Parameters
         ----------

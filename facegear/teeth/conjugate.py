@@ -92,7 +92,7 @@ class PairNumbers:
 
     @property
     def array(self) -> Array:
-        """All of them, (11,)."""
+        """All numbers of the pair as one array (11,), as it is stored."""
         return np.array(astuple(self))
 
 

@@ -41,7 +41,7 @@ class Blank(NamedTuple):
 
 
 def blank(design: PairDesign) -> Blank:
-    """Return the numbers of a design's face gear.
+    """Return the numbers of a design's face gear that limit its flank: radii, planes and edges.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ NO_PART, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 def cut(
     blank: Blank, sample: FlankSample, starts: Array, ways: Array, search_radius: float
 ) -> tuple[list[AnyArray], int]:
-    """Cut rays with the gear by Newton's method.
+    """Find where rays meet the face gear by Newton's method.
 
     Parameters
     ----------

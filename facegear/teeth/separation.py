@@ -188,7 +188,7 @@ class GearSide:
         return cls(design, *gear_rays(design), as_generated(design))
 
     def cut(self, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
-        """Cut rays in the frame of the gear's flank.
+        """Find where rays, in the frame of the gear's flank, meet the gear.
 
         Parameters
         ----------

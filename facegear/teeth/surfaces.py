@@ -30,7 +30,7 @@ class SurfacePoints:
         return SurfacePoints(self.position.reshape(-1, 3), self.normal.reshape(-1, 3))
 
     def only(self, index: Integers | slice) -> "SurfacePoints":
-        """Return the points at `index`.
+        """Return the points, with normals, at some indices.
 
         Parameters
         ----------

@@ -229,7 +229,7 @@ class DisplacedFlank:
 
     @property
     def closure(self) -> float:
-        """The part of `approach` beyond the first order."""
+        """Approach of the flanks beyond its linear part in the displacements, m."""
         return self.approach - self.deflection
 
 

@@ -130,7 +130,7 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
 
 
 def gear_reactions(result: OperatingPose, surface: PoseSurface) -> Array:
-    """Return the REACTIONS of every mesh.
+    """Return the reactions of every mesh on its gear, as REACTIONS names them.
 
     Parameters
     ----------

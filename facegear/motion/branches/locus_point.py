@@ -143,7 +143,7 @@ class LocusPoint:
 
     @property
     def values(self) -> tuple[float, float]:
-        """Both parameters."""
+        """Both parameters at the point, in their units."""
         return float(np.exp(self.x[-2])), float(np.exp(self.x[-1]))
 
 

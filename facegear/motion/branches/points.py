@@ -60,17 +60,17 @@ class BranchPoint:
 
     @property
     def z(self) -> Array:
-        """Weighted state (2 n,)."""
+        """State (2 n,) at the start of the period, over the length scale."""
         return self.x[:-1]
 
     @property
     def u(self) -> float:
-        """Logarithm of the parameter."""
+        """Natural logarithm of the parameter at the point."""
         return float(self.x[-1])
 
     @property
     def value(self) -> float:
-        """The parameter."""
+        """Parameter at the point, in its unit."""
         return float(np.exp(self.x[-1]))
 
     @cached_property

@@ -124,7 +124,7 @@ class Averages:
         )
 
     def views(self, views: Array, periodic: bool) -> tuple[Array, Array, Array]:
-        """RMS of linear combinations of the coordinates.
+        """Compute the RMS of linear combinations of the coordinates.
 
         Parameters
         ----------

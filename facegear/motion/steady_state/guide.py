@@ -62,11 +62,11 @@ class Guide:
 
     @cached_property
     def chord(self) -> Array:
-        """The matrix (2 n, 2 n) of step()."""
+        """Inverse matrix (2 n, 2 n) of Newton's step, kept from the guide's orbit (chord method)."""
         return np.asarray(((self.orbit.vectors / (1.0 - self.orbit.multipliers)) @ self.inverse).real)
 
     def step(self, change: Array) -> Array:
-        """Newton's step for a change over the period.
+        """Return Newton's step for a change over the period, with the matrix of the guide's orbit.
 
         Parameters
         ----------

@@ -138,7 +138,7 @@ class Piece:
         return Piece(**{name: getattr(self, name)[speeds] for name in self.__dataclass_fields__})
 
     def tail(self, start: int) -> "Piece":
-        """Return the results from a position on.
+        """Return the results from one speed of the piece on.
 
         Parameters
         ----------

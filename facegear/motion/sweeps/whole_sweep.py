@@ -55,7 +55,7 @@ SHAPES = {f"{part}_{name}": shape for part in ("before", "own") for name, shape 
 
 
 def to_arrays(before: Piece, own_piece: Piece) -> dict[str, AnyArray]:
-    """Return a chunk as arrays.
+    """Return a chunk of a sweep as arrays that a file can hold.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def to_arrays(before: Piece, own_piece: Piece) -> dict[str, AnyArray]:
 
 
 def from_arrays(arrays: Arrays) -> tuple[Piece, Piece]:
-    """Return the chunk that to_arrays() has stored.
+    """Read a chunk of a sweep from the arrays of to_arrays().
 
     Parameters
     ----------

@@ -103,7 +103,7 @@ class Closure:
         return [Node("whole", str(path))]
 
     def search(self, nodes: Iterable[Node]) -> set[Node]:
-        """Find all that some nodes reach, with themselves.
+        """Find all definitions that some nodes reach through the names they use, these nodes included.
 
         Parameters
         ----------
@@ -129,7 +129,7 @@ class Closure:
         return closure_nodes
 
     def digest(self, nodes: Iterable[Node]) -> str:
-        """Compute the hash of what counts.
+        """Compute the hash of the code of all nodes that some nodes reach.
 
         Parameters
         ----------
@@ -160,7 +160,7 @@ class Closure:
         return digest.hexdigest()[:16]
 
     def names(self, nodes: Iterable[Node]) -> set[str]:
-        """Name the statements among some nodes.
+        """Name what the statements among some nodes bind.
 
         Parameters
         ----------

@@ -59,7 +59,7 @@ def remember(file: Path) -> None:
 
 
 def source_of(path: Path, module: str) -> Source:
-    """Return what counts of a file.
+    """Read statements and imports of a file, without what does not affect its code.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ class Source:
 
 
 def read_source(text: bytes, module: str, is_package: bool) -> Source:
-    """Read what counts of a module.
+    """Read statements and imports of a module, without what does not affect its code.
 
     Parameters
     ----------

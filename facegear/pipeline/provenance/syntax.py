@@ -147,7 +147,8 @@ class Walk:
         self.in_class = False
 
     def collect(self, statement: ast.stmt) -> Part:
-        """Return code and names of a statement.
+        """Return the code of a statement without docstrings and comments, and the names that it binds and
+        uses.
 
         Parameters
         ----------
@@ -181,7 +182,7 @@ class Walk:
         return part
 
     def visit(self, node: ast.AST) -> None:
-        """Note a node and all in it.
+        """Record a syntax node and all nodes inside it.
 
         Parameters
         ----------

@@ -72,7 +72,7 @@ def contact(
 
 
 def contents(analysis: ContactAnalysis) -> dict[str, Any]:
-    """Return the parts of stage contact.
+    """Return the tables and arrays that stage contact stores.
 
     Parameters
     ----------

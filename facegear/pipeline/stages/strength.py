@@ -92,7 +92,7 @@ def root_stress(
 def root_contents(
     flanks: Mapping[Body, GearFlank], loads: Arrays, face_errors: Mapping[Body, float]
 ) -> dict[str, Any]:
-    """Return the parts of the stage.
+    """Return the tables and arrays that stage root_stress stores.
 
     Parameters
     ----------
