@@ -38,7 +38,7 @@ class FacingPoints(NamedTuple):
     area: Array
 
     def part(self, rows: slice) -> "FacingPoints":
-        """Return the points of a range or mask of rows.
+        """Return the points in a range of rows.
 
         Parameters
         ----------

@@ -130,7 +130,7 @@ class PinionSurface:
 
     @property
     def width(self) -> float:
-        """Coordinate of the lattice's columns along the tooth, m."""
+        """Width of the flank along the tooth, m."""
         return float(np.ptp(self.side.v[0]))
 
     @cached_property

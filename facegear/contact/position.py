@@ -40,13 +40,19 @@ class PairAtPosition(Protocol):
     """
 
     @property
-    def position(self) -> float: ...
+    def position(self) -> float:
+        """Position in the pitch, in pitches."""
+        ...
 
     @property
-    def unloaded_error(self) -> float: ...
+    def unloaded_error(self) -> float:
+        """Transmission error without load at this position, m."""
+        ...
 
     @property
-    def base_radius(self) -> float: ...
+    def base_radius(self) -> float:
+        """Base radius of the pinion, m."""
+        ...
 
     def contact(self, torques: Array, limit: float) -> PositionContact:
         """Solve for the contact of what a rotation of the pinion would close.

@@ -45,7 +45,9 @@ class FrictionModel(Protocol):
     """Coefficient of friction at every point, and where it was measured."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the model in the config."""
+        ...
 
     @property
     def by_film(self) -> bool:

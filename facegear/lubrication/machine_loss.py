@@ -80,10 +80,14 @@ class Pair(Protocol):
     """Tooth pair whose contact is known at some torques, and how it is lubricated."""
 
     @property
-    def lubrication(self) -> Lubrication: ...
+    def lubrication(self) -> Lubrication:
+        """Oil, roughness, friction and bulk temperature of the flanks."""
+        ...
 
     @property
-    def torques(self) -> Array: ...
+    def torques(self) -> Array:
+        """Torques at which the contact is solved, N m."""
+        ...
 
     def losses(self, speed: float, bulk: Array) -> LossCurves:
         """Compute the friction loss of meshes at every torque, at given bulk temperatures.

@@ -94,7 +94,7 @@ class Tally(NamedTuple):
 
 
 def tally(flank_forces: Array, per_cycle: int, groups: tuple[LoadGroup, ...]) -> Tally:
-    """Count largest and mean loads of the flanks, and how long flanks are open or reversed, over a motion.
+    """Compute largest and mean loads of the flanks, and how long flanks are open or reversed, over a motion.
 
     Parameters
     ----------

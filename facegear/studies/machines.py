@@ -127,7 +127,7 @@ class VariedMachine:
 
     @cached_property
     def meshes(self) -> Meshes:
-        """Mesh stiffness and errors of each varied tooth pair."""
+        """Source of mesh stiffness and errors for each varied tooth pair."""
         return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law)
 
     @cached_property

@@ -64,7 +64,7 @@ class FeTooth:
         return 2 * pi / self.teeth
 
     def rotated(self, points: Array, angle: float) -> Array:
-        """Rotate points or vectors about the body's axis by a number of pitches.
+        """Rotate points or vectors about the body's axis by an angle.
 
         Parameters
         ----------

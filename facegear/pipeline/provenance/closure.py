@@ -129,7 +129,7 @@ class Closure:
         return closure_nodes
 
     def digest(self, nodes: Iterable[Node]) -> str:
-        """Compute the hash of the code of all nodes that some nodes reach.
+        """Compute the hash of the code of all nodes.
 
         Parameters
         ----------

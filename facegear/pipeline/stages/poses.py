@@ -158,7 +158,7 @@ def _stiffness(design: PairDesign, posed_contact: PosedContact) -> Array:
 
 
 def node_table(nodes: Nodes, values: Mapping[str, Array], offsets: list[float]) -> pd.DataFrame:
-    """Tabulate the poses at which contact is solved for the pose surface.
+    """Tabulate the quantities at all poses and torques at which contact is solved for the pose surface.
 
     Parameters
     ----------

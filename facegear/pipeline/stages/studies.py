@@ -43,7 +43,7 @@ def tolerances_chunk(
 ) -> Outcome:
     """Compute samples `first` to `last` of a machine with its tolerances.
 
-    A sample that cannot be built or computed is a row with its error. The columns MISSED hold, for the first
+    A sample that cannot be built or computed is a row with its error. The columns CYCLE_SELECTION_ERRORS hold, for the first
     CHECKED_SAMPLES samples, the errors of the mesh cycles left out; SIMPLIFICATION_ERRORS hold the errors of
     computing friction at few contact points. They are empty in other rows.
 
