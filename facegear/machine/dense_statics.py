@@ -132,7 +132,7 @@ class _Rings:
     clearance: Array
 
     def push(self, q: Array) -> Array:
-        """Forces (..., n) of the bearings at displacements (..., n)."""
+        """Return the forces (..., n) of the bearings with clearance at displacements (..., n)."""
         forces = np.zeros_like(q)
         displacements = q[..., self.coordinates]
         distance = np.maximum(np.hypot(displacements[..., 0], displacements[..., 1]), self.clearance)
@@ -174,7 +174,9 @@ class _Springs:
         return balance + self.rings.push(q) if self.rings.clearance.size else balance
 
     def curvature(self, q: Array, slope: Array) -> Array:
-        """Second derivatives of the energy at q with these slopes of the contacts' forces."""
+        """Return the second derivatives of the energy at displacements q, with given slopes of the contacts'
+        forces.
+        """
         curvature = self.bearing + (self.jacobian.T * slope) @ self.jacobian
         if self.rings.clearance.size:
             self.rings.add_tangents(q, curvature)
@@ -296,11 +298,11 @@ class Line:
 
 
 def _minimise(springs: _Springs) -> Array:
-    """Proximal point method (Rockafellar 1976): each round ties the body to its last position by a spring
-    softer than before.
+    """Minimise the energy by the proximal point method (Rockafellar 1976).
 
-    The springs make every round strictly convex, so that bodies free inside their backlash have a position
-    too; the force in the springs goes to zero as the rounds settle.
+    Each round ties the body to its last position by a spring softer than before. The springs make every round
+    strictly convex, so that bodies free inside their backlash have a position too; the force in the springs
+    goes to zero as the rounds settle.
     """
     size = np.abs(springs.loads).max()
     stiffest = max(springs.contacts.law.steepest.max(), springs.bearing.max())
@@ -331,7 +333,7 @@ def _pushed_on(springs: _Springs, tie: float, last: Array, displacement: Array) 
 
 
 def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
-    """Newton's method with an exact line search on the piecewise quadratic energy of one round.
+    """Minimise the piecewise quadratic energy of one round by Newton's method with an exact line search.
 
     A whole step between places where the same contacts are pressed ends at the minimum of their quadratic: no
     line is searched there.

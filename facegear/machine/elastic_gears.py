@@ -199,7 +199,7 @@ def _hub_tilts(layout: Layout, gear: int, body: ReducedBody, size: int) -> tuple
 
 
 def _centre(layout: Layout, gear: int, body: ReducedBody) -> float:
-    """Height (m) in the section of the point about which a hub tilts."""
+    """Return the height (m), in the section, of the point about which a hub tilts."""
     tilt = layout.gears[gear].body.tilt
     return float(body.pitch_height) - (0.0 if tilt is None else tilt.below)
 

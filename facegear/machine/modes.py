@@ -87,8 +87,8 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
 
 
 def _stable(omega_squared: Array, speed: float) -> Array:
-    """Ascending squared frequencies with those that are rounding as zero. Raises NotConverged if one is
-    negative.
+    """Return ascending squared frequencies with rounding set to zero; raise NotConverged if one
+    is negative.
     """
     noise = omega_squared.size * np.finfo(float).eps * omega_squared[-1]
     omega_squared = np.where(np.abs(omega_squared) < 10.0 * noise, 0.0, omega_squared)
@@ -101,7 +101,7 @@ def _stable(omega_squared: Array, speed: float) -> Array:
 
 
 def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
-    """Modes of turning bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
+    """Compute the modes of rotating bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
 
     With u = K^(1/2) x and v = x' this is (u, v)' = S (u, v), S = [[0, K^(1/2)], [-K^(1/2), -G]], which is
     skew-symmetric: all motions are harmonic, with complex shapes (Meirovitch 1974).

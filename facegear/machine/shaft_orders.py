@@ -222,7 +222,7 @@ class LoadedMachine:
         return np.asarray(self.springs @ (self.linear.rows @ motion))
 
     def _dynamic(self, speed: float, omega: float) -> ComplexArray:
-        """Dynamic stiffness (n, n) at a speed of the pinions and a frequency, both in rad/s."""
+        """Return the dynamic stiffness (n, n) at a pinion speed and a frequency, both in rad/s."""
         linear, rows = self.linear, self.linear.rows
         stiffness = linear.stiffness + rows.T @ self.springs @ rows
         damping = linear.damping + (self.dampers * rows.T) @ rows

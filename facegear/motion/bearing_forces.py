@@ -115,8 +115,10 @@ def _bearing_maps(machine: Machine, reduction: Reduction) -> _BearingMaps:
 
 
 def _force_matrices(linear: LinearModel, reduction: Reduction, coordinates: Integers) -> tuple[Array, Array]:
-    """Matrices (n, coordinates) that map reduced displacement and velocity to the force or moment on springs
-    and dampers along some coordinates.
+    """Return matrices (n, coordinates) from reduced displacement and velocity to forces on springs and
+    dampers.
+
+    The forces and moments act along the given coordinates.
     """
     basis = reduction.basis
     springs = basis.T @ linear.stiffness[:, coordinates]

@@ -149,7 +149,9 @@ def slow_polynomials(model: Model, cycles: Integers) -> Array:
 def _run(
     model: Model, integrator: Integrator, state: Array, cycles: Integers, positions: int
 ) -> tuple[Array, Array]:
-    """Samples (cycles * positions, n) of the coordinates from a state (2, n), and the state at the end."""
+    """Integrate mesh cycles from a state (2, n); return samples (cycles * positions, n) and the
+    last state.
+    """
     samples = np.zeros((cycles.size, positions, integrator.size))
     for cycle_samples, drift in zip(samples, slow_polynomials(model, cycles), strict=True):
         result = integrator.run(state, 1, samples=positions, drift=drift)

@@ -364,7 +364,7 @@ def reduced_body(
 
 
 def _blocks(matrices: list[Array]) -> Array:
-    """Matrices along the diagonal; those without entries take no room."""
+    """Arrange matrices along the diagonal of one matrix; matrices without entries take no place."""
     size = sum(len(matrix) for matrix in matrices)
     return np.asarray(scipy.linalg.block_diag(*(m for m in matrices if m.size), np.zeros((0, 0)))).reshape(
         size, size

@@ -188,7 +188,7 @@ def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array
 
 
 def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Array, Array]:
-    """Elasticity (6, 6, elements, 1) and density (elements, points) of every element."""
+    """Return elasticity (6, 6, elements, 1), Pa, and density (elements, points), kg/m^3, of every element."""
     body = isotropic(section.material)
     elasticity = np.repeat(body[:, :, None], len(mesh.quads), axis=2)
     density = np.full(elements.r.shape, section.density)

@@ -172,7 +172,7 @@ def group_average(motion: DenseMotion, group: LoadGroup, confidence: float) -> t
 
 
 def _means(motion: DenseMotion, groups: tuple[LoadGroup, ...]) -> list[float]:
-    """Mean coefficient of each group, NaN where nothing is ever loaded."""
+    """Return the mean coefficient of each group, nan where no mesh is ever loaded."""
     forces = np.moveaxis(cycle_forces(motion), 0, -1)
     return [defined_mean(sharing_coefficient(forces[..., group.meshes])) for group in groups]
 

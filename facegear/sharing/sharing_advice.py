@@ -103,7 +103,7 @@ def _is_loaded(mapped: MappedMachine, group: LoadGroup) -> bool:
 
 
 def _changes(machine: Machine, options: MapOptions) -> Iterator[Change]:
-    """Changes of bearings, of floating gears, of tolerances."""
+    """Yield changes of the machine to try: of bearings, floating gears and tolerances."""
     mapped = MappedMachine(machine)
     idlers, inputs = groups_of_kind(machine, GroupKind.IDLERS), groups_of_kind(machine, GroupKind.INPUTS)
     for groups, roles, name in ((inputs, (Role.INPUT,), "inputs"), (idlers, IDLERS, "idlers")):

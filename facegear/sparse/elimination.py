@@ -49,7 +49,7 @@ class Step:
         return int(self.pivots.stop - self.pivots.start)
 
     def columns(self, memory: Array) -> tuple[Array, Array]:
-        """Return the columns of the pivots.
+        """Return the columns of this step's pivots from the memory of all fronts.
 
         Parameters
         ----------

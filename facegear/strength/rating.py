@@ -184,7 +184,7 @@ def rate(
 
 
 def _stress_by_load(stress: Stress, duty: FlankDuty) -> Array:
-    """Stress (n,) Pa at every load."""
+    """Return the stress (n,), Pa, at every load of the duty cycle."""
     return np.array([stress(torque) for torque in duty.torque])
 
 

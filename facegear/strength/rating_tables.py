@@ -132,7 +132,7 @@ def _without_empty_reliability(table: pd.DataFrame, ratings: Sequence[FailureRat
 
 
 def _error(rating: FailureRating, pressure: ContactPressure, roots: Mapping[str, RootStress]) -> float:
-    """Error of the stress (Pa) under the hardest load, nan where it is not known."""
+    """Return the error of the stress, Pa, under the hardest load; nan where it is not known."""
     if rating.method == "contact analysis":
         return pressure.error_at(rating.duty.largest)
     return (
@@ -206,7 +206,7 @@ def _subject(rating: FailureRating) -> tuple[str, ...]:
 
 
 def _within(rating: FailureRating, pressure: ContactPressure) -> np.ndarray:
-    """Whether each load lies within the torques of the contact analysis, (n,)."""
+    """Return whether each load (n,) lies within the torques of the contact analysis."""
     return pressure.within(rating.duty.torque) | (rating.duty.cycles == 0.0)
 
 

@@ -263,7 +263,7 @@ def _slope(pair: PairNumbers, errors: AssemblyErrors) -> float | None:
 
 
 def _condition(pair: PairNumbers, errors: AssemblyErrors, psi: float) -> float:
-    """By how much (m) the normal of slope psi misses the pinion's base cylinder."""
+    """Return by how much (m) the normal of slope psi misses the pinion's base cylinder."""
     tilt, turn = errors.shaft_angle_error, _turn(errors, psi)
     across = cos(turn) * cos(tilt)
     from_axis = _rotate((across * sin(psi), -sin(tilt) / cos(psi), across * cos(psi)), turn)
@@ -307,7 +307,7 @@ def without_modifications(design: PairDesign) -> bool:
 
 
 def _rolls(design: PairDesign, contact: ConjugateContact) -> tuple[float, float]:
-    """First and last roll angle (rad) of the pinion that lie on both flanks."""
+    """Return the first and last roll angle (rad) of the pinion at which the contact lies on both flanks."""
     start, slope = (_point(design, contact, roll)[2] for roll in (0.0, 1.0))
     slope -= start
     base, lift = design.shaper_base_radius, design.shaper_lift
@@ -317,7 +317,7 @@ def _rolls(design: PairDesign, contact: ConjugateContact) -> tuple[float, float]
 
 
 def _point(design: PairDesign, contact: ConjugateContact, roll: float) -> tuple[float, float, float]:
-    """Contact (m) in the gear's frame where it stands at a roll angle of the pinion."""
+    """Return the contact point (m) in the gear's frame at a roll angle of the pinion."""
     base, on_pinion = design.pinion_base_radius, acos(cos(contact.psi) * cos(contact.turn))
     x = base * (roll * cos(on_pinion) - sin(on_pinion))
     z = -base * (roll * sin(on_pinion) + cos(on_pinion))
@@ -331,7 +331,7 @@ def _point(design: PairDesign, contact: ConjugateContact, roll: float) -> tuple[
 
 
 def _nearest(design: PairDesign, contact: ConjugateContact) -> float:
-    """Distance (m) of the way of contact from the gear's axis."""
+    """Return the smallest distance (m) of the way of contact from the gear's axis."""
     x, y, _ = _point(design, contact, 0.0)
     second_point = _point(design, contact, 1.0)
     direction = atan2(second_point[1] - y, second_point[0] - x)
@@ -400,7 +400,9 @@ def conjugate_slopes(pair: PairNumbers, errors: AssemblyErrors, contact: Conjuga
 def _condition_slopes(
     pair: PairNumbers, errors: AssemblyErrors, psi: float, turn: float
 ) -> tuple[float, float, Array]:
-    """Derivatives of the condition on psi by psi, by the turn of the normal, and by the errors (3,)."""
+    """Return derivatives of the condition on psi by psi, by the rotation of the normal, and by the errors
+    (3,).
+    """
     tilt, base = errors.shaft_angle_error, pair.gear_base_radius
     across = cos(turn) * cos(tilt)
     along = errors.offset * cos(turn) + pair.mean_radius * sin(turn)

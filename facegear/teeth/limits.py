@@ -113,7 +113,7 @@ def _no_face(design: PairDesign, reason: str) -> GeometryError:
 
 
 def _radii_with_land(design: PairDesign, low: float, high: float) -> tuple[float, float] | None:
-    """Smallest and largest radius (m) at which the tip land is wide enough; None where it is at no radius.
+    """Return the smallest and largest radius (m) at which the tip land is wide enough; None if there is none.
 
     The land has one maximum: with many pinion teeth it also vanishes near the radius of tip undercut.
     """
@@ -147,7 +147,7 @@ def _last(margin: Callable[[PairDesign, float], float], design: PairDesign, low:
 
 
 def _land_left(design: PairDesign, radius: float) -> float:
-    """Width (m) of the tip land beyond the thinnest."""
+    """Return the width (m) of the tip land beyond the thinnest allowed."""
     roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     return 2 * float(face_gear.flank_point(design, roll, psi)[..., 0]) - THINNEST_LAND * design.module
 
@@ -172,7 +172,9 @@ def sharpest_fillet_radius(design: PairDesign) -> float:
 
 
 def _fillet_left(design: PairDesign, radius: float) -> float:
-    """Length (m) of the fillet beyond the shortest: the way of the rounding's centre, and its arc."""
+    """Return the length (m) of the fillet beyond the shortest allowed: the way of the rounding's centre, and
+    its arc.
+    """
     psi = float(face_gear_fillet.fillet_start(design, radius))
     way = abs(psi - atan(design.shaper_rounding_roll)) * design.shaper_rounding_centre
     return way + (pi / 2 - psi) * design.shaper.tip_rounding - THINNEST_LAND * design.module

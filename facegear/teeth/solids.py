@@ -149,7 +149,7 @@ def mirror_patch(patch: Array) -> Array:
 
 
 def _sides(half: HalfTooth) -> list[Array]:
-    """Surface, base and both ends of half a tooth, normals outwards."""
+    """Return the patches of half a tooth: surface, base and both ends, normals outwards."""
     patches = []
     for surface, base in zip(half.surface, half.base, strict=True):
         first, last = (np.stack([surface[:, k], base[:, k]], axis=1) for k in (0, -1))
@@ -187,7 +187,7 @@ def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
 
 
 def _roll_bounds(design: PairDesign) -> list[float]:
-    """Roll angles (rad) from tip to fillet between which the flank is smooth."""
+    """Return the roll angles (rad), from tip to fillet, between which the flank is smooth."""
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
 
     def kinks(relief: Relief) -> list[float]:
@@ -205,7 +205,7 @@ def _polar(points: Array) -> tuple[Array, Array]:
 
 
 def _arc(start: Array, end: Array, count: int) -> Array:
-    """From polar angles `start` (n,) to points (n, 3) on their circles."""
+    """Return points (count, n, 3) on circles from polar angles `start` (n,) to the points `end` (n, 3)."""
     radius, angle = _polar(end)
     fraction = np.linspace(0.0, 1.0, count)[:, None]
     points = pinion.cartesian(radius, start + fraction * (angle - start), end[:, 1])

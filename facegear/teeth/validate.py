@@ -229,7 +229,7 @@ def check_shaper(design: PairDesign) -> None:
 
 
 def _land_left(design: PairDesign, rounding: float) -> float:
-    """Width (m) of the shaper's tip land beyond the thinnest with a tip rounded so."""
+    """Return the width (m) of the shaper's tip land, with a tip rounding, beyond the thinnest allowed."""
     tool = replace(design, shaper=replace(design.shaper, tip_rounding=rounding))
     return 2 * face_gear_fillet.root_half_angle(tool) * tool.gear_pitch_radius - THINNEST_LAND * tool.module
 

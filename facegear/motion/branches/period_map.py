@@ -296,7 +296,9 @@ class PeriodMap:
         return linear.rates[key]
 
     def _rigid(self, integrator: Integrator, contact: Mask, weights: Array) -> Array:
-        """Orthonormal shifts that neither a mesh in contact nor a bearing feels; their multiplier is one."""
+        """Return orthonormal shifts that neither a mesh in contact nor a bearing feels; their multiplier is
+        one.
+        """
         key = (contact.tobytes(), weights.tobytes())
         if key not in self.memory:
             n = integrator.size

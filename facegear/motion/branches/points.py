@@ -290,7 +290,7 @@ def _newton_step(linear: Linear, gap: Array, row: Array, displacement: Array) ->
 
 
 def _bordered_inverse(linear: Linear, row: Array) -> Array:
-    """Inverse of bordered_matrix(); the one for the last row is stored."""
+    """Return the inverse of bordered_matrix(); the inverse for the last row used is stored."""
     key = row.tobytes()
     if key not in linear.inverses:
         linear.inverses.clear()
@@ -299,7 +299,7 @@ def _bordered_inverse(linear: Linear, row: Array) -> Array:
 
 
 def _inverse(matrix: Array) -> Array:
-    """Inverse of a matrix; the pseudoinverse where the matrix is singular, as bordered ones are at
+    """Return the inverse of a matrix; the pseudoinverse where it is singular, as bordered matrices are at
     branch points.
     """
     try:

@@ -163,7 +163,7 @@ def is_damped(segment: Segment, low: float, high: float) -> bool:
 
 
 def _distance(point: BranchPoint) -> float:
-    """Distance from the unit circle of the multiplier nearest to it."""
+    """Return the distance from the unit circle of the multiplier nearest to it."""
     return float(np.abs(np.abs(point.multipliers) - 1.0).min(initial=np.inf))
 
 
@@ -217,7 +217,7 @@ def _widest_turn(distance: float) -> float:
 
 
 def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
-    """Largest change of a multiplier near the unit circle, by the change (2 n, 2 n) of the matrix."""
+    """Return the largest change of a multiplier near the unit circle by a change (2 n, 2 n) of the matrix."""
     values, vectors = np.linalg.eig(point.linear.matrix)
     try:
         multiplier_changes = np.abs(np.einsum("ij,jk,ki->i", np.linalg.inv(vectors), change, vectors))
@@ -230,7 +230,9 @@ def _turn(point: BranchPoint, change: Array, neutral: int) -> float:
 
 
 def _interpolate(matrices: list[Array], changes: list[Array], looks: Array) -> Array:
-    """Matrices (K, 2 n, 2 n) at shares (K,) of a stretch, from those at its ends and their slopes there."""
+    """Return matrices (K, 2 n, 2 n) at fractions (K,) of a stretch from the matrices and slopes at
+    its ends.
+    """
     step = matrices[1] - matrices[0]
     start, end = changes
     sizes = [float(np.linalg.norm(slope)) for slope in (start, end, step)]

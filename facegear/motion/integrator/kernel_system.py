@@ -196,8 +196,10 @@ def _coupling(coupling: Coupling | None, n: int) -> Array:
 
 @lru_cache(maxsize=16)
 def _fastest(system: System) -> tuple[float, float]:
-    """Largest natural frequency with all meshes in contact plus damping, 1/s, and the harmonics of the law
-    that matter, in multiples of the mesh frequency.
+    """Return the largest natural frequency, 1/s, and the number of the law's harmonics that matter.
+
+    The frequency is that with all meshes in contact, plus damping. The harmonics count in multiples of the
+    mesh frequency.
     """
     contacts = system.contacts
     mesh = np.zeros(len(system.mesh_jacobian))
@@ -214,5 +216,7 @@ def _fastest(system: System) -> tuple[float, float]:
 
 @kept_by_content(8)
 def _largest_root(diagonal: Array, rows: Array, factors: Array) -> float:
-    """Largest eigenvalue of diag(own (n,)) + rows^T diag(factors (m,)) rows, rows (m, n)."""
+    """Return the largest eigenvalue of diag(diagonal (n,)) + rows^T diag(factors (m,)) rows, with rows (m,
+    n).
+    """
     return float(np.linalg.eigvalsh(np.diag(diagonal) + (rows.T * factors) @ rows)[-1])

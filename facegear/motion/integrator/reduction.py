@@ -324,7 +324,7 @@ def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Ar
 def _basis(
     linear: LinearModel, stiffness: Array, directions: Array, coupling: Coupling | None
 ) -> tuple[Array, Array]:
-    """Basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
+    """Return basis and omega^2 of the motions that the directions (rows, dof) excite, and of those coupled to
     them.
     """
     axes, mass, principal = _principal_axes(linear, stiffness)
@@ -344,7 +344,7 @@ def _basis(
 
 
 def _principal_axes(linear: LinearModel, stiffness: Array) -> tuple[Array | None, Array, Array]:
-    """Axes (dof, dof), in columns, along which masses and bearings are decoupled, or None for the
+    """Return axes (dof, dof), in columns, along which masses and bearings are decoupled; None for the
     coordinates.
 
     Also return masses and stiffnesses (dof,) along them.

@@ -281,7 +281,7 @@ def independent_interval(batches: Array, confidence: float = CONFIDENCE) -> Arra
 
 
 def _successive(batches: Array) -> Array:
-    """Correlation (columns,) of each batch with the next, as it is in the sample; 0 without spread."""
+    """Return the correlation (columns,) of each batch with the next batch; 0 without spread."""
     off = batches - batches.mean(axis=0)
     square = (off * off).sum(axis=0)
     return np.asarray((off[1:] * off[:-1]).sum(axis=0) / np.where(square > 0.0, square, 1.0))
@@ -318,5 +318,5 @@ def _root_interval(squared: Array, root: Array, periodic: bool) -> Array:
 
 @cache
 def _student(freedom: int, confidence: float) -> float:
-    """Two-sided quantile of Student's distribution."""
+    """Return the two-sided quantile of Student's distribution."""
     return float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence))

@@ -269,7 +269,7 @@ def _preferred(before: Array, after: Array, images: Integers) -> Integers:
 
 
 def _stored_side(piece: Piece, position: int) -> JumpSide:
-    """Response that a sweep has found at one of its speeds."""
+    """Return the response that a sweep has found at one of its speeds."""
     return JumpSide(
         speed=float(piece.speeds[position]),
         ac_rms=piece.deflection_ac_rms[position],

@@ -286,8 +286,8 @@ def whole_sweep(
 
 
 def _on_threads(plans: Sequence[RunPlan[Jump | None]], threads: int) -> list[Jump | None]:
-    """Values of run plans that are dealt out to threads; the compiled part runs without the
-    interpreter's lock.
+    """Run plans on several threads and return their values; the compiled part runs without the interpreter's
+    lock.
     """
     count = max(threads, 1)
     with ThreadPoolExecutor(count) as pool:

@@ -245,7 +245,9 @@ class Closure:
                 yield Node("loaded", f"{origin}.{name}")
 
     def _resolve_use(self, name: str, module: _Module, statement: Statement, use: str) -> Iterator[Node]:
-        """Yield what a name may mean in a statement."""
+        """Yield the nodes to which a name that a statement uses may refer: definitions, imports or whole
+        modules.
+        """
         if use == WHOLE_MODULE:
             yield Node("whole", name)
         elif use.startswith(NAMED_MODULE):
@@ -287,7 +289,7 @@ class Closure:
             yield Node("whole", name)
 
     def _module(self, name: str) -> _Module | None:
-        """The module of a name, None if there is no such file."""
+        """Return the module of a dotted name; None if there is no such file."""
         if name not in self._modules:
             base = self.root.joinpath(*name.split("."))
             alone, package = base.with_suffix(".py"), base / "__init__.py"

@@ -136,7 +136,7 @@ class _Scope:
         return tuple(sorted(counted_names))
 
     def code(self, part: Part) -> str:
-        """Hash of the code of a part, with what the names are that it has from elsewhere."""
+        """Return the hash of a part's code, with the meaning of each name that it has from elsewhere."""
         roots = {use.removeprefix(POSSIBLE_NAME).partition(".")[0] for use in part.uses}
         origins = [f"{name} {self.foreign[name]}" for name in sorted(roots & self.foreign.keys())]
         return hashlib.sha256("\n".join([*origins, *part.code]).encode()).hexdigest()[:16]
@@ -159,7 +159,7 @@ def _statement(statement: ast.stmt, part: Part, scope: _Scope, walk: "Walk") -> 
 
 
 def _names(statement: ast.stmt, part: Part) -> set[str]:
-    """Names that a statement of the module binds or, as `table[key] = value` does, changes."""
+    """Return the names that a statement of the module binds or, as `table[key] = value` does, changes."""
     match statement:
         case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
             return {statement.name}

@@ -402,7 +402,7 @@ def _arguments(node: ast.arguments) -> list[ast.arg]:
 
 
 def _local_names(function: Function) -> set[str]:
-    """Names that a function binds in its own scope."""
+    """Return the names that a function binds in its own scope."""
     names = {argument.arg for argument in _arguments(function.args)}
     elsewhere: set[str] = set()
     todo: list[ast.AST] = [*function.body]

@@ -43,9 +43,10 @@ def tolerances_chunk(
 ) -> Outcome:
     """Compute samples `first` to `last` of a machine with its tolerances.
 
-    A sample that cannot be built or computed is a row with its error. The columns CYCLE_SELECTION_ERRORS hold, for the first
-    CHECKED_SAMPLES samples, the errors of the mesh cycles left out; SIMPLIFICATION_ERRORS hold the errors of
-    computing friction at few contact points. They are empty in other rows.
+    A sample that cannot be built or computed is a row with its error. For the first CHECKED_SAMPLES samples,
+    columns of CYCLE_SELECTION_ERRORS hold the errors by mesh cycles left out, and those of
+    SIMPLIFICATION_ERRORS the errors of computing friction at few contact points. They are empty in other
+    rows.
 
     Parameters
     ----------

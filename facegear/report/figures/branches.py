@@ -109,7 +109,7 @@ def amplitudes(
 
 
 def _parts(branch: pd.DataFrame) -> Iterator[Curve]:
-    """Stable and unstable parts of a branch."""
+    """Yield the stable and unstable parts of a branch as curves."""
     colour = _colour(int(branch["period"].iloc[0]))
     speed, value = branch["speed_rpm"].to_numpy(), branch["deflection_ac_rms_um"].to_numpy()
     stable = branch["stable"].to_numpy(dtype=bool)
@@ -236,7 +236,7 @@ def _array_of(value: float) -> Array:
 
 
 def _motion(label: str) -> tuple[str, str]:
-    """Name and colour of a class of motion."""
+    """Return name and colour of a class of motion."""
     if not label.startswith("period-"):
         return "not periodic", IRREGULAR
     period = int(label.removeprefix("period-"))

@@ -393,7 +393,7 @@ def _levels(target: PlotlyAxes, mark: Levels) -> Iterator[Part]:
 
 
 def _faces(target: PlotlyAxes, mark: Faces) -> Iterator[Part]:
-    """Areas of one colour together."""
+    """Yield the traces of coloured polygons, one for all polygons of a colour."""
     values = np.asarray(mark.values, dtype=float)
     low, high = values.min(), values.max()
     step = np.minimum(((values - low) / ((high - low) or 1.0) * STEPS).astype(int), STEPS - 1)
