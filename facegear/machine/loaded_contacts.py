@@ -2,6 +2,16 @@
 
 The load decides: a contact with at most OPEN_SHARE of the largest flank force is open, one with at least
 CLOSED_SHARE is closed. In between, rounding and the last digits of a torque would decide: `undecided`.
+
+Stiffness of the flanks that carry load, about the place where the torques hold the machine. Behind the teeth
+of a mesh lies a body, of which only some modes are kept. What they leave out is a static compliance R (2, 2)
+between the two flanks of the mesh, the residual of MacNeal 1971 without mass. With the slopes D of the teeth
+of both flanks and the deflections d,
+
+    F = S d,   S = (D^-1 + R)^-1 = (1 + D R)^-1 D
+
+A flank that presses alone has its entry of the diagonal of R in series with its teeth. Where both flanks of a
+mesh press, S couples them: teeth on both of its flanks bend one rim.
 """
 
 from dataclasses import dataclass, replace

@@ -5,6 +5,7 @@ import sys
 
 import pytest
 from forked_python import run_together
+from projects import ROOT
 
 import facegear
 from facegear import __main__ as command_line
@@ -30,6 +31,25 @@ except MissingExtra as error:
     (done,) = run_together([script], {"PYTHONPATH": os.pathsep.join(sys.path)})
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
+
+
+def test_a_machine_of_given_stiffness_is_answered_without_any_extra():
+    """Statics asked for finite elements once, as a module held stages of contact beside others."""
+    script = f"""
+import sys
+from facegear.errors import EXTRAS
+for library in EXTRAS:
+    sys.modules[library] = None
+import facegear
+gearbox = facegear.load({str(ROOT / "config" / "harmonics_only.yaml")!r}, None)
+for name in ("modes", "statics", "response", "load_sharing", "sensitivity", "hunting"):
+    getattr(gearbox, name)()
+pair = facegear.load({str(ROOT / "config" / "teeth_only.yaml")!r}, None)
+pair.geometry(), pair.topography()
+print("answered")
+"""
+    (done,) = run_together([script], {"PYTHONPATH": os.pathsep.join(sys.path)})
+    assert done.stdout.strip() == "answered", done.stderr
 
 
 @pytest.mark.parametrize("call", ["contact()", "load_sharing()"])

@@ -1,4 +1,9 @@
-"""A run watched until the class of its motion is known, and second looks from other starts."""
+"""A run watched until the class of its motion is known, and second looks from other starts.
+
+Whether a class of motion comes out again from starts a little aside. A chaotic transient that ends on an
+orbit of a long period while a run is watched may go on for longer from the next start, and one that does not
+end may end. Rounding of the machine's numbers then decides what the motion is called.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
