@@ -5,7 +5,6 @@ import sys
 
 import pytest
 from forked_python import run_together
-from projects import ROOT
 
 import facegear
 from facegear import __main__ as command_line
@@ -35,16 +34,16 @@ except MissingExtra as error:
 
 def test_a_machine_of_given_stiffness_is_answered_without_any_extra():
     """Statics asked for finite elements once, as a module held stages of contact beside others."""
-    script = f"""
+    script = """
 import sys
 from facegear.errors import EXTRAS
-for library in EXTRAS:
+for library in set(EXTRAS) - {"pyarrow"}:  # pandas holds it in the process that is forked
     sys.modules[library] = None
 import facegear
-gearbox = facegear.load({str(ROOT / "config" / "harmonics_only.yaml")!r}, None)
+gearbox = facegear.load("config/harmonics_only.yaml", None)
 for name in ("modes", "statics", "response", "load_sharing", "sensitivity", "hunting"):
     getattr(gearbox, name)()
-pair = facegear.load({str(ROOT / "config" / "teeth_only.yaml")!r}, None)
+pair = facegear.load("config/teeth_only.yaml", None)
 pair.geometry(), pair.topography()
 print("answered")
 """
