@@ -1,4 +1,4 @@
-"""The paper's pair as a factory: what a test does not name has the paper's value."""
+"""The paper's pair as a factory, where what a test does not name has the paper's value, and its teeth."""
 
 from collections.abc import Callable
 from math import radians
@@ -6,6 +6,8 @@ from math import radians
 import pytest
 
 from facegear.teeth.design import AssemblyErrors, FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.teeth.mesh_sizes import named_sizes
+from facegear.teeth.tooth_mesh import gear_tooth, pinion_tooth
 
 
 def paper_pair(
@@ -40,3 +42,14 @@ def paper_pair(
 @pytest.fixture(scope="session")
 def pair() -> Callable[..., PairDesign]:
     return paper_pair
+
+
+@pytest.fixture(scope="session")
+def design() -> PairDesign:
+    return paper_pair()
+
+
+@pytest.fixture(scope="session", params=["pinion", "face_gear"])
+def tooth(request, design):
+    build = pinion_tooth if request.param == "pinion" else gear_tooth
+    return build(design, named_sizes("coarse", design.module))

@@ -18,7 +18,7 @@ from facegear.pipeline.stage import load
 from facegear.pipeline.table import STAGES
 
 pytestmark = pytest.mark.xdist_group("functions_of_stages")  # one trace for all
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 ASKED = (
     "mesh",
     "modal",

@@ -12,7 +12,7 @@ from facegear.pipeline.provenance import sources
 from facegear.pipeline.provenance.fingerprint import fingerprint, reached_functions, stage_fingerprint
 from facegear.pipeline.provenance.sources import recall, remember
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from facegear.report.compare import answers
 from facegear.report.compare.judge import Verdict, answer_tables, compare, tables_not_stored
 from facegear.report.compare.page import causes
 
-CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
+CONFIG = Path(__file__).parents[4] / "config" / "harmonics_only.yaml"
 
 
 def answered(folder, **values):
