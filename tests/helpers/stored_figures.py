@@ -12,7 +12,7 @@ import facegear
 from facegear.door.outputs import whole_case
 from facegear.pipeline.arguments import typed_arguments
 from facegear.pipeline.needs import resolved_needs, shared_sources
-from facegear.pipeline.reported import asked_for
+from facegear.pipeline.report_tables import asked_for
 from facegear.pipeline.stage import load
 from facegear.pipeline.table import STAGES
 from facegear.report.figures.draw_matplotlib import draw

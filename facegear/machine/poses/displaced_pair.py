@@ -16,7 +16,7 @@ from facegear.arrays import Array
 from facegear.teeth.conjugate import PairNumbers, exact_contact
 from facegear.teeth.design import AssemblyErrors, PairDesign
 from facegear.teeth.placement import FLANKS, RigidMotion, errors_at, mirror_design, pinion_angle, rotation
-from facegear.teeth.unloaded import unloaded_contact
+from facegear.teeth.unloaded_contact import unloaded_contact
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from facegear.motion.steady_state.mirror_images import (
 )
 from facegear.motion.steady_state.periodicity import KnownOrbit
 from facegear.motion.steady_state.response import SteadyState, response_of
-from facegear.motion.steady_state.watch import FirstWatch, begin, disagreeing, not_settled, watch
+from facegear.motion.steady_state.watch import FirstWatch, begin, find_disagreeing_motion, not_settled, watch
 from facegear.motion.symmetries import Symmetry
 
 
@@ -299,7 +299,7 @@ def _naming(speed_rpm: float) -> Iterator[None]:
     try:
         yield
     except NotConverged as error:
-        raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.tried) from None
+        raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.attempts) from None
 
 
 def steady_state(
@@ -357,7 +357,7 @@ def _steady(system: System, first_watch: FirstWatch) -> RunPlan[SteadyState]:
     integrator, settings = first_watch.integrator, first_watch.settings
     watch_result = yield from watch(first_watch)
     first, states = watch_result.settling_result, watch_result.window.ends
-    second_look = disagreeing(
+    second_look = find_disagreeing_motion(
         integrator,
         first_watch.start,
         settings,

@@ -23,93 +23,162 @@ from facegear.motion.steady_state.settle import SettlingResult, settling
 from facegear.motion.steady_state.statistics import drifts
 from facegear.motion.steady_state.window import Exponent, Growth, Window, largest_exponent, run_window
 
-WANDERED = 16
-"""After so many periods with changes that are not small the orbit reached may be a matter of chance."""
+NEGLIGIBLE_WANDERING = 16
+"""Number of periods with changes that are not small up to which a run counts as having gone straight to its
+orbit; after more of them the orbit reached may be a matter of chance.
+"""
 MAX_LOOKS = 7
+"""Largest number of further starts from which a periodic motion is checked, where `second_looks` is not
+larger. Free choice that bounds the cost.
+"""
 CHANCE = 0.05
 """A periodic motion is out of doubt when fewer starts than this fraction would fail to close, which is itself
 known with a confidence of one minus as much."""
 
 
-def disagreeing(
+def find_disagreeing_motion(
     integrator: Integrator,
     start: Array,
     settings: Settings,
-    first: SettlingResult,
-    motion: Motion,
+    first_result: SettlingResult,
+    first_motion: Motion,
     states: Array,
-    before: int,
+    earlier_wandering: int,
 ) -> RunPlan[SettlingResult | None]:
-    """Return the motion of another start (2, n) if it refutes the class of the first; None if the class
-    holds.
+    """Look for another start whose motion refutes the class of the first motion.
 
-    A run that went straight to its orbit is not in doubt, and one that is not settled says nothing. Another
-    periodic motion is looked at `second_looks` times, and on, up to MAX_LOOKS times if that is more, until
-    the periods for which the runs have wandered show that hardly a start would fail to close. Two irregular
-    motions are one class, which is looked at once. `states` (periods, 2, n): of the first motion at the end
-    of its periods.
-    before: periods for which it had wandered when it was given up for the first time.
+    A run that went straight to its orbit is not in doubt, and a run that is not settled decides nothing.
+    Another periodic motion is checked from `second_looks` other starts, and from up to MAX_LOOKS if that is
+    more, until the periods for which the runs have wandered show that hardly a start would fail to close. Two
+    irregular motions are of one class, which is checked from one other start.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    start : (2, n) array
+        State by phase at the first start, m and m/rad.
+    settings : Settings
+        Settings of the run.
+    first_result : SettlingResult
+        Where the first run settled.
+    first_motion : Motion
+        Class of the first motion.
+    states : (periods, 2, n) array
+        States of the first motion at the end of its periods, m and m/rad.
+    earlier_wandering : int
+        Number of periods for which the first run had wandered when it was first taken not to close.
+
+    Returns
+    -------
+    RunPlan of SettlingResult or None
+        Computation that returns where the other start settled; None if the class holds.
     """
-    if not settings.second_looks or motion is Motion.NOT_SETTLED:
+    if not settings.second_looks or first_motion is Motion.NOT_SETTLED:
         return None
-    wandered = before + wandering(integrator, first, first.period)
-    if first.period and not wandered:
+    wandering_periods = earlier_wandering + count_wandering_periods(
+        integrator, first_result, first_result.period
+    )
+    if first_result.period and not wandering_periods:
         return None
-    known = KnownOrbit(first.orbit, states) if first.orbit else None
-    starts = other_starts(integrator, start, settings.aside, first)
+    known_orbit = KnownOrbit(first_result.orbit, states) if first_result.orbit else None
+    starts = other_starts(integrator, start, settings.aside, first_result)
     for looks in range(1, max(MAX_LOOKS, settings.second_looks) + 1):
-        other = yield from settling(integrator, next(starts), settings, known_orbit=known)
-        if other.period != first.period:
-            return other
-        wandered += wandering(integrator, other, other.period)
-        rare = never_closing(looks + 1, wandered, 2 * settings.settle) < CHANCE
-        if not first.period or (rare and looks >= settings.second_looks):
+        other_result = yield from settling(integrator, next(starts), settings, known_orbit=known_orbit)
+        if other_result.period != first_result.period:
+            return other_result
+        wandering_periods += count_wandering_periods(integrator, other_result, other_result.period)
+        rare = wandering_chance(looks + 1, wandering_periods, 2 * settings.settle) < CHANCE
+        if not first_result.period or (rare and looks >= settings.second_looks):
             break
     return None
 
 
-def never_closing(runs: int, wandered: int, patience: int) -> float:
-    """Largest chance, with a confidence of 1 - CHANCE, that a run wanders for longer than `patience` periods.
+def wandering_chance(runs: int, wandering_periods: int, patience: int) -> float:
+    """Bound the chance that a run wanders for longer than `patience` periods before it closes.
 
-    `runs` that all closed have wandered for `wandered` periods in all. A chaotic transient ends in any period
-    with the same chance, so that the total is distributed as Gamma of order `runs`.
+    A chaotic transient ends in any period with the same chance, so that the total number of wandering periods
+    is distributed as Gamma of order `runs`.
+
+    Parameters
+    ----------
+    runs : int
+        Number of runs, all of which closed.
+    wandering_periods : int
+        Number of periods for which they wandered, all together.
+    patience : int
+        Number of periods after which a run is taken not to close.
+
+    Returns
+    -------
+    float
+        Largest chance, with a confidence of 1 - CHANCE, dimensionless.
     """
-    rate = scipy.special.gammaincinv(runs, CHANCE) / max(wandered, 1)
+    rate = scipy.special.gammaincinv(runs, CHANCE) / max(wandering_periods, 1)
     return float(np.exp(-rate * patience))
 
 
 def other_starts(
-    integrator: Integrator, start: Array, aside: float, first: SettlingResult
+    integrator: Integrator, start: Array, aside: float, first_result: SettlingResult
 ) -> Iterator[Array]:
-    """Starts (2, n) beside that of a run, by a fraction `aside` of the length scale.
+    """Yield random starts beside the start of a run, in directions in which the run itself has moved.
 
-    They lie in any direction in which the run itself has moved. A symmetric run is left symmetric: what
-    disturbs the symmetry dies away or shows in the exponent, and until it has died away mirrored meshes,
-    which all but switch together, cost half as many steps again.
+    A symmetric run is left symmetric: disturbances of the symmetry die away or show in the exponent, and
+    until they have died away mirrored meshes, which all but switch together, cost half as many steps again.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    start : (2, n) array
+        State by phase at the start of the run, m and m/rad.
+    aside : float
+        Distance of the starts as a fraction of the length scale, dimensionless.
+    first_result : SettlingResult
+        Result of the run.
+
+    Yields
+    ------
+    (2, n) array
+        State by phase, m and m/rad.
     """
     random = np.random.default_rng(0)
-    moves = first.ends - first.ends.mean(axis=0)
+    moves = first_result.ends - first_result.ends.mean(axis=0)
     while True:
         off = np.tensordot(random.normal(size=len(moves)), moves, 1)
         yield start + aside * off / change(integrator, off, 0.0 * off)
 
 
-def wandering(integrator: Integrator, settled: SettlingResult, period: int) -> int:
+def count_wandering_periods(integrator: Integrator, settling_result: SettlingResult, period: int) -> int:
     """Count the periods of a run before the last change over a period that is not small.
 
-    They are 0 if there are but few. Of a run so long that its first states are not kept any more, what counts
-    is when it was seen for the last time to be near no periodic motion.
+    The count is 0 if there are at most NEGLIGIBLE_WANDERING such changes. A run so long that its first states
+    are not kept any more counts until it was last seen near no periodic motion.
+
+    Parameters
+    ----------
+    integrator : Integrator
+        Integrates the system at one mesh frequency.
+    settling_result : SettlingResult
+        Result of the run.
+    period : int
+        Period over which changes are measured, number of mesh periods.
+
+    Returns
+    -------
+    int
+        Number of mesh periods.
     """
-    large = _large(integrator, settled, period)
-    if large.sum() > WANDERED:
+    large = _is_change_large(integrator, settling_result, period)
+    if large.sum() > NEGLIGIBLE_WANDERING:
         quiet = int(large[::-1].argmax())
-        return max(settled.periods_run - quiet, 0)
-    return settled.aperiodic_until if settled.periods_run > len(settled.ends) else 0
+        return max(settling_result.periods_run - quiet, 0)
+    return settling_result.aperiodic_until if settling_result.periods_run > len(settling_result.ends) else 0
 
 
-def _large(integrator: Integrator, settled: SettlingResult, period: int) -> Mask:
-    """Mask of the kept mesh periods at whose end the change over a period is not small."""
-    ends = settled.ends
+def _is_change_large(integrator: Integrator, settling_result: SettlingResult, period: int) -> Mask:
+    """Return for each kept mesh period whether the change over `period` periods at its end is not small."""
+    ends = settling_result.ends
     return largest(integrator, ends[period:] - ends[: len(ends) - period]) > SMALL
 
 
@@ -251,7 +320,9 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.INCONCLUSIVE or not extensions_left:
             break
         near = best_return(integrator, settling_result.ends, settings)
-        wandering_periods = wandering_periods or wandering(integrator, settling_result, near.period)
+        wandering_periods = wandering_periods or count_wandering_periods(
+            integrator, settling_result, near.period
+        )
         settling_result = yield from settling(integrator, window.ends[-1], settings, exponent.ends)
         periods_run += settling_result.periods_run
         if settling_result.period:
@@ -265,6 +336,7 @@ def watch(first_watch: FirstWatch) -> RunPlan[WatchResult]:
 def _periodic(
     integrator: Integrator, settling_result: SettlingResult, settings: Settings, periods_run: int
 ) -> WatchResult:
+    """Return the result of a run that settled on a periodic motion, measured over one window."""
     window = run_window(integrator, settling_result.state, settling_result.period, settings.samples)
     return WatchResult(settling_result, Motion.PERIODIC, None, window, periods_run)
 

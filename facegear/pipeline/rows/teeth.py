@@ -1,7 +1,7 @@
 """Tooth pair: geometry, meshes, compliance, contact, stiffness."""
 
-from facegear.pipeline import arguments, asked, contact_studies
-from facegear.pipeline.rows.shared import FLANKS, PAIR
+from facegear.pipeline import arguments, conditions, contact_studies
+from facegear.pipeline.rows.common_needs import FLANKS, PAIR
 from facegear.pipeline.stage import ComputedValue, Figures, File, From, Needs, Stage, from_stage
 
 MESH: Needs = {**PAIR, "mesh": "mesh"}
@@ -37,7 +37,7 @@ ROWS = (
             chapter="teeth",
             upstream=from_stage("geometry", "pair", "flanks", "contact"),
         ),
-        condition=asked.contact,
+        condition=conditions.contact,
         priority=65,
     ),
     Stage(
@@ -48,12 +48,12 @@ ROWS = (
         files={
             **{
                 f"{body}_{kind}": File(f"mesh/{body}.{kind}")
-                for body in asked.BODIES
+                for body in conditions.BODIES
                 for kind in ("msh", "vtu", "inp")
             },
             "quality": File("mesh/quality.csv"),
         },
-        condition=asked.contact,
+        condition=conditions.contact,
         memory_mb=2000,
     ),
     Stage(
@@ -102,7 +102,7 @@ ROWS = (
             chapter="contact",
             upstream=from_stage("contact", "ltca", "pressure"),
         ),
-        condition=asked.contact,
+        condition=conditions.contact,
         memory_mb=4000,
         minutes=30,
         priority=80,
@@ -111,7 +111,7 @@ ROWS = (
         name="stiffness",
         title="Mesh stiffness",
         needs={"mesh_stiffness": "mesh_stiffness"},
-        upstream={"ltca": From("contact", "ltca", when=asked.computed_stiffness)},
+        upstream={"ltca": From("contact", "ltca", when=conditions.computed_stiffness)},
         files={
             "tvms": File("stiffness/tvms.csv", ("position", "k_n_per_m", "k_series_n_per_m")),
             "harmonics": File(
@@ -125,7 +125,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("stiffness", "tvms", "spectrum"),
         ),
-        condition=asked.always,
+        condition=conditions.always,
         local=True,
         priority=75,
     ),
@@ -145,7 +145,7 @@ ROWS = (
             chapter="teeth",
             upstream=from_stage("topography", "points"),
         ),
-        condition=asked.measured_flanks,
+        condition=conditions.measured_flanks,
         local=True,
     ),
     Stage(
@@ -166,7 +166,7 @@ ROWS = (
             chapter="contact",
             upstream=from_stage("tooth_errors", "curves", "orders"),
         ),
-        condition=asked.single_teeth,
+        condition=conditions.single_teeth,
         local=True,
     ),
     Stage(
@@ -185,7 +185,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("mesh_law", "law"),
         ),
-        condition=asked.load_dependent,
+        condition=conditions.load_dependent,
         memory_mb=4000,
         minutes=30,
         priority=74,
@@ -198,7 +198,7 @@ ROWS = (
             **PAIR,
             "contact": "contact",
             "torque_n_m": "mesh_stiffness.torque_n_m",
-            "tilting": ComputedValue(asked.tilting, ("transmission",)),
+            "tilting": ComputedValue(conditions.tilting, ("transmission",)),
         },
         upstream=FLANKS,
         files={
@@ -206,7 +206,7 @@ ROWS = (
             "nodes": File("poses/nodes.csv", ("unloaded_path_mm", "torque_n_m", "stiffness_n_per_m")),
             "errors": File("poses/errors.csv", ("largest", "rms"), text=("quantity", "left_out")),
         },
-        condition=asked.poses,
+        condition=conditions.poses,
         memory_mb=4000,
         minutes=30,
         priority=74,
@@ -223,7 +223,7 @@ ROWS = (
             chapter="mesh_stiffness",
             upstream=from_stage("load_dependence", "table"),
         ),
-        condition=asked.contact,
+        condition=conditions.contact,
         local=True,
     ),
     Stage(

@@ -22,7 +22,7 @@ from facegear.motion.steady_state.orbits import change
 from facegear.motion.steady_state.periodicity import KnownOrbit, known_orbit
 from facegear.motion.steady_state.settle import settle
 from facegear.motion.steady_state.simulate import build_model, simulate, steady_state
-from facegear.motion.steady_state.watch import CHANCE, never_closing, other_starts
+from facegear.motion.steady_state.watch import CHANCE, other_starts, wandering_chance
 from facegear.motion.sweeps.sweep_tables import response_summary
 from facegear.schema.motion import SECOND_LOOKS
 from validation.dynamics.oscillators import (
@@ -221,7 +221,7 @@ def test_a_run_that_wanders_gets_as_many_looks_as_asked_for(monkeypatch, looks):
     oscillator, starts = list(random_oscillators(343))[342], []
     integrator = Integrator(oscillator.system, oscillator.speed)
     first = settle(integrator, integrator.by_phase(oscillator.start), Settings())
-    assert watch.wandering(integrator, first, first.period) > 0
+    assert watch.count_wandering_periods(integrator, first, first.period) > 0
 
     def settle_again(integrator, start, settings, known_orbit):
         starts.append(start)
@@ -230,8 +230,8 @@ def test_a_run_that_wanders_gets_as_many_looks_as_asked_for(monkeypatch, looks):
 
     monkeypatch.setattr(watch, "settling", settle_again)
     settings = Settings(second_looks=looks)
-    course = watch.disagreeing(
-        integrator, first.state, settings, first, Motion.PERIODIC, first.ends, before=0
+    course = watch.find_disagreeing_motion(
+        integrator, first.state, settings, first, Motion.PERIODIC, first.ends, earlier_wandering=0
     )
     assert alone(course) is None
     assert len(starts) == looks
@@ -253,7 +253,7 @@ def test_looks_end_when_a_motion_that_never_closes_is_rarer_than_stated():
     patience = 512
     for runs, mean in ((2, 40.0), (4, 150.0), (8, 400.0)):
         wandered = random.exponential(mean, size=(2000, runs)).sum(axis=1)
-        stated = np.array([never_closing(runs, total, patience) for total in wandered])
+        stated = np.array([wandering_chance(runs, total, patience) for total in wandered])
         too_small = (stated < np.exp(-patience / mean)).mean()
         assert too_small == pytest.approx(CHANCE, abs=0.02)
 

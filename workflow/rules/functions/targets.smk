@@ -1,5 +1,5 @@
 from facegear.pipeline import machine_conditions, studies
-from facegear.pipeline.reported import REPORT_TABLES
+from facegear.pipeline.report_tables import REPORT_TABLES
 
 
 def files_of(rule, case):

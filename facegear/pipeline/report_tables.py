@@ -14,7 +14,7 @@ from facegear.arrays import Arrays
 from facegear.build.tooth_pair import ToothPair, contact_setup, pair_design
 from facegear.number_format import count_noun
 from facegear.pipeline.arguments import typed_arguments
-from facegear.pipeline.asked import CONTACT
+from facegear.pipeline.conditions import CONTACT
 from facegear.pipeline.needs import stages_before
 from facegear.pipeline.stage import Case, Stage
 from facegear.pipeline.table import STAGES
