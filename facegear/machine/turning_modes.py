@@ -109,7 +109,7 @@ def machine_at_speeds(machine: Machine, speeds_rpm: Sequence[float]) -> list[Tur
         If no equilibrium is found.
     """
     linear, springs = pressed_springs(machine)
-    dampers = flank_dampers(machine, np.diagonal(springs) > 0.0)
+    dampers = flank_dampers(machine.damping, np.diagonal(springs) > 0.0)
     return [turning_modes(linear, springs, dampers, speed * np.pi / 30.0) for speed in speeds_rpm]
 
 
