@@ -1,4 +1,7 @@
-"""Pinions, shafts, bearings and material as REXS 2.0 (FVA's exchange of gear unit data)."""
+"""Pinions, shafts, bearings and material as REXS 2.0 (FVA's exchange of gear unit data).
+
+REXS has no face gear: what is lost stands in LOST, and in a comment of every file.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

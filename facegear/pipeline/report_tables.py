@@ -1,4 +1,9 @@
-"""Tables that the report of a case reads, and how long they take to compute."""
+"""Tables that the report of a case reads, and how long they take to compute.
+
+Estimates of the processor time of a report, before any of its stages runs. They are rough: within a factor of
+three on one core of a processor of 2020 (docs/reference/speed.md). Stages that take a second or less are left
+out.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import ceil

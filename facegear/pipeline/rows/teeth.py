@@ -46,7 +46,7 @@ ROWS = (
     ),
     Stage(
         name="mesh",
-        module="teeth",
+        module="tooth_bodies",
         title="Meshes of both bodies",
         needs=MESH,
         files={
@@ -62,7 +62,7 @@ ROWS = (
     ),
     Stage(
         name="cad",
-        module="teeth",
+        module="tooth_bodies",
         title="Exact teeth for CAD",
         needs={**MESH, "case": ComputedValue(arguments.config_name, ("case",))},
         files={"step": File("cad/{body}.step"), "stl": File("cad/{body}.stl")},
@@ -70,7 +70,7 @@ ROWS = (
     ),
     Stage(
         name="compliance",
-        module="teeth",
+        module="tooth_bodies",
         title="Flank compliance",
         needs={
             "tooth_pair": ComputedValue(arguments.without_gaps, ("tooth_pair",)),
@@ -113,7 +113,6 @@ ROWS = (
     ),
     Stage(
         name="stiffness",
-        module="contact",
         title="Mesh stiffness",
         needs={"mesh_stiffness": "mesh_stiffness"},
         upstream={"ltca": From("contact", "ltca", when=conditions.computed_stiffness)},
@@ -218,7 +217,7 @@ ROWS = (
     ),
     Stage(
         name="load_dependence",
-        module="contact",
+        module="stiffness",
         title="Stiffness against load",
         upstream=from_stage("contact", "ltca"),
         files={"table": File("stiffness/load_dependence.csv", ("definition", "torque_n_m", "mean_n_per_m"))},
